@@ -5,8 +5,13 @@ Exit codes: `gaitdisc/commands/exit_codes.py`.
 
 from __future__ import annotations
 
+import signal
 import sys
-from typing import Annotated
+from collections.abc import Callable
+from functools import wraps
+from inspect import Parameter, signature
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
@@ -21,11 +26,12 @@ from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
 from gaitdisc.commands.discover import discover
 from gaitdisc.commands.doctor import doctor
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.exit_codes import ENDED, REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
 from gaitdisc.commands.moments import moments
 from gaitdisc.commands.new import new
+from gaitdisc.commands.options import Overwrite
 from gaitdisc.commands.reconstruct import reconstruct
 from gaitdisc.commands.reference import reference
 from gaitdisc.commands.report import report
@@ -33,6 +39,7 @@ from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
 from gaitdisc.commands.watch import watch
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.own_files import guarded
 
 COMMANDS = (
     new,
@@ -58,8 +65,28 @@ COMMANDS = (
 )
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
+WRITE_NOTHING = (check, doctor)
+
+
+def _guarded(command: Callable[..., None]) -> Callable[..., None]:
+    """The command with `--overwrite`, which replaces no input of it and no file that is not its own."""
+
+    @wraps(command)
+    def writing(*, overwrite: bool, **given: Any) -> None:
+        values = [value if isinstance(value, list) else [value] for name, value in given.items() if name != "out"]
+        paths = [Path(one) for value in values for one in value if isinstance(one, str | Path)]
+        with guarded(f"gaitdisc {command.__name__}", paths, overwrite):
+            command(**given)
+
+    own = signature(command, eval_str=True)
+    option = Parameter("overwrite", Parameter.KEYWORD_ONLY, default=False, annotation=Overwrite)
+    writing.__signature__ = own.replace(parameters=[*own.parameters.values(), option])  # type: ignore[attr-defined]
+    writing.__annotations__ = {**command.__annotations__, "overwrite": Overwrite}
+    return writing
+
+
 for _command in COMMANDS:
-    app.command()(_command)
+    app.command()(_command if _command in (*WRITE_NOTHING, watch) else _guarded(_command))
 
 
 def _version(wanted: bool) -> None:
@@ -79,6 +106,7 @@ def _about(
 
 def main() -> None:
     """Run the command line; a refusal is printed as its sentence, never as a traceback."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(ENDED))  # files that are not whole are cleared away first
     try:
         app()
     except GaitdiscError as error:

@@ -13,7 +13,7 @@ class GaitdiscError(ValueError):
     Parameters
     ----------
     needed : str
-        What the operation needs, in the field's words, with the unit.
+        What the operation needs, in the field's words, with the unit; empty where what was met says it.
     found : str
         What was met instead: file, channel, frame, number, unit.
     remedy : str
@@ -32,7 +32,7 @@ class GaitdiscError(ValueError):
         self.remedy = remedy
 
     def __str__(self) -> str:
-        return f"{self.needed}; {self.found}. {self.remedy}"
+        return f"{'; '.join(filter(None, (self.needed, self.found)))}. {self.remedy}"
 
     @property
     def code(self) -> str:

@@ -6,6 +6,7 @@ import stat
 from pathlib import Path
 
 from gaitdisc.errors import ReadError
+from gaitdisc.own_files import note_inputs
 
 GIBIBYTE = 2**30
 LARGEST_BYTES = 4 * GIBIBYTE  # a binary recording: twenty hours of 50 markers and 40 analog channels
@@ -40,6 +41,7 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
             f"{name} has {size_in_words(found.st_size)}",
             "Export the recording in parts, or only the channels that are needed.",
         )
+    note_inputs([path])
     return found.st_size
 
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
+from uuid import uuid4
 
 from gaitdisc.errors import WriteError
+from gaitdisc.own_files import claim_file, record_output
+from gaitdisc.write_lock import PART
 
-PART = ".part-"  # files begin with it until they are whole
+_TOGETHER: ContextVar[list[tuple[Path, Path]] | None] = ContextVar("together", default=None)
 
 
 @contextmanager
@@ -26,23 +29,57 @@ def whole_file(path: Path) -> Iterator[Path]:
     >>> [file.name for file in folder.iterdir()]
     ['r2.csv']
     """
+    claim_file(path)
+    part = path.with_name(f"{PART}{path.stem}-{uuid4().hex[:8]}{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f"{PART}{path.stem}-", suffix=path.suffix, dir=path.parent)
-        os.close(handle)
+        os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # less what the system takes off
     except OSError as error:
         raise _refusal(path, error) from error
-    part = Path(name)
+    with written_together() as files:
+        try:
+            yield part
+            with part.open("rb+") as file:
+                os.fsync(file.fileno())
+            files.append((path, part))
+        except OSError as error:
+            raise _refusal(path, error) from error
+        finally:
+            if (path, part) not in files:
+                part.unlink(missing_ok=True)
+
+
+@contextmanager
+def written_together() -> Iterator[list[tuple[Path, Path]]]:
+    """Let the files of one result take their places when all of them are written, or none; the last written is last.
+
+    returns: each file's place, and where it stands until then
+    """
+    files = _TOGETHER.get()
+    if files is not None:
+        yield files
+        return
+    files = []
+    token = _TOGETHER.set(files)
     try:
-        yield part
-        with part.open("rb+") as file:
-            os.fsync(file.fileno())
-        part.chmod(_ordinary_mode())
-        part.replace(path)
-    except OSError as error:
-        raise _refusal(path, error) from error
+        yield files
+        for take_place in (record_output, lambda path, part: part.replace(path)):  # a list needs room, a place none
+            for path, part in files:
+                try:
+                    take_place(path, part)
+                except OSError as error:
+                    raise _refusal(path, error) from error
+        for folder in {path.parent for path, _ in files}:
+            _flush(folder)
     finally:
-        part.unlink(missing_ok=True)
+        _TOGETHER.reset(token)
+        for _, part in files:
+            part.unlink(missing_ok=True)
+
+
+def written_so_far(path: Path) -> Path:
+    """Where a file stands that has not taken its place yet; its place where it has."""
+    return next((part for place, part in reversed(_TOGETHER.get() or []) if place == path), path)
 
 
 def write_whole(path: Path | str, content: bytes | str) -> Path:
@@ -60,27 +97,20 @@ def write_whole(path: Path | str, content: bytes | str) -> Path:
     return path
 
 
-def sweep_parts(folder: Path) -> None:
-    """Delete what a killed program left of files that it never finished.
-
-    folder: folder in which, and below which, nobody else writes now
-
-    >>> import tempfile
-    >>> folder = Path(tempfile.mkdtemp())
-    >>> (folder / ".part-r2-x.csv").touch()
-    >>> sweep_parts(folder)
-    >>> list(folder.iterdir())
-    []
-    """
-    for part in folder.rglob(f"{PART}*"):
-        part.unlink(missing_ok=True)
+def remove_file(path: Path) -> None:
+    """Delete a file, if it may be replaced."""
+    claim_file(path)
+    path.unlink(missing_ok=True)
 
 
-def _ordinary_mode() -> int:
-    """Permissions of a file that any program would make; a temporary file's own are for its owner alone."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
+def _flush(folder: Path) -> None:
+    """Let a rename outlast a power cut, on systems that can open a folder."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _refusal(path: Path, error: OSError) -> WriteError:

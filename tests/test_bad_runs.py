@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import socket
+from contextvars import ContextVar
 from functools import partial
 
 import numpy as np
@@ -189,16 +190,17 @@ def test_a_folder_that_cannot_be_written(folder, monkeypatch, capsys):
     written(folder, walker("P01"))
     (folder / "file").write_text("")
     words = refused_words(monkeypatch, capsys, "run", folder, "--out", folder / "file" / "run")
-    assert "a run needs a folder that it can write" in words and "choose another folder with --out" in words
+    assert "a command needs a folder that it can write" in words and "choose another folder with --out" in words
 
 
 def test_two_runs_in_one_folder(folder, monkeypatch, capsys):
-    from gaitdisc.batch.run_lock import run_lock
+    from gaitdisc.write_lock import write_lock
 
     written(folder, walker("P01"))
-    with run_lock(folder / "run"):
-        words = refused_words(monkeypatch, capsys, "run", folder)
-    assert f"is held by process {os.getpid()} on this machine. Wait for it" in words
+    with write_lock(folder / "run"), monkeypatch.context() as another:
+        another.setattr("gaitdisc.write_lock._HELD", ContextVar("held", default=frozenset()))
+        words = refused_words(another, capsys, "run", folder)
+    assert f"Another process (pid {os.getpid()}) is writing to {folder}/run/. Wait for it or choose another" in words
 
 
 def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypatch, tmp_path_factory):

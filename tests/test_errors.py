@@ -49,7 +49,7 @@ def refused_by(name):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == name and len(node.args) >= 3:
                 needed, found, remedy = map(template, node.args[:3])
                 if len(needed.replace(".*", "")) + len(remedy.replace(".*", "")) > 30:
-                    yield f"{needed}; {found}\\. {remedy}"
+                    yield f"{'; '.join(filter(None, (needed, found)))}\\. {remedy}"
 
 
 def test_sentence_says_needed_found_remedy():

@@ -10,7 +10,10 @@ import gaitdisc
 
 PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
-    ("errors", "units", "channel", "whole_file", "regular_file", "toml_text", "spreadsheet", "compiled", "notebook"),
+    (
+        *("errors", "units", "channel", "own_files", "whole_file", "write_lock", "regular_file", "toml_text"),
+        *("spreadsheet", "compiled", "notebook"),
+    ),
     ("recording", "model"),
     (
         "ingest",

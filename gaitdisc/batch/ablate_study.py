@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.quantity_unit import computed_quantity
-from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
@@ -16,6 +15,7 @@ from gaitdisc.response.data_quantity import LENGTHS_S
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Refusal, ResponseRun
 from gaitdisc.results.run_store import save_run
+from gaitdisc.write_lock import write_lock
 
 
 def ablate_study(
@@ -35,7 +35,7 @@ def ablate_study(
     """
     workers = workers or Workers()
     run = run_study(study, folder, workers)
-    with run_lock(folder):
+    with write_lock(folder, run=True):
         people = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
         found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))

@@ -15,11 +15,12 @@ from typing import Any, NamedTuple
 
 import gaitdisc
 from gaitdisc.batch.chapter_parts import OUT, Part, studies_folder
-from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.errors import SchemaError, TrainingError
+from gaitdisc.own_files import claim_folder
 from gaitdisc.results.provenance import code_sha256
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
+from gaitdisc.write_lock import write_lock
 
 NAME = "chapter.json"  # in the folder of a part, before anything else
 PRINTED = "printed.md"  # what the study prints: its table, as Markdown
@@ -59,7 +60,8 @@ def run_part(
     begun = {"part": part.name, "quick": quick, "code": _code()}
     if _stands(folder, begun):
         return Made(folder, True)
-    with run_lock(folder):
+    claim_folder(folder, NAME, PRINTED, mended=(NAME,))
+    with write_lock(folder, run=True):
         write_whole(folder / NAME, sealed_text({**begun, "seconds": None}))
         started = time.perf_counter()
         printed = _study(part, folder, quick, data, ticked)
@@ -70,7 +72,7 @@ def run_part(
 
 def _stands(folder: Path, begun: dict[str, Any]) -> bool:
     """Whether the part was finished there by this code; refused where the folder holds something else."""
-    if not folder.is_dir() or not any(not path.name.startswith(".lock") for path in folder.iterdir()):
+    if not folder.is_dir() or not any(not path.name.startswith(".") for path in folder.iterdir()):
         return False
     if not (folder / NAME).is_file():
         raise SchemaError(

@@ -102,7 +102,7 @@ def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, progr
         if visit.what == "bad file":
             for file in files:
                 whole = (folder / file).read_bytes()
-                (folder / file).write_bytes(whole[: len(whole) // 3])
+                write_whole(folder / file, whole[: len(whole) // 3])
         people[visit.name] = person = person_of(visit, seed)
         planned = PlannedTrial(
             condition=CONDITION, session=visit.session or None, files=files, speed_m_per_s=person.speed_m_per_s

@@ -147,12 +147,17 @@ def measured_of_file(file: Path, mapping: Simulation) -> Measured:
     return measured_of_recordings([whole], mapping)
 
 
-def write_answer(answer: EngineAnswer, out: Path) -> None:
-    """Write the mapping with what was found, and the model's own text with what has a form there."""
+def write_answer(answer: EngineAnswer, out: Path) -> list[str]:
+    """Write the mapping with what was found, and the model's own text with what has a form there; their names."""
     engine = answer.engine
     name = os.path.relpath(engine.path.resolve(), out.resolve())
-    write_simulation(replace(answer.augmented, model=name, layout=""), out / "augmented.toml")
-    write_whole(out / f"{engine.path.stem}_augmented{engine.path.suffix}", answer.written.text)
+    mapping = write_simulation(replace(answer.augmented, model=name, layout=""), out / "augmented.toml")
+    return [mapping.name, write_whole(out / augmented_name(engine.path), answer.written.text).name]
+
+
+def augmented_name(model: Path) -> str:
+    """Name of a model's file with what was found in it."""
+    return f"{model.stem}_augmented{model.suffix}"
 
 
 def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> None:

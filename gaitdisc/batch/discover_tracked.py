@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.batch.discover_engine import augmented_name
 from gaitdisc.batch.tracked_answer import discovery_of
 from gaitdisc.batch.tracked_joints import doubts, joints_of, shown_by
 from gaitdisc.batch.tracked_pass import (
@@ -84,13 +85,12 @@ def discover_tracked(
     return TrackedAnswer(found, augmented, written, tracked, tuple(joints), said)
 
 
-def write_tracked(answer: TrackedAnswer, out: Path) -> None:
-    """Write the model's own text with what has a form there, and its mapping, to go on from."""
-    tracked = answer.tracked
-    stem, suffix = tracked.model.stem, tracked.model.suffix
-    write_whole(out / f"{stem}_augmented{suffix}", answer.written.text)
-    augmented = out / f"{stem}_augmented{suffix}"
-    write_tracked_mapping(replace(tracked, model=augmented), augmented.with_suffix(".toml"))
+def write_tracked(answer: TrackedAnswer, out: Path) -> list[str]:
+    """Write the model's own text with what has a form there, and its mapping, to go on from; their names."""
+    augmented = write_whole(out / augmented_name(answer.tracked.model), answer.written.text)
+    mapping = augmented.with_suffix(".toml")
+    write_tracked_mapping(replace(answer.tracked, model=augmented), mapping)
+    return [augmented.name, mapping.name]
 
 
 def _augmented(engine: OpensimTracked, found: Discovery) -> Simulation:

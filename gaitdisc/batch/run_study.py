@@ -9,7 +9,6 @@ from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.public_words import public_settings, public_title
-from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.results import (
@@ -24,6 +23,7 @@ from gaitdisc.results import (
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import created_before, save_run
 from gaitdisc.results.unit_folder import damaged_units
+from gaitdisc.write_lock import write_lock
 
 SECTION = "4.2, Eqs. 4.1-4.5"
 POOLED = "none: cycles pooled over trials"
@@ -45,7 +45,7 @@ def run_study(
     progress: called with a participant's pseudonym and the fraction of that participant's work that is done
     returns: also saved in the folder; refusals are part of it
     """
-    with run_lock(folder):
+    with write_lock(folder, run=True):
         renewed = damaged_units(folder)
         compute = partial(computed_unit, study, folder=folder.absolute())
         units = list(computed_units(workers or Workers(), compute, study.participants, progress, _lost))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.variant_unit import computed_variants
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
@@ -17,6 +16,7 @@ from gaitdisc.response.sensitivity import compare_settings
 from gaitdisc.results import Refusal, ResponseRun
 from gaitdisc.results.stores import save_variant_run
 from gaitdisc.results.variants import QUESTIONS, VariantRun, Variants
+from gaitdisc.write_lock import write_lock
 
 
 def vary_study(
@@ -38,7 +38,7 @@ def vary_study(
         raise SchemaError(f"a question is one of: {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
     workers = workers or Workers()
     run = run_study(study, folder, workers)
-    with run_lock(folder):
+    with write_lock(folder, run=True):
         people = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
         found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))

@@ -24,9 +24,11 @@ def ablate(
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.response.data_quantity import LENGTHS_S
+    from gaitdisc.results.run_store import claim_run
 
     loaded = load_study(study)
     folder, lengths = out or loaded.folder / "run", tuple(length) if length else LENGTHS_S
+    claim_run(folder)
     report_on(
         lambda progress: ablate_study(loaded, folder, lengths, part, Workers(jobs, cluster), progress),
         loaded,

@@ -35,8 +35,10 @@ def angles(
     from gaitdisc.ingest.writing import write_recording
     from gaitdisc.kinematics.motion import moved_body
     from gaitdisc.kinematics.segment_angles import segment_angles
+    from gaitdisc.own_files import claim_file
     from gaitdisc.recording.body_measures import BodyMeasures
 
+    claim_file(out)
     walk = read_trial(trial)
     seen = [*walk.findings]
     if static is None and "segments" in walk.streams:

@@ -23,6 +23,7 @@ def apply(
 ) -> None:
     """Reconstruct the states of a recording by a saved model, with their errors where the recording has them."""
     from gaitdisc.batch.reconstruct_recording import reconstruct_recording
+    from gaitdisc.own_files import claim_file
 
     if model.is_file():
         raise SchemaError(
@@ -31,5 +32,6 @@ def apply(
             "Name the model first: gaitdisc apply MODEL RECORDING.",
         )
     file = out or Path(f"{recording.stem}_reconstructed.mot")
+    claim_file(file)
     for line in reconstruct_recording(recording, model, file, calibration=calibrate, missing=missing).lines():
         typer.echo(line)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.errors import GaitdiscError, SchemaError, WriteError
-from gaitdisc.whole_file import write_whole
+from gaitdisc.whole_file import remove_file, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,10 +30,10 @@ def keep_reference(place: Path | None, run_folder: Path) -> None:
     found, own = load_reference(place), run_folder / REFERENCE
     if found.published:
         write_whole(own / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
-        (own / FILE).unlink(missing_ok=True)
+        remove_file(own / FILE)
     else:
         save_reference(found, own)
-        (own / PUBLISHED).unlink(missing_ok=True)
+        remove_file(own / PUBLISHED)
 
 
 def kept_reference(run_folder: Path) -> ClinicalReference | None:
@@ -50,7 +50,7 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
     from gaitdisc.report.clinic.words import read_words, write_words
 
     if language == "en":
-        (run_folder / WORDS).unlink(missing_ok=True)
+        remove_file(run_folder / WORDS)
         return []
     english = _english()
     words = read_words(Path(language), english)

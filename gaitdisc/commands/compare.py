@@ -42,19 +42,21 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     from rich.console import Console
 
     from gaitdisc.batch.compare_recordings import compare_files
+    from gaitdisc.own_files import claim_folder
     from gaitdisc.report.mismatch_page import mismatch_text, write_mismatch_report
     from gaitdisc.report.mismatch_sentences import mismatch_sentences
     from gaitdisc.results.mismatch import Smallest
 
+    folder = out or (Path() if second else first.parent if first.is_file() else first) / "compare"
+    claim_folder(folder, "mismatch.json", "regions.csv", "summary.csv", "arrays.npz", "report.html")
     channels = tuple(channel or ())
     smallest = Smallest(smallest_angle, smallest_moment, smallest_share, body_weight)
     if second is None:
-        mismatch, folder = _of_study(first, participant, channels, smallest)
+        mismatch = _of_study(first, participant, channels, smallest)
     elif participant:
         raise typer.BadParameter("--participant belongs to a study; two files are given")
     else:
-        mismatch, folder = compare_files(first, second, channels, cutoff, detector, smallest), Path("compare")
-    folder = out or folder
+        mismatch = compare_files(first, second, channels, cutoff, detector, smallest)
     mismatch.save(folder)
     page = write_mismatch_report(mismatch, folder)
     typer.echo(" ".join(mismatch_sentences(mismatch)))
@@ -68,7 +70,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
         raise typer.Exit(SOME_REFUSED)
 
 
-def _of_study(place: Path, participant: str, channels: tuple[str, ...], smallest: Smallest) -> tuple[Mismatch, Path]:
+def _of_study(place: Path, participant: str, channels: tuple[str, ...], smallest: Smallest) -> Mismatch:
     from gaitdisc.batch.compare_recordings import compare_study
     from gaitdisc.errors import SchemaError
     from gaitdisc.ingest.study_file import load_study
@@ -79,5 +81,4 @@ def _of_study(place: Path, participant: str, channels: tuple[str, ...], smallest
             f"{place.name} is one recording",
             "Name the measured walk after it: gaitdisc compare SIM MEASURED.",
         )
-    study = load_study(place)
-    return compare_study(study, participant, channels, smallest), study.folder / "compare"
+    return compare_study(load_study(place), participant, channels, smallest)

@@ -35,7 +35,11 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.own_files import claim_folder
+    from gaitdisc.results.run_store import claim_run
 
+    claim_folder(folder, "study.toml", "raw", "truth")
+    claim_run(folder / "run")
     typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition: simulated, no people.")
     write_demonstration(
         folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet), laboratory

@@ -11,12 +11,14 @@ import typer
 
 from gaitdisc.commands.options import Quiet
 from gaitdisc.errors import SchemaError
+from gaitdisc.own_files import claim_folder
 
 if TYPE_CHECKING:
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.simulation.simulation import Simulation
 
 EVERYONE, ANKLE = "all", "ankle_angle"
+FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
 
 
 def discover(
@@ -49,6 +51,8 @@ def discover(
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. "
             "Of a study, add --participant.",
         )
+    if measured is not None:
+        claim_folder(out, *FILES)
     began = time.perf_counter()
 
     def progress(step: str) -> None:
@@ -68,17 +72,16 @@ def discover(
             from gaitdisc.batch.discover_tracked import discover_tracked, write_tracked
 
             answered = discover_tracked(walk, measured, catalogue, progress)
-            write_tracked(answered, out)
-            _write(answered.found, out, draw, progress, (*answered.written.notes, *answered.said))
+            said = (*answered.written.notes, *answered.said)
+            _write(answered.found, out, draw, progress, lambda: write_tracked(answered, out), said)
             return
         answer = discover_model_file(simulation, measured, catalogue, progress)
-        write_answer(answer, out)
-        _write(answer.found, out, draw, progress, (*answer.written.notes, answer.runs.said))
+        said = (*answer.written.notes, answer.runs.said)
+        _write(answer.found, out, draw, progress, lambda: write_answer(answer, out), said)
         return
 
     def with_model(found: Discovery, augmented: Simulation, folder: Path) -> None:
-        write_simulation(augmented, folder / "augmented.toml")
-        _write(found, folder, draw, progress)
+        _write(found, folder, draw, progress, lambda: [write_simulation(augmented, folder / "augmented.toml").name])
 
     if measured is not None:
         with_model(*discover_files(simulation, measured, catalogue, progress), out)
@@ -86,6 +89,7 @@ def discover(
     whose, _, joint = participant.partition(":")
 
     def discovered(person: str, folder: Path) -> Discovery:
+        claim_folder(folder, *FILES)
         found, augmented = discover_study(simulation, person, catalogue, progress, joint or ANKLE)
         with_model(found, augmented, folder)
         return found
@@ -96,11 +100,20 @@ def discover(
         discovered(whose, out)
 
 
-def _write(found: Discovery, out: Path, draw: bool, progress: Callable[[str], None], notes: Sequence[str] = ()) -> None:
-    """Write what was found, and say it."""
+def _write(
+    found: Discovery,
+    out: Path,
+    draw: bool,
+    progress: Callable[[str], None],
+    models: Callable[[], list[str]],
+    notes: Sequence[str] = (),
+) -> None:
+    """Write what was found together with the augmented model, and say it."""
     from gaitdisc.results.discovery_folder import save_discovery
+    from gaitdisc.whole_file import written_together
 
-    place = save_discovery(found, out)
+    with written_together():
+        place = save_discovery(found, out, models())
     if draw:
         from gaitdisc.report.discovery_page import write_discovery_report
 
@@ -120,6 +133,7 @@ def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discover
     from gaitdisc.results.device_people import lines, over_people
     from gaitdisc.spreadsheet import write_csv
 
+    claim_folder(out, "people.csv")
     found: dict[str, Discovery] = {}
     for person in load_study(study).participants:
         typer.echo(f"{person.id}:")

@@ -32,9 +32,12 @@ def export(
 
     Of a run with pooled cycles: cycles, curves, means and spatiotemporal values, each as one tidy table.
     """
+    from gaitdisc.own_files import claim_file
+
     if len(files) == 1 and (files[0] / "run.json").is_file():
         _cycles(files[0], out, parquet, mot)
         return
+    claim_file(out)
     if out.suffix.lower() == ".onnx":
         _model(files, out)
         return
@@ -69,6 +72,7 @@ def _model(folders: list[Path], out: Path) -> None:
 def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     from gaitdisc.errors import SchemaError
     from gaitdisc.ingest.storage import write_storage
+    from gaitdisc.own_files import claim_folder
     from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings
     from gaitdisc.results.run_store import load_run
     from gaitdisc.spreadsheet import write_csv
@@ -87,6 +91,7 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
         "means": all_means(run.cycles),
         "spatiotemporal": all_spatiotemporal(run.cycles),
     }
+    claim_folder(out, *(f"{name}.{'parquet' if parquet else 'csv'}" for name in tables))
     for name, table in tables.items():
         if parquet:
             with whole_file(out / f"{name}.parquet") as part:

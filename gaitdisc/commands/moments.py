@@ -29,9 +29,11 @@ def moments(
     from gaitdisc.kinetics.body_inertia import Person
     from gaitdisc.kinetics.joint_moments import KineticsSettings
     from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+    from gaitdisc.own_files import claim_file
     from gaitdisc.processing.markers_to_moments import foot_paths_of
     from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 
+    claim_file(out)
     walk, stood = read_trial(trial), read_trial(static)
     standing, measures = stood.stream("markers"), body_measures_in(static)
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m)

@@ -8,10 +8,14 @@ from typing import Annotated
 import typer
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.own_files import claim_file
 
 
 def new(
-    study: Annotated[Path, typer.Argument(help="Folder of the new study; of a model, its mapping file (leg.toml).")],
+    out: Annotated[
+        Path,
+        typer.Argument(metavar="STUDY", help="Folder of the new study; of a model, its mapping file (leg.toml)."),
+    ],
     recordings: Annotated[
         Path, typer.Option("--from", help="Folder of recordings, or a model of MuJoCo or OpenSim; it is not changed.")
     ],
@@ -26,42 +30,40 @@ def new(
     from gaitdisc.engines.model_file import is_model
 
     if external_loads or forces or actuators:
-        _write_tracked(study, recordings, (external_loads, forces, actuators))
+        _write_tracked(out, recordings, (external_loads, forces, actuators))
         return
     if is_model(recordings):
-        _write_mapping(study, recordings, degrees)
+        _write_mapping(out, recordings, degrees)
         return
     from gaitdisc.ingest.new_study import found_study
     from gaitdisc.ingest.study_file import write_study
     from gaitdisc.report.wording import counted
 
-    file = study / "study.toml"
-    if file.exists():
-        raise SchemaError(
-            "a new study needs a folder without one", f"{file} is there already", "Choose another folder, or delete it."
-        )
-    draft, notes = found_study(recordings, study)
+    file = out / "study.toml"
+    claim_file(file)
+    draft, notes = found_study(recordings, out)
     write_study(draft, file)
     for note in notes:
         typer.echo(f"  {note}")
     people = counted(len(draft.participants), "participant")
-    typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {study}")
+    typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {out}")
 
 
-def _refuse_unnamed(file: Path, model: Path) -> None:
-    if file.suffix != ".toml" or file.exists():
+def _claim_mapping(file: Path, model: Path) -> None:
+    if file.suffix != ".toml":
         raise SchemaError(
-            "a model's mapping is a new file that ends in .toml",
-            f"{file} is there already" if file.exists() else f"{file.name} does not",
+            "a model's mapping is a file that ends in .toml",
+            f"{file.name} does not",
             f"Call it {model.with_suffix('.toml').name}: beside the model it is found by itself.",
         )
+    claim_file(file)
 
 
 def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
     from gaitdisc.engines.mapping import write_mapping
     from gaitdisc.engines.model_file import read_model
 
-    _refuse_unnamed(file, model)
+    _claim_mapping(file, model)
     mapping = write_mapping(read_model(model), file, degrees)
     columns = [name for name, _ in mapping.observations] + [one.name for one in mapping.inputs]
     typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then: gaitdisc discover {model} MEASURED")
@@ -74,7 +76,7 @@ def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | Non
     from gaitdisc.engines.tracked_mapping import write_tracked_mapping
     from gaitdisc.report.wording import counted
 
-    _refuse_unnamed(file, model)
+    _claim_mapping(file, model)
     tracked, engine = drafted_tracked(model, *files)
     write_tracked_mapping(tracked, file)
     given = f"forces of {counted(len(engine.actuators), 'actuator')}" if tracked.forces else "no forces of muscles"

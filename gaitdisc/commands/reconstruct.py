@@ -49,6 +49,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
     from gaitdisc.batch.search_study import search_study
     from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.own_files import claim_folder
     from gaitdisc.report.figure import file_names
     from gaitdisc.report.reconstruction_page import write_reconstruction_report
     from gaitdisc.results.reconstruction import enough_sensors
@@ -57,6 +58,8 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
+    tables = ("errors.csv", "summary.csv", "curves.csv", "search.csv")
+    claim_folder(folder, "reconstruction.json", *tables, "report.html", "models")
     chosen = tuple(kind.strip() for kind in kinds.split(",")) if kinds else tuple(KINDS)
     settings = ReconstructionSettings(
         split=split,

@@ -24,8 +24,10 @@ def reference(
     """Process controls as a study is processed, and save mean cycles of their legs for `--reference`."""
     from gaitdisc.clinic.like_controls import described, groups_of
     from gaitdisc.clinic.reference import FEWEST, reference_of
-    from gaitdisc.results.clinical_reference import save_reference
+    from gaitdisc.own_files import claim_folder
+    from gaitdisc.results.clinical_reference import FILE, save_reference
 
+    claim_folder(out, FILE)
     run = _run_of(controls, jobs)
     cycles = tuple(one for one in run.cycles if not group or one.group == group)
     if not cycles:
@@ -49,7 +51,7 @@ def reference(
 
 def _run_of(controls: Path, jobs: int) -> ResponseRun:
     """Run of a folder, or of a study, which is computed as far as it is not."""
-    from gaitdisc.results.run_store import load_run
+    from gaitdisc.results.run_store import claim_run, load_run
 
     if (controls / "run.json").is_file():
         return load_run(controls)
@@ -58,4 +60,5 @@ def _run_of(controls: Path, jobs: int) -> ResponseRun:
     from gaitdisc.ingest.study_file import load_study
 
     study = load_study(controls)
+    claim_run(study.folder / "run")
     return run_study(study, study.folder / "run", Workers(jobs))

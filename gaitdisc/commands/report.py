@@ -24,8 +24,12 @@ def report(
     """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
     from gaitdisc.commands.clinic_report import clinic_report, language_of, run_folder_of
     from gaitdisc.errors import SchemaError
+    from gaitdisc.own_files import claim_folder
     from gaitdisc.report.saved_page import draw_saved
 
+    place = run_folder_of(folder)
+    if place.is_dir():
+        claim_folder(place, "report.html", "report/report.html")
     if language and language_of(folder, language):
         return
     if clinic_report(folder, person, (before, after), reference, pdf):
@@ -36,5 +40,5 @@ def report(
             f"{folder.name} holds a saved model, which has none",
             "Name the folder above its `models`, or use the model: gaitdisc apply MODEL RECORDING.",
         )
-    for word, page in draw_saved(run_folder_of(folder)).items():
+    for word, page in draw_saved(place).items():
         typer.echo(f"{word}: {page}")

@@ -25,11 +25,13 @@ def run(
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.results.run_store import claim_run
 
     loaded = load_study(study)
     if participant:
         chosen = tuple(loaded.participant(name) for name in participant)
         loaded = loaded.model_copy(update={"participants": chosen})
     folder = out or loaded.folder / "run"
+    claim_run(folder)
     keep_reference(reference, folder)
     report_on(lambda progress: run_study(loaded, folder, Workers(jobs, cluster), progress), loaded, folder, quiet)

@@ -15,10 +15,14 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
     from gaitdisc.batch.vary_study import vary_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.own_files import claim_file
     from gaitdisc.report.variants import variant_sentences, write_variants
+    from gaitdisc.results.run_store import claim_run
 
     study = load_study(place)
     folder, started, side_by_side = out or study.folder / "run", time.perf_counter(), Workers(*workers)
+    claim_run(folder)
+    claim_file(folder / question / "report.html")
     people = [person.id for person in study.participants]
     done = worked(lambda progress: vary_study(study, folder, question, side_by_side, progress), people, quiet)
     say_renewed(done.renewed)

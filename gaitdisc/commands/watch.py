@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.exit_codes import REFUSED, STOPPED
-from gaitdisc.commands.options import Jobs, Quiet
+from gaitdisc.commands.options import Jobs, Overwrite, Quiet
 from gaitdisc.commands.run import run
 from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.own_files import guarded
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,6 +26,7 @@ def watch(
     still: Annotated[float, typer.Option(min=0.1, help="A file counts after it stood still for so long [s].")] = 5.0,
     jobs: Jobs = 1,
     quiet: Quiet = False,
+    overwrite: Overwrite = False,
 ) -> None:
     """Take up new trials as they are saved and run the study each time, until Ctrl-C; nothing is computed twice.
 
@@ -49,7 +51,8 @@ def watch(
                 for note in (one for one in notes if one not in said):
                     typer.echo(f"  {note}")
                 said.update(notes)
-                code = _code_of(lambda: run(file, None, None, jobs, "", reference, quiet))
+                with guarded("gaitdisc run", [file, *(recordings / one for one in files)], overwrite):
+                    code = _code_of(lambda: run(file, None, None, jobs, "", reference, quiet))
             except GaitdiscError as error:
                 typer.echo(f"{error} [{error.code}]", err=True)
                 code = REFUSED

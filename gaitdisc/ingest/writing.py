@@ -8,12 +8,13 @@ from gaitdisc.channel import nearest_word
 from gaitdisc.errors import WriteError
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.table import write_table
+from gaitdisc.own_files import guarded
 from gaitdisc.recording import Recording
 
 WRITERS = {".mot": write_storage, ".sto": write_storage, ".csv": write_table, ".parquet": write_table}
 
 
-def write_recording(recording: Recording, path: Path | str) -> Path:
+def write_recording(recording: Recording, path: Path | str, overwrite: bool = False) -> Path:
     """Write a recording to a file that `read` reads again, whole or not at all.
 
     Parameters
@@ -23,6 +24,8 @@ def write_recording(recording: Recording, path: Path | str) -> Path:
         written.
     path : path
         `.mot` or `.sto` for OpenSim, `.csv` or `.parquet` with the unit of each column.
+    overwrite : bool
+        Whether a file may be replaced that `write` did not write, or that was changed since.
 
     Returns
     -------
@@ -32,7 +35,7 @@ def write_recording(recording: Recording, path: Path | str) -> Path:
     Raises
     ------
     WriteError
-        If the ending is another one, or the file cannot be written.
+        If the ending is another one, or the file cannot or may not be written.
     ChannelError
         If a name cannot stand in such a file.
 
@@ -51,4 +54,5 @@ def write_recording(recording: Recording, path: Path | str) -> Path:
             f"{Path(path).name} ends with {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
             "Name it with one of these endings.",
         )
-    return WRITERS[ending](recording, path)
+    with guarded("gd.write", overwrite=overwrite):
+        return WRITERS[ending](recording, path)

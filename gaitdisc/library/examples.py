@@ -6,7 +6,9 @@ from pathlib import Path
 
 from gaitdisc.batch.demonstration import write_trial
 from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.own_files import guarded
 from gaitdisc.recording import Trial
+from gaitdisc.whole_file import written_together
 
 
 def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
@@ -32,7 +34,7 @@ def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
     return walks_of(the_twelve()[0], duration_s).trials
 
 
-def example_files(folder: Path | str, duration_s: float = 20.0) -> dict[str, tuple[Path, ...]]:
+def example_files(folder: Path | str, duration_s: float = 20.0, overwrite: bool = False) -> dict[str, tuple[Path, ...]]:
     """Write the walks of `example_walks` as a laboratory's files, to try reading on.
 
     Parameters
@@ -41,6 +43,8 @@ def example_files(folder: Path | str, duration_s: float = 20.0) -> dict[str, tup
         Where; made if missing.
     duration_s : float
         Length of each walk [s].
+    overwrite : bool
+        Whether files may be replaced that `example_files` did not write, or that were changed since.
 
     Returns
     -------
@@ -50,7 +54,7 @@ def example_files(folder: Path | str, duration_s: float = 20.0) -> dict[str, tup
     Raises
     ------
     WriteError
-        If a file cannot be written.
+        If a file cannot or may not be written.
 
     Examples
     --------
@@ -59,4 +63,5 @@ def example_files(folder: Path | str, duration_s: float = 20.0) -> dict[str, tup
     """
     place = Path(folder)
     walks = example_walks(duration_s)
-    return {word: tuple(place / name for name in write_trial(trial, place, word)) for word, trial in walks.items()}
+    with guarded("gd.example_files", overwrite=overwrite), written_together():
+        return {word: tuple(place / name for name in write_trial(trial, place, word)) for word, trial in walks.items()}

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import gaitdisc
+from gaitdisc.own_files import under_this_guard
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, as_markdown, save_tables
 from gaitdisc.whole_file import write_whole
@@ -110,9 +111,10 @@ def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ..
         return [draw(*arguments) for arguments in each]
     from joblib import Parallel, delayed
 
+    work = under_this_guard(draw)
     try:
         drawn: Any = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(
-            delayed(draw)(*arguments) for arguments in each
+            delayed(work)(*arguments) for arguments in each
         )
     except BrokenProcessPool:  # killed, mostly for its memory: one after the other takes the least
         return [draw(*arguments) for arguments in each]

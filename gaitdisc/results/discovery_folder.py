@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ from gaitdisc.results.on_disk import damaged, of_another_format
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
-from gaitdisc.whole_file import write_whole
+from gaitdisc.whole_file import write_whole, written_so_far, written_together
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,12 +31,13 @@ RUNS = "held_out.csv"
 FORMAT = 1
 
 
-def save_discovery(discovery: Discovery, folder: Path) -> Path:
-    """Save a discovery."""
+@written_together()
+def save_discovery(discovery: Discovery, folder: Path, models: Sequence[str] = ()) -> Path:
+    """Save a discovery; models: files of the augmented model, which were written into the folder together with it."""
     import pandas as pd
 
     write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
-    hashes = {RUNS: file_sha256(folder / RUNS)}
+    hashes = {name: file_sha256(written_so_far(folder / name)) for name in (RUNS, *models)}
     return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))
 
 

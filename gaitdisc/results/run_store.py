@@ -22,14 +22,23 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.own_files import claim_folder
 from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.results.stores import CYCLES, OVER, QUANTITY, RESPONSE, TESTS, WALK, cycles_name, unit_name
 from gaitdisc.results.unit_folder import FORMAT, read_json
-from gaitdisc.whole_file import write_whole
+from gaitdisc.results.variants import QUESTIONS
+from gaitdisc.whole_file import write_whole, written_together
 
 
+def claim_run(folder: Path) -> None:
+    """Hold the folder of a run, or refuse it; what was changed in its units is found by the run itself."""
+    units = ("walks", "responses", "refused", "tests", "over", "quantities", "cycles", *QUESTIONS)
+    claim_folder(folder, "run.json", "report/report.html", command="gaitdisc run", mended=("run.json", *units))
+
+
+@written_together()
 def save_run(run: ResponseRun, folder: Path) -> None:
     """Save what a run is, beside the units that were saved as they were computed."""
     if run.tests is not None:

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.own_files import claim_folder, guarded
+from gaitdisc.whole_file import written_together
 
 HERE = "gaitdisc.results"
 READERS = {  # the JSON file of each kind, and what reads its folder
@@ -31,14 +33,17 @@ class Saved:
         super().__init_subclass__(**others)
         cls._by = by
 
-    def save(self, folder: Path | str) -> Path:
+    def save(self, folder: Path | str, overwrite: bool = False) -> Path:
         """Save to a folder that `gaitdisc.load` reads.
 
         folder: where; made if missing
+        overwrite: whether files may be replaced that `save` did not write
         returns: the folder
         """
         place = Path(folder)
-        _function(self._by)(self, place)
+        with guarded(".save", overwrite=overwrite), written_together():
+            claim_folder(place)
+            _function(self._by)(self, place)
         return place
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from gaitdisc.own_files import content_sha256, file_sha256, note_inputs
 from gaitdisc.results.on_disk import CHANGED, damaged
 
 OWN = "own_sha256"
@@ -20,7 +20,7 @@ def read_sealed(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         own = data.pop(OWN, None) if isinstance(data, dict) else None
-        found = _own_sha256(data) if own is not None else None
+        found = content_sha256(data) if own is not None else None
     except RecursionError:
         raise damaged(path, "not readable as JSON (nested too deeply)") from None
     except (OSError, ValueError) as error:
@@ -41,7 +41,7 @@ def sealed_text(data: Mapping[str, Any]) -> str:
     True
     """
     as_read = json.loads(json.dumps(data))
-    return json_text({**as_read, OWN: _own_sha256(as_read)})
+    return json_text({**as_read, OWN: content_sha256(as_read)})
 
 
 def json_text(data: Mapping[str, Any]) -> str:
@@ -49,19 +49,9 @@ def json_text(data: Mapping[str, Any]) -> str:
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
-def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's bytes."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _own_sha256(data: Mapping[str, Any]) -> str:
-    """Of what is named, not of the bytes: another editor's line ends change no number."""
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
-
-
 def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
     """Refuse a folder of which a file is not as it was saved."""
+    note_inputs(folder / file for file in hashes)
     for file, wanted in hashes.items():
         path = folder / file
         if not path.is_file():

@@ -23,7 +23,7 @@ from gaitdisc.recording import Finding
 from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged, of_another_format
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
-from gaitdisc.whole_file import whole_file, write_whole
+from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written_together
 
 FORMAT = 1
 EARLIER = {"told": "reconstructed"}  # what columns were called in folders saved before
@@ -47,6 +47,7 @@ class Keyed(NamedTuple, Generic[T]):
     key: str
 
 
+@written_together()
 def save_unit(
     folder: Path,
     name: str,
@@ -67,7 +68,7 @@ def save_unit(
         files.append("arrays.npz")
         with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
             np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
-    hashes = {file: file_sha256(folder / file) for file in files}
+    hashes = {file: file_sha256(written_so_far(folder / file)) for file in files}
     write_whole(folder / name, sealed_text({"format": FORMAT, **data, "sha256": hashes}))
 
 

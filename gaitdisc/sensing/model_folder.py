@@ -28,7 +28,7 @@ from gaitdisc.sensing.reconstructor import (
     network_of,
 )
 from gaitdisc.sensing.windows import Lags, windows_of
-from gaitdisc.whole_file import write_whole
+from gaitdisc.whole_file import write_whole, written_so_far, written_together
 
 NAME, WEIGHTS = "model.json", "weights.npz"
 FORMAT = 1
@@ -77,13 +77,13 @@ class SensingModel:
         return Recording(recording.time, values, states, recording.subject, recording.condition, recording.source)
 
 
+@written_together()
 def save_model(model: SensingModel, folder: Path) -> None:
     """Save a model: `weights.npz`, and `model.json` with the hashes of both."""
     from gaitdisc.regression.fourier_ridge import FourierRidge
     from gaitdisc.regression.ridge_file import save_ridge
 
     done = model.reconstructor
-    folder.mkdir(parents=True, exist_ok=True)
     places = [folder / WEIGHTS]
     if isinstance(done.model, FourierRidge):
         save_ridge(done.model, folder / WEIGHTS)
@@ -106,7 +106,7 @@ def save_model(model: SensingModel, folder: Path) -> None:
         "n_fitted": done.n_fitted,
         "seconds": done.seconds,
         "device": done.device,
-        "sha256": {path.name: file_sha256(path) for path in places},
+        "sha256": {path.name: file_sha256(written_so_far(path)) for path in places},
     }
     write_whole(folder / NAME, sealed_text(data))
 

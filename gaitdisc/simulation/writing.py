@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.own_files import guarded
 from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
@@ -22,7 +23,7 @@ _HEADER = re.compile(r"\s*\[")
 _STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'|[^#\"'\n]*?"
 
 
-def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str) -> Path:
+def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str, overwrite: bool = False) -> Path:
     r"""Write a simulation file, whole or not at all.
 
     Parameters
@@ -32,6 +33,8 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
         the object again.
     path : Path or str
         Where.
+    overwrite : bool
+        Whether a file may be replaced that `write_simulation` did not write, or that was changed since.
 
     Returns
     -------
@@ -41,7 +44,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Raises
     ------
     WriteError
-        If it cannot be written; an older file is left as it was.
+        If it cannot or may not be written; an older file is left as it was.
 
     Examples
     --------
@@ -58,15 +61,15 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     name = "constant_load"
     term = "0.5"
     """
-    if isinstance(simulation, PythonSimulation):
-        return write_whole(path, _python_text(simulation))
-    if not isinstance(simulation, Simulation):
+    if not isinstance(simulation, Simulation | PythonSimulation):
         raise SimulationError(
             "a simulation file holds a Simulation",
             f"found {type(simulation).__name__}",
             "Make one of a function first: gaitdisc.simulation_from_function(function).",
         )
-    return write_whole(path, simulation_text(simulation))
+    text = _python_text(simulation) if isinstance(simulation, PythonSimulation) else simulation_text(simulation)
+    with guarded("gd.write_simulation", overwrite=overwrite):
+        return write_whole(path, text)
 
 
 def simulation_text(simulation: Simulation) -> str:

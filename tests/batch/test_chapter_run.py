@@ -91,7 +91,7 @@ def test_what_a_machine_lacks_is_said_with_what_to_do(studies, tmp_path):
 
 
 def test_two_at_once_do_not_write_into_one_folder(studies, tmp_path):
-    from gaitdisc.batch.run_lock import run_lock
-
-    with run_lock(tmp_path / "one"), pytest.raises(WriteError, match="is held by process"):
+    (tmp_path / "one").mkdir()
+    (tmp_path / "one" / ".lock").write_text('{"pid": 1, "host": "elsewhere"}')
+    with pytest.raises(WriteError, match="Process 1 on elsewhere is writing"):
         run_part(ONE, tmp_path, True, None)

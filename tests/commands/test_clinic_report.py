@@ -53,7 +53,10 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
     assert called("report", run_folder.parent).stdout == first.stdout
     assert page.stat().st_mtime_ns == written
     page.write_text("edited")
-    assert called("report", run_folder).returncode == 0 and page.read_bytes() == drawn
+    edited = called("report", run_folder)
+    assert edited.returncode == 1 and "P08.html exists and was changed since gaitdisc report wrote it" in edited.stderr
+    assert page.read_text() == "edited"
+    assert called("report", run_folder, "--overwrite").returncode == 0 and page.read_bytes() == drawn
     save_reference(made_controls(6), tmp_path)
     called("report", run_folder, "--reference", tmp_path)
     assert "6 controls of the laboratory" in page.read_text()

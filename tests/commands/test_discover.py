@@ -114,7 +114,9 @@ def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch):
     done = CliRunner().invoke(app, ["discover", *words])
     assert done.exit_code == 0, done.output
     assert done.stderr == ""
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["augmented.toml", "discovery.json", "held_out.csv"]
+    files = ["augmented.toml", "discovery.json", "held_out.csv"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".written-by-gaitdisc", *files]
+    assert sorted(json.loads((tmp_path / "discovery.json").read_text())["sha256"]) == ["augmented.toml", "held_out.csv"]
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def test_a_discovery_that_was_edited_or_is_of_another_format_is_refused(tmp_path
     file.write_text(sealed_text({key: value for key, value in data.items() if key != "gap"}))
     with pytest.raises(SchemaError, match=r"not of the agreed form .KeyError: 'gap'"):
         gd.load(tmp_path)
-    manufactured().save(tmp_path)
+    manufactured().save(tmp_path, overwrite=True)
     text = json.loads(file.read_text()) | {"verdict": "no_gap"}
     file.write_text(json.dumps(text))
     with pytest.raises(SchemaError, match="changed since it was saved"):

@@ -95,7 +95,7 @@ def test_a_number_as_an_expression_is_replaced():
 def test_the_file_is_read_back(ankle, tmp_path):
     path = write_simulation(ankle.with_effect(SPRING), tmp_path / "new" / "augmented.toml")
     assert read_simulation(path) == ankle.with_effect(SPRING)
-    with pytest.raises(WriteError, match="is to be written whole"):
+    with pytest.raises(WriteError, match="needs a folder that it can write"):
         write_simulation(ankle, path / "below.toml")
 
 

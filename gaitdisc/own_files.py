@@ -1,0 +1,230 @@
+"""Which files a command may replace: those that it wrote itself and that nobody has changed since; never its inputs.
+
+Each folder that is written to holds a list: SHA-256, command and path of every file. A line is added before its file
+takes its place, so a command that was killed knows its files again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+from gaitdisc.errors import WriteError
+from gaitdisc.write_lock import write_lock
+
+LIST = ".written-by-gaitdisc"
+KINDS = (  # JSON files of results: a folder holds one of them
+    *("run.json", "variant_run.json", "discovery.json", "mismatch.json", "reconstruction.json", "model.json"),
+    "cycles.json",
+)
+PAGE = {"report.html", "figures", "tables", "report"}
+REDRAWS = "gaitdisc report"  # draws pages that other commands drew before, and they draw them again
+Lines = set[tuple[str, str, str]]  # SHA-256, command, path within the folder
+Result = TypeVar("Result")
+
+
+class Place(NamedTuple):
+    """A folder that a command writes to."""
+
+    folder: Path
+    command: str
+    lines: Lines
+    known: bool = False  # whether the command has written there before
+    mended: tuple[str, ...] = ()  # parts of the folder in which the command itself finds and mends what was changed
+
+    def mends(self, path: Path) -> bool:
+        """Whether the command itself finds changes in this file."""
+        parts = path.relative_to(self.folder).parts
+        return parts[0] in self.mended and not PAGE.intersection(parts)
+
+    def wrote(self, path: Path, sha256: str = "") -> bool:
+        """Whether the command, or one that shares its pages, wrote this file, or this very content of it."""
+        name = path.relative_to(self.folder).as_posix()
+        commands = {command for hashed, command, file in self.lines if file == name and hashed.startswith(sha256)}
+        return bool(commands if self.command == REDRAWS else commands & {self.command, REDRAWS})
+
+    def add(self, lines: Lines) -> None:
+        """Add files to the list."""
+        with (self.folder / LIST).open("a", encoding="utf-8", errors="surrogateescape") as file:
+            file.writelines("  ".join(line) + "\n" for line in sorted(lines - self.lines))
+        self.lines.update(lines)
+
+
+@dataclass(frozen=True)
+class Guard:
+    """A command at work: what it reads, and where it writes."""
+
+    command: str
+    overwrite: bool
+    inputs: list[os.stat_result] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
+    held: ExitStack = field(default_factory=ExitStack)
+
+    def take(self, place: Place, names: Iterable[str], lock: str = ".lock") -> None:
+        """Refuse names that may not be written, then lock the folder, which is made where it is missing."""
+        self.places.append(place)
+        for name in (*place.mended, *names):
+            self.place_of(place.folder / name)
+        self.places[self.places.index(place)] = place._replace(known=True)
+        made = [one for one in (place.folder, *place.folder.parents) if not one.exists()]
+        self.held.callback(_leave_no_empty_folder, place.folder, made)
+        self.held.enter_context(write_lock(place.folder, lock))
+
+    def place_of(self, path: Path) -> Place:
+        """Place of a file that may be written; all others are refused. path: as `_resolved` gives it."""
+        inside = [place for place in self.places if place.folder in path.parents]
+        if not inside:
+            inside = [Place(path.parent, self.command, _listed(path.parent))]
+            self.take(inside[0], [path.name], f".lock-{path.name}")
+        place = max(inside, key=lambda one: len(one.folder.parts))
+        other = [name for name in KINDS if name != path.name and (path.parent / name).is_file()]
+        if path.name in KINDS and other:
+            raise _refusal(path.parent, f"holds another kind of result ({other[0]})")
+        if not os.path.lexists(path) or (place.known and place.mends(path)):
+            return place
+        if os.path.exists(path) and any(os.path.samestat(path.stat(), one) for one in self.inputs):  # noqa: PTH110 never raises
+            raise _refusal(path, f"is an input of {self.command}")
+        whole = path.is_dir() or place.mends(path)
+        own = place.known if whole else path.is_file() and place.wrote(path, file_sha256(path))
+        if not own and not self.overwrite:
+            edited = not whole and place.wrote(path)
+            what = f"was changed since {place.command} wrote it" if edited else f"was not written by {place.command}"
+            way = "--overwrite" if self.command.startswith("gaitdisc") else "overwrite=True"
+            raise _refusal(path, f"exists and {what}", f", or give {way}")
+        return place
+
+
+_GUARD: ContextVar[Guard | None] = ContextVar("guard", default=None)
+
+
+@contextmanager
+def guarded(command: str, inputs: Iterable[Path] = (), overwrite: bool = False) -> Iterator[None]:
+    """Let all that is written within be a command's output; within another command it is that one's."""
+    with ExitStack() as held:
+        if _GUARD.get() is None:
+            held.callback(_GUARD.reset, _GUARD.set(Guard(command, overwrite, held=held)))
+            note_inputs(one for path in inputs for one in (path, *(path / name for name in KINDS)))
+        yield
+
+
+def note_inputs(paths: Iterable[Path]) -> None:
+    """Say that a command reads these files."""
+    guard = _GUARD.get()
+    if guard is not None:
+        guard.inputs.extend(path.stat() for path in paths if os.path.exists(path))  # noqa: PTH110 never raises
+
+
+def claim_folder(folder: Path, *names: str, command: str = "", mended: tuple[str, ...] = ()) -> None:
+    """Refuse a folder before any work is done, or hold it until the command ends.
+
+    names: what will be written there, as far as it is known now
+    command: whose files these are, where it is another than the one at work
+    mended: parts in which the command itself finds and mends what was changed
+    """
+    guard = _GUARD.get()
+    if guard is not None:
+        root, command = folder.resolve(), command or guard.command
+        listed = (root / LIST).exists()
+        earlier = set() if listed else _earlier_lines(root, KINDS if command == REDRAWS else names, command)
+        guard.take(Place(root, command, _listed(root) | earlier, listed or bool(earlier), mended), names)
+        if earlier or mended:  # a run's units, which it finds by themselves, stand on no list
+            Place(root, command, set()).add(earlier)
+
+
+def claim_file(path: Path) -> None:
+    """Refuse a file before any work is done, or hold it until the command ends."""
+    guard = _GUARD.get()
+    if guard is not None:
+        guard.place_of(_resolved(path))
+
+
+def record_output(path: Path, written: Path) -> None:
+    """Add a file to the list of its folder, before it takes its place; written: where it stands by now."""
+    guard = _GUARD.get()
+    if guard is not None:
+        path = _resolved(path)
+        place = guard.place_of(path)
+        if not place.mends(path):
+            place.add({(file_sha256(written), place.command, path.relative_to(place.folder).as_posix())})
+
+
+def under_this_guard(work: Callable[..., Result]) -> Callable[..., Result]:
+    """The same work for another process, which then writes as this command does."""
+    guard = _GUARD.get()
+    return work if guard is None else partial(_work_under, replace(guard, held=ExitStack()), work)
+
+
+def _work_under(guard: Guard, work: Callable[..., Result], *given: Any) -> Result:
+    with ExitStack() as held:
+        held.callback(_GUARD.reset, _GUARD.set(guard))
+        return work(*given)
+
+
+def file_sha256(path: Path) -> str:
+    """SHA-256 of a file's bytes."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def content_sha256(data: Mapping[str, Any]) -> str:
+    """SHA-256 of what is named, not of the bytes: another editor's line ends change no number."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def _sealed_hashes(path: Path) -> dict[Path, str]:
+    """Hashes of a JSON file with a hash of its own and of the files that it names; none where it was changed."""
+    with suppress(OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if data.pop("own_sha256") == content_sha256(data):
+            return {
+                path: file_sha256(path),
+                **{path.parent / name: own for name, own in data.get("sha256", {}).items()},
+            }
+    return {}
+
+
+def _earlier_lines(folder: Path, names: Iterable[str], command: str) -> Lines:
+    """Lines of a result that was saved before there were lists; its pages, without hashes then, count as drawn."""
+    saved = [folder / name for name in names if name.endswith(".json") and (folder / name).is_file()]
+    if not any(b'"own_sha256"' in path.read_bytes() for path in saved):
+        return set()
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    found = {path: file_sha256(path) for path in files if PAGE.intersection(path.relative_to(folder).parts)}
+    for path in files:
+        found |= _sealed_hashes(path) if path.suffix == ".json" else {}
+    return {(sha256, command, path.relative_to(folder).as_posix()) for path, sha256 in found.items()}
+
+
+def _listed(folder: Path) -> Lines:
+    if not (folder / LIST).is_file():
+        return set()
+    text = (folder / LIST).read_text(encoding="utf-8", errors="surrogateescape")
+    cells = (line.split("  ", 2) for line in text.split("\n"))
+    return {(row[0], row[1], row[2]) for row in cells if len(row) == 3}
+
+
+def _leave_no_empty_folder(folder: Path, made: list[Path]) -> None:
+    with suppress(OSError):
+        if [one.name for one in folder.iterdir()] == [LIST]:
+            (folder / LIST).unlink()
+        for one in made:
+            one.rmdir()
+
+
+def _refusal(path: Path, what: str, way: str = "") -> WriteError:
+    here = Path.cwd()
+    shown = path.relative_to(here) if path.is_relative_to(here) else path
+    return WriteError("", f"{shown} {what}", f"Choose another output{way}.")
+
+
+def _resolved(path: Path) -> Path:
+    """Path without links or `..`, but for a link of its own name."""
+    return Path(os.path.realpath(path.parent)) / path.name
