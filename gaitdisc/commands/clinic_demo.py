@@ -6,8 +6,6 @@ from pathlib import Path
 
 import typer
 
-WRITTEN = ("study.toml", "raw")
-
 
 def clinic_demo(folder: Path, jobs: int, quiet: bool) -> None:
     """Make controls and a week, the reference, and the pages of the week."""
@@ -20,9 +18,8 @@ def clinic_demo(folder: Path, jobs: int, quiet: bool) -> None:
     from gaitdisc.results.clinical_reference import save_reference
     from gaitdisc.results.run_store import claim_run
 
-    parts = ("controls", "week")
-    claim_folder(folder, "planted.json", "reference", *(f"{part}/{name}" for part in parts for name in WRITTEN))
-    for part in parts:
+    claim_folder(folder, "planted.json", "reference", "controls", "controls/study.toml", "week", "week/study.toml")
+    for part in ("controls", "week"):
         claim_run(folder / part / "run")
     typer.echo("20 controls and a week of 8 people, one of them a child, walk 16 s each: simulated, no people.")
     controls, week, planted = write_week(folder, progress=lambda who: typer.echo(f"  {who}", err=True, nl=not quiet))

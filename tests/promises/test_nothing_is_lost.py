@@ -72,7 +72,7 @@ WRITE = {
     "export MODEL": (("export", "model", "--out", "OUT.onnx"), (".",)),
     "cite": (("cite", "found", "--out", "OUT.bib"), (".",)),
     "demo": (("demo", "OUT"), ("study.toml", "raw", "truth", "run/run.json", "run/report/report.html")),
-    "demo --clinic": (("demo", "OUT", "--clinic"), ("planted.json", "controls/study.toml", "week/raw")),
+    "demo --clinic": (("demo", "OUT", "--clinic"), ("planted.json", "controls/study.toml", "week")),
     "chapter": (("chapter", "3", "OUT", "--part", "tables", "--quick"), ("tables/chapter.json",)),
 }
 # command -> words in which one file is input and output, and that file
