@@ -89,7 +89,7 @@ def test_of_many_that_start_at_once_one_gets_the_folder_until_it_is_killed(tmp_p
     started = [
         subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdin=-1, stdout=-1, text=True) for _ in range(3)
     ]
-    said = [process.stdout.readline() for process in started]
+    said = [process.stdout.readline() for process in started if process.stdout]
     for process in started:
         process.kill()
         process.communicate()
