@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from gaitdisc.errors import WriteError
+from gaitdisc.regular_file import refuse_nul
 
 PART = ".part-"  # files begin with it until they are whole
 
@@ -26,6 +27,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     >>> [file.name for file in folder.iterdir()]
     ['r2.csv']
     """
+    refuse_nul(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f"{PART}{path.stem}-", suffix=path.suffix, dir=path.parent)
