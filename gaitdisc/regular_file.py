@@ -30,6 +30,7 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
     ...
     gaitdisc.errors.ReadError: a file is to be read; / is a folder. Name a file.
     """
+    refuse_nul(path)
     found = path.stat()
     name = path.name or str(path)
     if not stat.S_ISREG(found.st_mode):
@@ -43,6 +44,13 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
         )
     note_inputs([path])
     return found.st_size
+
+
+def refuse_nul(path: Path) -> None:
+    """Refuse a name that no system can have."""
+    if "\0" in str(path):
+        found = f"found {str(path.name)!r}"
+        raise ReadError("a file's name must not hold a NUL character", found, "Correct the name.")
 
 
 def size_in_words(count: int) -> str:

@@ -11,6 +11,7 @@ from uuid import uuid4
 
 from gaitdisc.errors import WriteError
 from gaitdisc.own_files import claim_file, record_output
+from gaitdisc.regular_file import refuse_nul
 from gaitdisc.write_lock import PART
 
 _TOGETHER: ContextVar[list[tuple[Path, Path]] | None] = ContextVar("together", default=None)
@@ -29,6 +30,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     >>> [file.name for file in folder.iterdir()]
     ['r2.csv']
     """
+    refuse_nul(path)
     claim_file(path)
     part = path.with_name(f"{PART}{path.stem}-{uuid4().hex[:8]}{path.suffix}")
     try:

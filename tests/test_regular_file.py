@@ -11,12 +11,13 @@ from pathlib import Path
 
 import pytest
 
+import gaitdisc as gd
 from gaitdisc.chapters.fields.monthly_fields import read_sst_pacific
 from gaitdisc.chapters.fields.netcdf import read_variables
 from gaitdisc.chapters.fields.sea_surface import read_sst_mat
 from gaitdisc.chapters.fields.turbulence_cutout import read_cutout
 from gaitdisc.discovery.catalogue import read_catalogue
-from gaitdisc.errors import ReadError
+from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
 from gaitdisc.ingest.reading import ENDINGS, read_trial
@@ -25,6 +26,7 @@ from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regul
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.whole_file import write_whole
 
 
 def _open_hdf5(path):
@@ -114,3 +116,21 @@ def test_check_of_a_pipe_ends_with_a_refusal(tmp_path):
         )
         (seen,) = json.loads(done.stdout)
         assert seen["light"] == "red" and f"{path.name} is a named pipe" in seen["refusal"]
+
+
+@pytest.mark.parametrize("ending", [".c3d", ".mot", ".csv", ".mat", ".npz", ".parquet"])
+def test_a_name_with_nul_is_refused_in_a_sentence(tmp_path, ending):
+    said = r"a file's name must not hold a NUL character; found 'a\\x00b.*'. Correct the name"
+    with pytest.raises(ReadError, match=said):
+        gd.read(f"{tmp_path}/a\0b{ending}")
+    with pytest.raises(ReadError, match=said):
+        write_whole(f"{tmp_path}/a\0b{ending}", "text")
+    with pytest.raises(ReadError, match=said):
+        gd.read_simulation(f"{tmp_path}/a\0b.toml")
+
+
+def test_a_study_that_names_a_file_with_nul_is_refused_at_its_line(tmp_path):
+    people = '[[participants]]\nid = "P1"\n[[participants.trials]]\ncondition = "a"\nfiles = ["x\\u0000.mot"]\n'
+    (tmp_path / "study.toml").write_text(f'[conditions]\nnominal = "a"\ndevice = "b"\n{people}')
+    with pytest.raises(SchemaError, match=r"line \d: .*a name without a NUL character; found 'x\\x00.mot'"):
+        load_study(tmp_path)

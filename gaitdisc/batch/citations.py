@@ -27,9 +27,9 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "this program": ("gaitdisc",),
     "the Nominal, Exo, Discrepancy and Augmented models": ("ebers2023", "ebers2023exoskeletons"),
     "discrepancies of dynamics and of state": ("ebers2023", "ebers2024discrepancy"),
-    "reconstruction of states from a few sensors": ("ebers2023",),
+    "reconstruction of states from a few sensors": ("ebers2023", "ebers2024sensors"),
     "networks, fitted by AdamW": ("loshchilov2019",),
-    "networks, fitted with Bayesian regularisation": ("mackay1992",),
+    "networks, fitted with Bayesian regularisation": ("mackay1992", "levenberg1944", "marquardt1963"),
     "ridge regression": ("hoerl1970",),
     "random Fourier features": ("rahimi2007",),
     "SHRED": ("williams2024",),
@@ -46,7 +46,9 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "hip centres after Davis": ("davis1991",),
     "hip centres after Harrington": ("harrington2007",),
     "inertia of the segments": ("dumas2007",),
+    "intervals from models that left data out": ("barber2021",),
     "multiple shooting": ("bock1984",),
+    "damped least squares": ("levenberg1944", "marquardt1963"),
     "information criterion": ("schwarz1978",),
     "a term read by regression on a library": ("brunton2016",),
     "spiked samples": ("hampel1974",),
@@ -84,7 +86,8 @@ SENSED = (
     *dict.fromkeys(one for each in OF_MODELS.values() for one in each),
 )
 TESTED = ("Wilcoxon's signed-rank test", "Holm-Sidak corrections")
-SEARCHED = ("multiple shooting", "information criterion")
+SEARCHED = ("multiple shooting", "damped least squares", "information criterion")
+LEFT_OUT = "intervals from models that left data out"
 OF_CHAPTERS = {3: DISCREPANCIES, 4: (*RESPONSES, *TESTED), 5: SENSED}
 BAGS = ("optimised dynamic mode decomposition in bags",)
 MORE = {  # of these parts, beside what their chapter cites
@@ -142,6 +145,8 @@ def methods_of(result: Any) -> Iterator[str]:
         yield "reconstruction of states from a few sensors"
         for name in result.models:
             yield from OF_MODELS.get(name, ())
+        if result.split.startswith("subject"):  # each person was left out in turn
+            yield LEFT_OUT
         yield from _of_files(result.provenance.files)
 
 
@@ -163,6 +168,8 @@ def _of_run(run: ResponseRun) -> Iterator[str]:
         yield "networks, fitted by AdamW"
     if kinds & {"ridge", "linear"}:
         yield "ridge regression"
+    if any(response.held_out.bands for response in run.responses):
+        yield LEFT_OUT
     yield from TESTED if run.tests is not None and len(run.tests.tests) else ()
     if run.over is not None and run.over.responders["silhouette"].notna().any():
         yield "sub-groups of people"

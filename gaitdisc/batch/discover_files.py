@@ -8,15 +8,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
+import numpy as np
+
 from gaitdisc.batch.public_words import PublicWords
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.results.discovery import DEVICE, SIMULATION, Discovery
 from gaitdisc.results.provenance import made_now
+from gaitdisc.simulation.even_time import MILLISECONDS
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.python_simulation import PythonSimulation
@@ -114,8 +118,16 @@ def discovered(
     """
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
-    refuse_blow_up(model, data)
-    found, augmented = discover(model, data, shapes, progress, weighed, refitted)
+    if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
+        data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
+    try:
+        found, augmented = discover(model, data, shapes, progress, weighed, refitted)
+    except np.linalg.LinAlgError as error:
+        raise SamplingError(
+            "a simulation must be predictable from each sample to the next",
+            f"samples are {1 / data.rate:.4g} s apart, over which its slopes overflow",
+            "Write times in seconds, not in milliseconds; or record at a higher rate.",
+        ) from error
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     files = {**files, **({catalogue: "catalogue"} if catalogue else {})}
     hashes = {called: file_sha256(path) for path, called in files.items()}

@@ -28,6 +28,7 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 MOST_LOST = 0.2  # of the shortest runs; a few may begin at a bad guess of what is not measured
+CLOSE = 0.3  # of its range, moved from one sample to the next: ten samples in a period (pi / 10)
 
 
 def discover(
@@ -73,8 +74,11 @@ def discover(
     return answer(problem, as_read, verdict, refitted)
 
 
-def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:
-    """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data."""
+def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
+    """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data.
+
+    returns: whether the samples are close enough for how fast it moves
+    """
     problem, machine = set_up_problem(simulation, without_spikes(measured)), compile_simulation(simulation)
     segments = problem.segments((*problem.learned, *problem.held_out), 0.0)
     rows = Rows(segments.trial, segments.begin, problem.guess.starts(segments))
@@ -82,3 +86,5 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:
     states, ok = machine.run(drive, rows, FEWEST_SAMPLES - 1)
     if np.mean(~ok) > MOST_LOST:
         refuse_divergence(machine, drive, rows, states, ok)
+    spread = np.maximum(np.ptp(states[ok, 0], axis=0), np.finfo(float).tiny)
+    return bool(np.median((np.abs(states[ok, 1] - states[ok, 0]) / spread).max(axis=1)) < CLOSE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -73,7 +74,20 @@ def force_plates(
         if why:
             what = f"force plate {place + 1} {why}; its channels stay signals"
             findings.append(Finding("warning", "force plate", file, what, "its ground forces; correct FORCE_PLATFORM"))
-    return plates, findings
+    return plates, findings or _undescribed(parameters, used, max(len(kinds), len(columns), len(corners)), file)
+
+
+def _undescribed(parameters: C3DParameters, used: int, described: int, file: str) -> list[Finding]:
+    """Say where a file holds more plates than FORCE_PLATFORM:USED counts: one wrong bit drops all of their forces."""
+    named = zip(parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS"), strict=False)
+    forces = [label for label, unit in named if unit.strip() == "N" and re.search(r"(?i)f[-_. ]?[xyz]", label)]
+    if used < described:
+        what = f"FORCE_PLATFORM:USED counts {used} force plates, the group describes {described}"
+    elif forces and not used:
+        what = f"no force plate is described, though {len(forces)} channels are forces in N, as {forces[0].strip()!r}"
+    else:
+        return []
+    return [Finding("warning", "force plate", file, what, "the ground forces left out; correct FORCE_PLATFORM")]
 
 
 def plate_streams(

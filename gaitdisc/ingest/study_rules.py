@@ -72,7 +72,7 @@ def check_sessions(study: Study) -> None:
 
 
 def check_participants(study: Study, others: Sequence[str]) -> None:
-    """Refuse conditions that are none of the study's, and pseudonyms that stand twice.
+    """Refuse conditions that are none of the study's, pseudonyms that stand twice, and names that no file can have.
 
     others: words that a trial may have beside the study's conditions: for one that is not known, and for standing
     """
@@ -88,6 +88,10 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
                 remedy = f"Did you mean {nearest!r}?" if nearest else f"Use one of them, or {others[0]!r}."
                 place = ("participants", i, "trials", j, "condition")
                 refuse(place, " or ".join(map(repr, words)), f"found {trial.condition!r}", remedy)
+            for k, file in enumerate(trial.files):
+                if "\0" in file:
+                    place = ("participants", i, "trials", j, "files", k)
+                    refuse(place, "a name without a NUL character", f"found {file!r}", "Correct the name.")
 
 
 def check_channels(channels: Mapping[str, str]) -> None:

@@ -74,10 +74,11 @@ class Strides:
                 f"found {start.shape} starts and {end.shape} ends",
                 "Give one end a start.",
             )
-        if np.any(end <= start) or np.any(start[1:] < end[:-1] - 1e-9):
+        if not np.isfinite([start, end]).all() or np.any(end <= start) or np.any(start[1:] < end[:-1] - 1e-9):
             raise StrideError(
                 "strides need initial contacts in order",
-                f"one of the {len(start)} strides of side {self.side!r} ends before it starts or overlaps the next",
+                f"one of the {len(start)} strides of side {self.side!r} ends before it starts or overlaps the next, or "
+                "has no time",
                 "Check the events, or choose another detector.",
             )
         object.__setattr__(self, "start", start)
@@ -196,6 +197,8 @@ def interpolated(
     >>> interpolated(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
     array([0.5, 4. , nan])
     """
+    if len(time) < 2:  # no step, and nothing between
+        return np.full((*points.shape, values.shape[1]), np.nan)
     step = (time[-1] - time[0]) / (len(time) - 1)
     place = (points - time[0]) / step
     left = np.clip(np.floor(place + 1e-9).astype(int), 0, len(time) - 1)

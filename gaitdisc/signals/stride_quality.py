@@ -99,7 +99,9 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
         out[start:end] = end - start <= LONGEST_ACCIDENT
     if not out.any():
         return strides
-    usual = np.nanmedian(distance, axis=0)
+    usual = np.full(distance.shape[1], np.nan)  # also of a channel without one whole stride
+    known = np.isfinite(distance).any(axis=0)
+    usual[known] = np.nanmedian(distance[:, known], axis=0)
     usual[usual == 0] = np.nan  # a locked coordinate has no usual distance
     dropped = []
     for k in np.flatnonzero(out):

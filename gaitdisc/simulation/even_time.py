@@ -15,6 +15,7 @@ SHORTEST = 20  # samples of a trial
 JITTER = 0.1  # of a step: how far a sample may lie from its place on the even time base
 EVEN = 1e-3  # of a step, which is even enough
 BRIDGED_S = 0.2  # longest gap of an input that is bridged
+MILLISECONDS = "everything, if these are milliseconds: divide 'time' by 1000"
 SLOW_HZ = 0.5  # rates below are rare where time is in seconds, and what milliseconds look like
 
 
@@ -69,7 +70,7 @@ def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list
     if rate >= SLOW_HZ or not whole:
         return []
     what = f"a step of {1 / rate:g} s, {len(trials[0].time) / rate:g} s in all"
-    return [Finding("warning", "clock", source, what, "everything, if these are milliseconds: divide 'time' by 1000")]
+    return [Finding("warning", "clock", source, what, MILLISECONDS)]
 
 
 def _refuse_short(trial: TrialColumns, where: str) -> None:

@@ -16,6 +16,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.results import Provenance
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, CURVES, REGION_COLUMNS, Exchange, Mismatch
+from gaitdisc.results.reconstruction import Reconstruction
 from gaitdisc.results.sealed_json import sealed_text
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST
 
@@ -49,7 +50,9 @@ def test_every_model_and_every_part_of_a_chapter_has_its_methods():
 
 def test_a_discovery_cites_its_search_and_a_reading_only_where_there_is_one(tmp_path):
     found = manufactured()
-    assert {"gaitdisc", "bock1984", "schwarz1978", "wilcoxon1945"} <= keys(found.save(tmp_path / "one"))
+    assert {"gaitdisc", "bock1984", "levenberg1944", "marquardt1963", "schwarz1978", "wilcoxon1945"} <= keys(
+        found.save(tmp_path / "one")
+    )
     assert not {"brunton2016", "hampel1974", "williams2024"} & keys(tmp_path / "one")
     read = replace(found, effects=(replace(found.effects[0], reads_as="-8*x**2*v"),))
     assert "brunton2016" in keys(read.save(tmp_path / "two"))
@@ -88,3 +91,11 @@ def test_a_part_of_a_chapter_cites_its_methods(tmp_path):
     (tmp_path / "chapter.json").write_text(sealed_text({"part": "no such"}))
     with pytest.raises(SchemaError, match="names 'no such'"):
         citations_of(tmp_path)
+
+
+@pytest.mark.parametrize(("split", "cited"), [("subject: each in turn", True), ("temporal: the last 15 %", False)])
+def test_an_interval_over_people_cites_cv_plus_and_every_reconstruction_its_paper(split, cited):
+    errors, curves = pd.DataFrame({"model": ["shred"]}), pd.DataFrame()
+    made = Reconstruction("a", (), (), split, "", {"shred": "x"}, errors, errors, curves, (), (), MADE)
+    assert ("intervals from models that left data out" in set(methods_of(made))) == cited
+    assert "ebers2024sensors" in MENTIONED["reconstruction of states from a few sensors"]

@@ -9,7 +9,8 @@ from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.even_time import TrialColumns
+from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
@@ -294,7 +295,19 @@ def short():
 
 
 def test_a_simulation_that_stays_near_the_data_passes(short):
-    refuse_blow_up(mass(), short)
+    assert refuse_blow_up(mass(), short)
+
+
+def test_samples_that_are_too_far_apart_for_a_simulation_are_told_from_slow_ones(short):
+    """Milliseconds taken for seconds: a period in less than a sample. A tank every 4 s is as slow as its clock."""
+    slow = simulation_of(
+        "[states.x]\n[states.v]\n[parameters.w]\nvalue = 1.0\n[equations]\nx = 'w*tanh(v)'\nv = '-w*tanh(x)'"
+    )
+    time = 4.0 * np.arange(400)
+    level = TrialColumns("1", time, np.empty((400, 0)), np.column_stack([np.sin(0.01 * time), np.cos(0.01 * time)]))
+    measured = measured_of_trials([level, replace(level, name="2")], (), ("x", "v"), "tank.csv")
+    assert [one.kind for one in measured.findings] == ["clock"]
+    assert refuse_blow_up(slow.with_values({"w": 0.01}), measured) and not refuse_blow_up(slow, measured)
 
 
 def test_where_it_blows_up_and_what_drives_it_is_told(short):

@@ -167,3 +167,15 @@ def test_feet_stand_where_the_pressure_is(gait_data, reader):
         loaded = forces[f"plate_{plate}_fz"] > 300
         low, high = np.nanpercentile(forces[f"plate_{plate}_px"][loaded], [5, 95])
         assert markers[f"{heel}.x"].min() - 0.05 < low < high < markers[f"{heel}.x"].max() + 0.05
+
+
+@pytest.mark.parametrize("part", [b"FORCE_PLATFORM", b"USED", b"USED\x07\x00\x02\x00\x02\x00\x00"], ids=str)
+def test_one_wrong_bit_does_not_drop_the_forces_in_silence(gait_data, reader, tmp_path, part):
+    raw = bytearray(next((gait_data / "young_straight_and_turn").rglob("*.c3d")).read_bytes())
+    at = raw.find(part, raw.find(b"FORCE_PLATFORM"))
+    raw[at + 8 * (len(part) == 11)] ^= 2 if len(part) == 11 else 1  # the count of two plates, or a letter of the name
+    (tmp_path / "walk.c3d").write_bytes(raw)
+    trial = reader.read(tmp_path / "walk.c3d")
+    said = [one.what for one in trial.findings if one.kind == "force plate" and one.severity == "warning"]
+    assert "forces" not in trial.streams and len(said) == 1
+    assert ("no force plate is described" if part == b"FORCE_PLATFORM" else "USED counts 0 force plates") in said[0]

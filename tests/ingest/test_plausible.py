@@ -172,3 +172,13 @@ def test_no_walk_at_hand_is_frozen_in_its_legs(real_trials):
     """Arms of two runs stand at a default of their model; nothing else does."""
     found = {(path.name, f.channel[:3]) for path, _, findings in real_trials for f in findings if f.kind == "frozen"}
     assert {part for _, part in found} <= {"arm", "elb", "pro"}
+
+
+@pytest.mark.parametrize(("least_n", "is_read"), [(-27.0, True), (-1810.0, False)])
+def test_a_plate_does_not_pull(least_n, is_read):
+    force = _of(Channel("plate_1_fz", "vertical_force", "N"), least_n, 0.0, 800.0)
+    if is_read:
+        assert not without_impossible({"forces": force})[1]
+        return
+    with pytest.raises(ReadError, match=r"-1810 N in frame 1 .* beyond what it can be, -100 to 20000 N"):
+        without_impossible({"forces": force})

@@ -1,3 +1,5 @@
+import warnings
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -88,3 +90,14 @@ def test_a_table_is_cut_as_its_recording_is():
     for other, words in ((time, "found ndarray"), (table[["knee"]], "found DataFrame without it")):
         with pytest.raises(ShapeError, match=f"times \\[s\\] in a column 'time'; {words}"):
             one.normalised(other)
+
+
+def test_no_warning_of_numpy_where_nothing_is_known():
+    knee = Channel("knee_angle_r", "angle", "deg", "r")
+    strides = Strides(np.array([0.0, 1.0]), np.array([1.0, 2.0]), "r", "force")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        one = strides.normalised(Recording(np.array([0.5]), np.ones((1, 1)), (knee,)))
+    assert one.shape == (2, 101, 1) and np.isnan(one).all()
+    with pytest.raises(StrideError, match=r"one of the 2 strides of side 'r' .* or has no time"):
+        Strides(np.array([0.0, np.nan]), np.array([1.0, 2.0]), "r", "force")

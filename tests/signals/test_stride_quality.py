@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -71,3 +72,12 @@ def test_every_real_stumble_is_seen(gait_data, real):
         kept = without_outlying(walk.selected(real.legs), strides)
         assert any(9 < stride.start < 13.5 for stride in kept.dropped), name
         assert len(kept) >= 13
+
+
+def test_a_channel_without_a_whole_stride_prints_no_warning(made):
+    walk, strides = walk_with_fault(made, 15.0)
+    values = walk.values.copy()
+    values[:, 3] = np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(without_outlying(walk.with_values(values), strides).dropped) == 1
