@@ -149,8 +149,8 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         moved, r = (_range(own), _range(line)), _correlation(own, line)
         what = f"{name} moves by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
-            yield [name], f"{what}: its sign is turned"
-        elif moved[1] >= MOVES_DEG and r > ALIKE and not moved[1] / SCALE <= moved[0] <= moved[1] * SCALE:
+            yield [name], f"{what}: its sign is turned, or two of the markers are exchanged"
+        elif moved[1] >= MOVES_DEG and r > ALIKE and abs(np.log(_scales(own, line))).min() > np.log(SCALE):
             yield [name], f"{what}: its unit or scale is another"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
@@ -192,8 +192,8 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     if usual < LEAST_MOMENT[unit]:
         what = f"moments of the legs reach {usual:.2g} {unit}, where standing has {LEAST_MOMENT[unit]:g} {unit} or more"
         yield list(peaks), f"{what}: {why}"
-        return
-    for name, peak in peaks.items():
+    walks = _range(moments[most[0]]) > usual / 2  # who stands may have next to none about an axis
+    for name, peak in peaks.items() if walks and usual >= LEAST_MOMENT[unit] else ():
         share = LEAST_SHARE if _FLEXION.fullmatch(name) else LEAST_SHARE_OTHER
         if 1e-3 * share < peak / usual < share or peak / usual > 1 / share:
             yield [name], f"{name} reaches {peak:.2g} {unit}, {most[0]} {usual:.3g} {unit}: {why}"
@@ -232,6 +232,12 @@ def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
             what = f"{moment} goes with {beside} (r = {r:.2f}), which it opposes in walking"
             yield [moment], f"{what}: its sign is turned"
+
+
+def _scales(own: NDArray[np.float64], line: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Ratio of the ranges, and of the median deviations, which labels exchanged for a while do not move."""
+    spreads = [(_range(each), np.median(np.abs(each - np.median(each)))) for each in (own, line)]
+    return (np.array(spreads[0]) + 1e-9) / (np.array(spreads[1]) + 1e-9)
 
 
 def _range(values: NDArray[np.float64]) -> float:
