@@ -22,12 +22,12 @@ from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.strides import interpolated
 
 KIND = "contradicted"
-NAMED = 6  # channels of one line
+NAMED = 6  # channels of one line; a whole file is said by its first ones
 Contradictions = Iterator[tuple[Sequence[str], str]]  # channels that cannot be what they say, and why
-# Angles of files follow the lines between single markers: r >= .85, slopes .88 to 1.33, offsets within 7 deg of these
-# and 6.4 deg apart from left to right (8 walks). Half, double, or 12 deg from left to right is no choice of axes.
+# Angles of files follow lines between single markers: r >= .85, median deviations .92 to 2.3 of theirs, offsets within
+# 7 deg of these and 6.4 deg apart from left to right (10 walks): 4 times, or 12 deg apart, is no choice of axes.
 USUAL_OFFSET_DEG = {"hip_flexion": 0.0, "hip_adduction": 5.0, "knee_angle": -4.0, "ankle_angle": -8.0}
-SCALE, OFFSET_DEG = 2.0, 12.0
+SCALE, OFFSET_DEG = 4.0, 12.0
 POWER_SCALE = 3.0  # power over moment times rate in the plane of walking: .87 to 1.13, r >= .83 in the same walks
 AGAINST, ALIKE = 0.4, 0.7  # correlations: of another sign, where right ones are beyond -.3 or .8; of one course
 FEWEST, MOVES_DEG = 20, 8.0  # samples; range of an angle (of a force in N) that says something
@@ -60,19 +60,14 @@ def without_contradicted(trial: Trial) -> Trial:
             continue
         recording = trial.stream(streams[0])
         found = list(check(*(trial.stream(key) for key in streams)))
-        said = [_finding(recording, names, what) for names, what in found]
+        file, spoils = recording.source.file, "the channel: it is left out; correct the file"
+        said = [Finding("refused", KIND, file, what, spoils, ", ".join(names[:NAMED])) for names, what in found]
         lost = {name for names, _ in found for name in names}
         kept = [name for name in recording.names if name not in lost]
         rest = {key: value for key, value in trial.streams.items() if kept or key != streams[0]}
         rest |= {streams[0]: recording.selected(kept)} if kept and lost else {}
         trial = replace(trial, streams=rest, findings=(*trial.findings, *said))
     return trial
-
-
-def _finding(recording: Recording, names: Sequence[str], what: str) -> Finding:
-    several = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
-    spoils = "the channel: it is left out; correct the file"
-    return Finding("refused", KIND, recording.source.file, what, spoils, several)
 
 
 def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
@@ -100,21 +95,17 @@ def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
         if thigh is not None:
             across = _unit(seen["right"] - seen["left"])
             upward = _unit(np.cross(across, (seen["left"] + seen["right"]) / 2 - seen["sacrum"]))
-            ahead, down, right = (_dot(thigh, axis) for axis in (np.cross(upward, across), -upward, across))
+            ahead, down, right = ((thigh * axis).sum(axis=1) for axis in (np.cross(upward, across), -upward, across))
             found[f"hip_flexion_{side}"] = np.degrees(np.arctan2(ahead, down))
             found[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-right if side == "r" else right))
         for name, above, below, straight in (("knee_angle", thigh, shank, 0.0), ("ankle_angle", shank, foot, 90.0)):
             if above is not None and below is not None:
-                found[f"{name}_{side}"] = np.degrees(np.arccos(np.clip(_dot(above, below), -1.0, 1.0))) - straight
+                found[f"{name}_{side}"] = np.degrees(np.arccos(np.clip((above * below).sum(axis=1), -1, 1))) - straight
     return found
 
 
 def _unit(vectors: NDArray) -> NDArray[np.float64]:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
-def _dot(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.einsum("ti,ti->t", one, other)
 
 
 def _in_radians(angles: Recording) -> Contradictions:
@@ -150,7 +141,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         what = f"{name} moves by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
             yield [name], f"{what}: its sign is turned, or two of the markers are exchanged"
-        elif moved[1] >= MOVES_DEG and r > ALIKE and abs(np.log(_scales(own, line))).min() > np.log(SCALE):
+        elif moved[1] >= MOVES_DEG and r > ALIKE and not 1 / SCALE < _deviation(own) / _deviation(line) < SCALE:
             yield [name], f"{what}: its unit or scale is another"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
@@ -234,10 +225,9 @@ def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
             yield [moment], f"{what}: its sign is turned"
 
 
-def _scales(own: NDArray[np.float64], line: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Ratio of the ranges, and of the median deviations, which labels exchanged for a while do not move."""
-    spreads = [(_range(each), np.median(np.abs(each - np.median(each)))) for each in (own, line)]
-    return (np.array(spreads[0]) + 1e-9) / (np.array(spreads[1]) + 1e-9)
+def _deviation(values: NDArray[np.float64]) -> float:
+    """Median distance from the median, which labels that are exchanged for a while hardly move."""
+    return float(np.median(np.abs(values - np.median(values))))
 
 
 def _range(values: NDArray[np.float64]) -> float:
