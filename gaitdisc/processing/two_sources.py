@@ -6,6 +6,7 @@ times its rate.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -16,6 +17,7 @@ from scipy.stats import rankdata
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.joint_centres import hip_of_spines
+from gaitdisc.kinematics.marker_set import NEEDED
 from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.recording import Finding, Recording, Trial
@@ -25,7 +27,7 @@ KIND = "contradicted"
 NAMED = 6  # channels of one line; a whole file is said by its first ones
 Contradictions = Iterator[tuple[Sequence[str], str]]  # channels that cannot be what they say, and why
 # Angles of files follow lines between single markers: r >= .85, median deviations .92 to 2.3 of theirs, offsets within
-# 7 deg of these and 6.4 deg apart from left to right (10 walks): 4 times, or 12 deg apart, is no choice of axes.
+# 12 deg of these and 6.4 deg apart from left to right (18 walks): 4 times, or 12 deg apart, is no choice of axes.
 USUAL_OFFSET_DEG = {"hip_flexion": 0.0, "hip_adduction": 5.0, "knee_angle": -4.0, "ankle_angle": -8.0}
 SCALE, OFFSET_DEG = 4.0, 12.0
 POWER_SCALE = 3.0  # power over moment times rate in the plane of walking: .87 to 1.13, r >= .83 in the same walks
@@ -76,28 +78,27 @@ def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
     returns each (frame,) [deg]: hip flexion and adduction, knee and ankle angles that there are markers for
     """
     labels = marker_labels(markers)
-    known = max(shipped_marker_sets().values(), key=lambda one: len(one.names(labels)))
-    own, found = known.names(labels), {}
+    named: dict[tuple[str, str], list[str]] = {}
+    for known in sorted(shipped_marker_sets().values(), key=lambda one: len(one.names(labels))):  # the best one last
+        own, on = known.names(labels), itertools.product(NEEDED, "lr")
+        named |= {place: [own[name] for name in names] for place in on if (names := known.landmark(*place, own))}
+    seen = {place: marker_places(markers, names).mean(axis=1) for place, names in named.items()}
+    found, axes, spines = {}, (), [("asis", "l"), ("asis", "r"), ("sacrum", "l")]
+    if set(spines) <= set(seen):
+        left, right, back = (seen[place] for place in spines)
+        across = _unit(right - left)
+        upward = _unit(np.cross(across, (left + right) / 2 - back))
+        axes = (np.cross(upward, across), -upward, across)
+        seen |= {("hip", side): hip_of_spines(left, right, back, side) for side in "lr"}
     for side in "lr":
-        wanted = {"left": ("asis", "l"), "right": ("asis", "r")}
-        wanted |= {key: (key, side) for key in ("sacrum", "knee_lateral", "ankle_lateral", "heel", "toe")}
-        seen = {
-            point: marker_places(markers, [own[name] for name in names]).mean(axis=1)
-            for point, landmark in wanted.items()
-            if (names := known.landmark(*landmark, own))
-        }
-        if {"left", "right", "sacrum"} <= set(seen):
-            seen["hip"] = hip_of_spines(seen["left"], seen["right"], seen["sacrum"], side)
         thigh, shank, foot = (
-            _unit(seen[end] - seen[start]) if {start, end} <= set(seen) else None
+            _unit(seen[end, side] - seen[start, side]) if {(start, side), (end, side)} <= set(seen) else None
             for start, end in (("hip", "knee_lateral"), ("knee_lateral", "ankle_lateral"), ("heel", "toe"))
         )
         if thigh is not None:
-            across = _unit(seen["right"] - seen["left"])
-            upward = _unit(np.cross(across, (seen["left"] + seen["right"]) / 2 - seen["sacrum"]))
-            ahead, down, right = ((thigh * axis).sum(axis=1) for axis in (np.cross(upward, across), -upward, across))
+            ahead, down, aside = ((thigh * axis).sum(axis=1) for axis in axes)
             found[f"hip_flexion_{side}"] = np.degrees(np.arctan2(ahead, down))
-            found[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-right if side == "r" else right))
+            found[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-aside if side == "r" else aside))
         for name, above, below, straight in (("knee_angle", thigh, shank, 0.0), ("ankle_angle", shank, foot, 90.0)):
             if above is not None and below is not None:
                 found[f"{name}_{side}"] = np.degrees(np.arccos(np.clip((above * below).sum(axis=1), -1, 1))) - straight
