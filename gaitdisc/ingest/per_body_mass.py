@@ -11,10 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.runs import runs
 
-FORCE_N = (
-    5.0,
-    40.0,
-)  # peak of the vertical force: half to four body weights in N/kg; a child of 5 kg has 50 N and more
+FORCE_N = (5.0, 40.0)  # peak of the vertical force: half to four body weights in N/kg; a child of 5 kg has 50 N
 MOMENT_NM = (0.4, 6.0)  # peak of hip, knee and ankle in N m/kg; a child of 15 kg has 15 N m and more at push-off
 STANCE_S = (0.15, 3.0)  # a plate is loaded for as long as a step lasts; drift is longer, noise shorter
 SHARE = 0.5  # of the peak: above it while loaded
@@ -32,25 +29,22 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     ['per body mass']
     """
     found = []
-    if "forces" in streams:
-        found += _forces(streams["forces"])
-    if "moments" in streams:
-        found += _moments(streams["moments"])
+    for key, quantity, unit, (low, high), like in (
+        ("forces", "vertical_force", "N", FORCE_N, "is loaded as in steps, where a person presses with hundreds of N"),
+        ("moments", "moment", "N m", MOMENT_NM, "is the largest moment of the legs, where walking needs tens of N m"),
+    ):
+        if key not in streams:
+            continue
+        recording = streams[key]
+        meant = [c.name for c in recording.channels if (c.quantity, c.unit) == (quantity, unit)]
+        peaks = {name: _peak(recording[name]) for name in meant if key == "forces" or _LEG.fullmatch(name)}
+        most = max(peaks, key=lambda name: peaks[name], default="")
+        walks = recording.duration_s >= STANCE_S[0] and (key == "moments" or (most and _like_steps(recording, most)))
+        if most and low <= peaks[most] <= high and walks:
+            what = f"peaks at {peaks[most]:.3g} {unit} and {like}: it looks like {unit} per kg of body mass"
+            spoils = f"contacts by force, moments and powers; state {unit}/kg, or multiply by body mass"
+            found.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
     return found
-
-
-def _forces(forces: Recording) -> list[Finding]:
-    upright = [c.name for c in forces.channels if (c.quantity, c.unit) == ("vertical_force", "N")]
-    peaks = {name: _peak(forces[name]) for name in upright}
-    most = max(peaks, key=lambda name: peaks[name], default="")
-    if not most or not FORCE_N[0] <= peaks[most] <= FORCE_N[1] or not _like_steps(forces, most):
-        return []
-    what = (
-        f"peaks at {peaks[most]:.3g} N and is loaded as in steps, where a person presses with hundreds of N: it looks "
-        "like N per kg of body mass"
-    )
-    spoils = "contacts by force, moments and powers; multiply by body mass and export in N"
-    return [Finding("warning", "per body mass", forces.source.file, what, spoils, most)]
 
 
 def _like_steps(forces: Recording, name: str) -> bool:
@@ -59,20 +53,6 @@ def _like_steps(forces: Recording, name: str) -> bool:
     lengths = [(end - start) / forces.rate_hz for start, end in runs(force > SHARE * peak)]
     empty = float(np.mean(force < EMPTY * peak))
     return empty > EMPTY and max(lengths, default=0.0) >= STANCE_S[0] and max(lengths, default=0.0) <= STANCE_S[1]
-
-
-def _moments(moments: Recording) -> list[Finding]:
-    legs = [c.name for c in moments.channels if c.unit == "N m" and _LEG.fullmatch(c.name)]
-    peaks = {name: _peak(moments[name]) for name in legs}
-    most = max(peaks, key=lambda name: peaks[name], default="")
-    if not most or not MOMENT_NM[0] <= peaks[most] <= MOMENT_NM[1] or moments.duration_s < STANCE_S[0]:
-        return []
-    what = (
-        f"is the largest moment of the legs, {peaks[most]:.3g} N m, where walking needs tens of N m: it looks like N m "
-        "per kg of body mass"
-    )
-    spoils = "moments and powers; state N m/kg, or multiply by body mass"
-    return [Finding("warning", "per body mass", moments.source.file, what, spoils, most)]
 
 
 def _peak(values: NDArray[np.float64]) -> float:

@@ -110,7 +110,8 @@ def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
             f"the models need {', '.join(missing)}",
             f"{recording.source.file or trial.name} has {len(recording.names)} channels without "
             f"{'it' if len(missing) == 1 else 'them'}" + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
-            "Map the file's own label in [channels], or take the name out of [models].",
+            ("Correct the file" if said else "Map the file's own label in [channels]")
+            + ", or take the name out of [models].",
         )
     return recording.selected(names)
 

@@ -6,6 +6,7 @@ times its rate.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -16,18 +17,19 @@ from scipy.stats import rankdata
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.joint_centres import hip_of_spines
+from gaitdisc.kinematics.marker_set import NEEDED
 from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.strides import interpolated
 
 KIND = "contradicted"
-NAMED = 6  # channels of one line
+NAMED = 6  # channels of one line; a whole file is said by its first ones
 Contradictions = Iterator[tuple[Sequence[str], str]]  # channels that cannot be what they say, and why
-# Angles of files follow the lines between single markers: r >= .85, slopes .88 to 1.33, offsets within 7 deg of these
-# and 6.4 deg apart from left to right (8 walks). Half, double, or 12 deg from left to right is no choice of axes.
+# Angles of files follow lines between single markers: r >= .85, median deviations .92 to 2.3 of theirs, offsets within
+# 12 deg of these and 6.4 deg apart from left to right (18 walks): 4 times, or 12 deg apart, is no choice of axes.
 USUAL_OFFSET_DEG = {"hip_flexion": 0.0, "hip_adduction": 5.0, "knee_angle": -4.0, "ankle_angle": -8.0}
-SCALE, OFFSET_DEG = 2.0, 12.0
+SCALE, OFFSET_DEG = 4.0, 12.0
 POWER_SCALE = 3.0  # power over moment times rate in the plane of walking: .87 to 1.13, r >= .83 in the same walks
 AGAINST, ALIKE = 0.4, 0.7  # correlations: of another sign, where right ones are beyond -.3 or .8; of one course
 FEWEST, MOVES_DEG = 20, 8.0  # samples; range of an angle (of a force in N) that says something
@@ -60,7 +62,8 @@ def without_contradicted(trial: Trial) -> Trial:
             continue
         recording = trial.stream(streams[0])
         found = list(check(*(trial.stream(key) for key in streams)))
-        said = [_finding(recording, names, what) for names, what in found]
+        file, spoils = recording.source.file, "the channel: it is left out; correct the file"
+        said = [Finding("refused", KIND, file, what, spoils, ", ".join(names[:NAMED])) for names, what in found]
         lost = {name for names, _ in found for name in names}
         kept = [name for name in recording.names if name not in lost]
         rest = {key: value for key, value in trial.streams.items() if kept or key != streams[0]}
@@ -69,52 +72,41 @@ def without_contradicted(trial: Trial) -> Trial:
     return trial
 
 
-def _finding(recording: Recording, names: Sequence[str], what: str) -> Finding:
-    several = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
-    spoils = "the channel: it is left out; correct the file"
-    return Finding("refused", KIND, recording.source.file, what, spoils, several)
-
-
 def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
     """Angles between the lines from hip to knee to ankle and from heel to toe, without a static trial.
 
     returns each (frame,) [deg]: hip flexion and adduction, knee and ankle angles that there are markers for
     """
     labels = marker_labels(markers)
-    known = max(shipped_marker_sets().values(), key=lambda one: len(one.names(labels)))
-    own, found = known.names(labels), {}
+    named: dict[tuple[str, str], list[str]] = {}
+    for known in sorted(shipped_marker_sets().values(), key=lambda one: len(one.names(labels))):  # the best one last
+        own, on = known.names(labels), itertools.product(NEEDED, "lr")
+        named |= {place: [own[name] for name in names] for place in on if (names := known.landmark(*place, own))}
+    seen = {place: marker_places(markers, names).mean(axis=1) for place, names in named.items()}
+    found, axes, spines = {}, (), [("asis", "l"), ("asis", "r"), ("sacrum", "l")]
+    if set(spines) <= set(seen):
+        left, right, back = (seen[place] for place in spines)
+        across = _unit(right - left)
+        upward = _unit(np.cross(across, (left + right) / 2 - back))
+        axes = (np.cross(upward, across), -upward, across)
+        seen |= {("hip", side): hip_of_spines(left, right, back, side) for side in "lr"}
     for side in "lr":
-        wanted = {"left": ("asis", "l"), "right": ("asis", "r")}
-        wanted |= {key: (key, side) for key in ("sacrum", "knee_lateral", "ankle_lateral", "heel", "toe")}
-        seen = {
-            point: marker_places(markers, [own[name] for name in names]).mean(axis=1)
-            for point, landmark in wanted.items()
-            if (names := known.landmark(*landmark, own))
-        }
-        if {"left", "right", "sacrum"} <= set(seen):
-            seen["hip"] = hip_of_spines(seen["left"], seen["right"], seen["sacrum"], side)
         thigh, shank, foot = (
-            _unit(seen[end] - seen[start]) if {start, end} <= set(seen) else None
+            _unit(seen[end, side] - seen[start, side]) if {(start, side), (end, side)} <= set(seen) else None
             for start, end in (("hip", "knee_lateral"), ("knee_lateral", "ankle_lateral"), ("heel", "toe"))
         )
         if thigh is not None:
-            across = _unit(seen["right"] - seen["left"])
-            upward = _unit(np.cross(across, (seen["left"] + seen["right"]) / 2 - seen["sacrum"]))
-            ahead, down, right = (_dot(thigh, axis) for axis in (np.cross(upward, across), -upward, across))
+            ahead, down, aside = ((thigh * axis).sum(axis=1) for axis in axes)
             found[f"hip_flexion_{side}"] = np.degrees(np.arctan2(ahead, down))
-            found[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-right if side == "r" else right))
+            found[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-aside if side == "r" else aside))
         for name, above, below, straight in (("knee_angle", thigh, shank, 0.0), ("ankle_angle", shank, foot, 90.0)):
             if above is not None and below is not None:
-                found[f"{name}_{side}"] = np.degrees(np.arccos(np.clip(_dot(above, below), -1.0, 1.0))) - straight
+                found[f"{name}_{side}"] = np.degrees(np.arccos(np.clip((above * below).sum(axis=1), -1, 1))) - straight
     return found
 
 
 def _unit(vectors: NDArray) -> NDArray[np.float64]:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
-def _dot(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.einsum("ti,ti->t", one, other)
 
 
 def _in_radians(angles: Recording) -> Contradictions:
@@ -149,8 +141,8 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         moved, r = (_range(own), _range(line)), _correlation(own, line)
         what = f"{name} moves by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
-            yield [name], f"{what}: its sign is turned"
-        elif moved[1] >= MOVES_DEG and r > ALIKE and not moved[1] / SCALE <= moved[0] <= moved[1] * SCALE:
+            yield [name], f"{what}: its sign is turned, or two of the markers are exchanged"
+        elif moved[1] >= MOVES_DEG and r > ALIKE and not 1 / SCALE < _deviation(own) / _deviation(line) < SCALE:
             yield [name], f"{what}: its unit or scale is another"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
@@ -192,8 +184,8 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     if usual < LEAST_MOMENT[unit]:
         what = f"moments of the legs reach {usual:.2g} {unit}, where standing has {LEAST_MOMENT[unit]:g} {unit} or more"
         yield list(peaks), f"{what}: {why}"
-        return
-    for name, peak in peaks.items():
+    walks = _range(moments[most[0]]) > usual / 2  # who stands may have next to none about an axis
+    for name, peak in peaks.items() if walks and usual >= LEAST_MOMENT[unit] else ():
         share = LEAST_SHARE if _FLEXION.fullmatch(name) else LEAST_SHARE_OTHER
         if 1e-3 * share < peak / usual < share or peak / usual > 1 / share:
             yield [name], f"{name} reaches {peak:.2g} {unit}, {most[0]} {usual:.3g} {unit}: {why}"
@@ -232,6 +224,11 @@ def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
             what = f"{moment} goes with {beside} (r = {r:.2f}), which it opposes in walking"
             yield [moment], f"{what}: its sign is turned"
+
+
+def _deviation(values: NDArray[np.float64]) -> float:
+    """Median distance from the median, which labels that are exchanged for a while hardly move."""
+    return float(np.median(np.abs(values - np.median(values))))
 
 
 def _range(values: NDArray[np.float64]) -> float:
