@@ -34,8 +34,9 @@ def moments(
 
     walk, stood = read_trial(trial), read_trial(static)
     standing, measures = stood.stream("markers"), body_measures_in(static)
-    person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m)
-    weighed = check_weight(standing_weight_n(stood), person.kg, static.name)
+    weighed_n = standing_weight_n(stood)
+    person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m, weighed_n)
+    weighed = check_weight(weighed_n, person.kg, static.name)
     body, moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
     found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
