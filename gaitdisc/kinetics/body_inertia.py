@@ -36,6 +36,7 @@ class Person:
     mass_kg: float | None
     sex: str = ""  # `f`, `m`, or empty where it is unknown: then the means of both columns of a table are taken
     stature_m: float | None = None  # only for de Leva's foot, which is measured from heel to the tip of the toes
+    weighed_n: float | None = None  # of who stood on the plates, which forces are held against; mass x 9.81 without it
 
     def __post_init__(self) -> None:
         """Check once what everything below divides by."""

@@ -58,7 +58,7 @@ def trial_kinetics(
     found = platforms(trial)
     steps, airborne, up = plate_steps(found, feet, settings.least_load_n), swings(trial, feet), found[0].up
     if "pelvis" in poses:
-        weight = Weight(person.kg * GRAVITY, time, poses["pelvis"].origin @ up)
+        weight = Weight(person.weighed_n or person.kg * GRAVITY, time, poses["pelvis"].origin @ up)
         steps = weighed_steps(steps, found, airborne, weight)
     left_out = [finding for step in steps if (finding := step.finding(file))]
     if not any(step.clean for step in steps):

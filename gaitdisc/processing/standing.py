@@ -169,7 +169,8 @@ class Standing:
             found = self._measures(self.planned)
             mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
             said = check_weight(self.weighed_n, mass, trial.name)
-            return Person(mass, self.participant.sex, self.participant.height_m or found.height_m), tuple(said)
+            height_m = self.participant.height_m or found.height_m
+            return Person(mass, self.participant.sex, height_m, self.weighed_n), tuple(said)
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)

@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from gaitdisc.errors import UnitError
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.processing.side_checks import side_findings
+from gaitdisc.processing.side_checks import check_weight, side_findings, standing_weight_n
 from gaitdisc.recording import Trial
 
 
@@ -36,3 +39,62 @@ def test_forces_that_bear_the_other_foots_name_are_found_in_a_published_walk(gai
     left, named_right = moments["ankle_angle_l_moment"], trial.stream("forces")
     push_off = moments.time[left.argmin()]
     assert named_right["ground_force_r_vy"][abs(named_right.time - push_off).argmin()] > 500
+
+
+@pytest.fixture(scope="module")
+def plates(gait_data):
+    """Straight walk and static trial of one person on two plates."""
+    walk = gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"
+    return read_trial(walk), read_trial(gait_data / "young_static" / "HC030A" / "HC030A01.c3d")
+
+
+def gained(trial, plate, gain):
+    forces = trial.stream("forces")
+    times = [gain if c.name.startswith(f"plate_{plate}_") and c.name[8] in "fm" else 1.0 for c in forces.channels]
+    return replace(trial, streams={**trial.streams, "forces": forces.with_values(forces.values * times)})
+
+
+def plate_words(trial, weight_n: float | None = 45.8 * 9.80665):
+    return [one for one in side_findings(trial, {}, weight_n) if one.kind in ("plate step", "swapped plates")]
+
+
+def test_a_plate_of_another_gain_contradicts_the_person_s_weight(plates):
+    walk, _ = plates
+    assert plate_words(walk) == [] == plate_words(gained(walk, 2, 1.3), None)
+    for plate, gain, start in ((1, 1.3, 0.70), (2, 1.3, 0.18), (1, 0.77, 0.70), (2, 0.77, 0.18)):
+        (said,) = plate_words(gained(walk, plate, gain))
+        assert (said.severity, said.kind, said.file) == ("warning", "plate step", "HC030A05.c3d")
+        shown = re.search(
+            rf"the step on plate_{plate} .* it shows (\S+) of the force that 449 N of body weight", said.what
+        )
+        assert shown and float(shown[1]) == pytest.approx(gain, abs=0.04)
+        assert said.spans[0][0] == pytest.approx(start, abs=0.02)  # s
+
+
+def test_two_plates_that_are_exchanged_have_no_foot_under_their_force(plates):
+    walk, static = plates
+    first, second = walk.surfaces
+    swapped = (replace(first, corners=second.corners), replace(second, corners=first.corners))
+    moved = replace(walk, surfaces=swapped)
+    said = plate_words(moved)
+    assert sum(len(one.spans) for one in said) == 2 and all(one.severity == "warning" for one in said)
+    assert any("swapped" in one.what or "cm beside the nearest foot" in one.what for one in said)
+    assert standing_weight_n(replace(static, surfaces=swapped)) is None  # nobody stands on the plate that is loaded
+
+
+def test_who_stands_on_the_plates_is_weighed(plates):
+    walk, static = plates
+    weighed = standing_weight_n(static)
+    assert weighed == pytest.approx(45.8 * 9.81, rel=0.005) and standing_weight_n(walk) is None
+    assert check_weight(weighed, 45.8, "s.c3d") == [] == check_weight(None, 45.8, "s.c3d")
+    (said,) = check_weight(weighed, 47.5, "s.c3d")
+    assert said.line() == (
+        "warning: s.c3d: body weight: the static trial weighs 45.9 kg on the force plates, 47.5 kg are stated; spoils "
+        "moments and powers, by 3 %; weigh again"
+    )
+    with pytest.raises(UnitError, match=r"weighs 45\.9 kg on the force plates, 49\.5 kg are stated"):
+        check_weight(weighed, 49.5, "s.c3d")
+    aside = replace(
+        static, surfaces=tuple(replace(one, corners=np.add(one.corners, [0.25, 0, 0])) for one in static.surfaces)
+    )
+    assert standing_weight_n(aside) is None  # a foot beside the plate

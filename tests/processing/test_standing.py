@@ -180,3 +180,25 @@ def test_without_emg_in_the_static_trial_walks_are_held_against_the_first(files,
     walks = {**trials, "turn": wrong, "static": bare(trials["static"], "emg")}
     (said,) = [one for one in pooled(files, walks, Kinematics(angles="file"))[1] if one.kind == "EMG unit"]
     assert said.file == "P01 turn" and "times stronger than in P01 straight" in said.what
+
+
+@pytest.mark.parametrize("angles", ["file", "markers"])
+def test_no_kinetics_are_drawn_of_a_plate_of_another_gain_or_of_a_mass_that_is_not_the_person_s(files, trials, angles):
+    wrong = {kind: gained(trial, 2, 1.3) if kind != "static" else trial for kind, trial in trials.items()}
+    found, findings = pooled(files, wrong, Kinematics(angles=angles))
+    right, _ = pooled(files, trials, Kinematics(angles=angles))
+    assert [int(one.kept["kinetic"].sum()) for one in found] == [1, 1] != [int(o.kept["kinetic"].sum()) for o in right]
+    said = [one for one in findings if one.kind == "plate step" and one.severity == "warning"]
+    assert len(said) == 2 and all("plate_2" in one.what and "450 N of body weight need" in one.what for one in said)
+    heavy, findings = pooled(files, trials, Kinematics(angles=angles), mass_kg=49.5)
+    assert not any("ankle_power_r" in names(one) for one in heavy)
+    assert any(one.kind == "no moments" and "45.9 kg on the force plates, 49.5 kg" in one.what for one in findings)
+    near, findings = pooled(files, trials, Kinematics(angles=angles), mass_kg=47.5)
+    assert any("ankle_power_r" in names(one) for one in near)
+    assert any(one.kind == "body weight" and one.severity == "warning" for one in findings)
+
+
+def gained(trial, plate, gain):
+    forces = trial.stream("forces")
+    times = [gain if c.name.startswith(f"plate_{plate}_") and c.name[8] in "fm" else 1.0 for c in forces.channels]
+    return replace(trial, streams={**trial.streams, "forces": forces.with_values(forces.values * times)})
