@@ -120,19 +120,6 @@ def _best_pair(places: Places, calibration: Calibration, up: NDArray[np.float64]
     return pair if count >= FEWEST_FRAMES else None
 
 
-def unfit_frames(
-    found: Sequence[Exchange], broken: Mapping[str, NDArray[np.bool_]], calibration: Calibration
-) -> dict[str, NDArray[np.bool_]]:
-    """Frames (frame,) in which each segment is not to be used: exchanged, broken, or spoiled in the static trial."""
-    return {
-        segment: np.any(
-            [frames | (segment in calibration.spoiled), *(one.frames for one in found if segment in one.segments)],
-            axis=0,
-        )
-        for segment, frames in broken.items()
-    }
-
-
 def exchange_findings(
     found: Sequence[Exchange],
     broken: Mapping[str, NDArray[np.bool_]],

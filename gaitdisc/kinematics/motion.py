@@ -19,7 +19,6 @@ from gaitdisc.kinematics.exchanged_labels import (
     UNFIT,
     exchange_findings,
     exchanged_pairs,
-    unfit_frames,
     without_exchanged,
 )
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
@@ -57,6 +56,7 @@ class Motion:
     residual_m: Mapping[str, NDArray[np.float64]]
     marker_set: str  # name of the set that was used
     markers: Recording  # of the trial, without those that bear another's label
+    exchanged: Mapping[str, NDArray[np.bool_]]  # each (frame,), segment -> frames in which two labels are exchanged
     findings: tuple[Finding, ...] = ()  # what was inferred, bridged or left out
 
 
@@ -135,7 +135,10 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     if np.nanmedian(np.einsum("fi,fi->f", np.cross(pelvis[:, :, 0], up), legs)) < 0:  # the legs too, not two spines
         check_right_handed(pelvis, up, file)
     exchanges, broken = exchanged_pairs(places, calibration, up)
-    unfit = unfit_frames(exchanges, broken, calibration)
+    exchanged = {
+        s: np.any([e.frames & (s in e.segments) for e in exchanges] or [0 * broken[s]], axis=0) for s in SEGMENTS
+    }
+    unfit = {s: exchanged[s] | broken[s] | (s in calibration.spoiled) for s in SEGMENTS}
     said = exchange_findings(exchanges, broken, calibration, markers, up)
     if unfit["pelvis"].all():
         raise ShapeError(
@@ -157,7 +160,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     chosen = calibration.marker_set
     findings = [
         *calibration.findings,
-        Finding("note", "marker set", file, f"{chosen.name}: {chosen.title}; joints {chosen.joints}", ""),
+        Finding("note", "marker set", file, _set_words(calibration), ""),
         Finding("note", "direction", file, walking.how, ""),
         *said,
     ]
@@ -173,8 +176,19 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         MappingProxyType(residuals),
         chosen.name,
         without_exchanged(markers, exchanges, calibration),
+        MappingProxyType(exchanged),
         tuple(findings),
     )
+
+
+def _set_words(calibration: Calibration) -> str:
+    """Marker set that was taken, and how its axes differ from Plug-in Gait's."""
+    chosen, usual = calibration.marker_set, marker_set("plug_in_gait")
+    ways = [(joint, chosen.joint_centres[joint], usual.joint_centres[joint]) for joint in ("hip", "knee", "ankle")]
+    ways += [(part, chosen.tracked[part], usual.tracked[part]) for part in ("thigh", "shank", "foot")]
+    other = [f"{key} by {' '.join(own)}, not {' '.join(pig)}" for key, own, pig in ways if own != pig]
+    differs = f"; unlike Plug-in Gait {'; '.join(other)}, which turns the axes" if other else ""
+    return f"{chosen.name}: {chosen.title}; joints {chosen.joints}{differs}".replace("{S}", "")
 
 
 def _middle(placed: PlacedMarkers, segments: Sequence[str]) -> NDArray[np.float64]:
@@ -233,7 +247,7 @@ def angles_of_poses(
     for side in "rl":
         mirror = np.array([1, 1, 1] if side == "r" else [1, -1, -1])
         for joint, (names, flexion) in JOINT_CHANNELS.items():
-            above, below = (f"{part}_{side}" if part != "pelvis" else part for part in SEGMENTS_OF[joint])
+            above, below = (part.format(side) for part in SEGMENTS_OF[joint])
             values = clinical_angles(turns[above], turns[below]) * mirror * [flexion, 1, 1]
             add(names, side, values, bridged[above] | bridged[below])
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
@@ -255,7 +269,7 @@ def _of_the_plane(angles: Recording) -> Recording:
     return angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
 
 
-SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
+SEGMENTS_OF = {"hip": ("pelvis", "thigh_{}"), "knee": ("thigh_{}", "shank_{}"), "ankle": ("shank_{}", "foot_{}")}
 JOINT_CHANNELS = {  # names, and the sign of flexion about the axis to the right
     "hip": (("hip_flexion", "hip_adduction", "hip_rotation"), 1),
     "knee": (("knee_angle", "knee_adduction", "knee_rotation"), -1),

@@ -9,7 +9,7 @@ import numpy as np
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.motion import Motion, motion
+from gaitdisc.kinematics.motion import JOINT_CHANNELS, SEGMENTS_OF, Motion, motion
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
@@ -63,6 +63,20 @@ def computed_trial(
             findings += kinetics.findings
     made = ("kinematics",) if steps is None else ("kinematics", "moments")
     return ComputedTrial(replace(trial, streams=streams, findings=tuple(findings)), steps, made)
+
+
+def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
+    """Trial with the angles of its file, missing where markers of their segments bear another's label."""
+    moved, own = motion(trial.stream("markers"), calibration), trial.stream("kinematics")
+    values = np.array(own.values)
+    for joint, (names, _) in JOINT_CHANNELS.items():
+        for side in "lr":
+            lost = np.any([moved.exchanged[one.format(side)] for one in SEGMENTS_OF[joint]], axis=0)
+            columns = [own.index(f"{name}_{side}") for name in names if f"{name}_{side}" in own.names]
+            values[np.flatnonzero(lost & (len(lost) == len(own.time)))[:, None], columns] = np.nan
+    said = tuple(one for one in moved.findings if one.kind == "exchanged markers")
+    streams = {**trial.streams, "markers": moved.markers, "kinematics": own.with_values(values, own.suspect)}
+    return replace(trial, streams=streams, findings=(*trial.findings, *said))
 
 
 def _residual(moved: Motion, file: str) -> Finding:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial
@@ -18,7 +18,7 @@ from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.angles_of_segments import with_segment_angles
-from gaitdisc.processing.markers_to_moments import ComputedTrial, computed_trial
+from gaitdisc.processing.markers_to_moments import ComputedTrial, computed_trial, without_exchanged_markers
 from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
@@ -52,7 +52,7 @@ class Standing:
         trial, source = without_contradicted(trial), self.study.kinematics.angles if self.study.kinematics else ""
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
-            return ComputedTrial(self._with_own_kinetics(planned, trial))
+            return ComputedTrial(self._with_own_kinetics(planned, self._without_exchanged(trial)))
         bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
         given_up = bare if source == "markers" else trial
         if self.markers is None:
@@ -129,6 +129,19 @@ class Standing:
     def _without_angles(self, trial: Trial, whose: str, error: GaitdiscError) -> Trial:
         said = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")
         return replace(trial, findings=(*trial.findings, *self._new((said,))))
+
+    def _without_exchanged(self, trial: Trial) -> Trial:
+        """Trial of the file's own angles, without the frames in which its markers bear another's label."""
+        if self.markers is None or not {"markers", "kinematics"} <= set(trial.streams):
+            return trial
+        try:
+            found = without_exchanged_markers(trial, self._calibration(trial.stream("markers")))
+        except ShapeError as error:
+            return self._without_angles(trial, trial.name, error)
+        except GaitdiscError:  # markers of no set that is known: nothing is checked
+            return trial
+        made = found.findings[len(trial.findings) :]
+        return replace(found, findings=(*trial.findings, *self._new(made)))
 
     def _new(self, findings: Sequence[Finding]) -> tuple[Finding, ...]:
         """Those that no earlier trial has said."""

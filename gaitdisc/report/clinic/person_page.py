@@ -188,6 +188,7 @@ def _method(person: PersonSession) -> list[str]:
         found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
         found += [f"{pooled.where}: {words}; Butterworth, forwards and backwards." for words in filters]
+        found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
     found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
     found.append(
         "What stands out: rules that take one number of a leg's mean cycle; limits within which all numbers of one "
