@@ -58,7 +58,7 @@ def run(quick: bool, folder: Path = Path("ch4"), jobs: int = 2) -> Result:
     page = write_report(done, folder / "report")
     values = pd.DataFrame(tomllib.loads(PRINTED.read_text(encoding="utf-8"))["value"])
     values["ours"] = [OURS[name](done) for name in values["id"]]
-    printed = values[["what", "printed", "ours", "why", "source"]]
+    printed = values[["what", "printed", "ours", "source"]]
     printed.to_csv(folder / "printed.csv", index=False)
     return Result(done, printed, page)
 
@@ -66,9 +66,9 @@ def run(quick: bool, folder: Path = Path("ch4"), jobs: int = 2) -> Result:
 def main() -> None:
     """Compute the chapter and print what the dissertation prints beside ours."""
     result = run(GIVEN.quick, GIVEN.folder)
-    print("| | dissertation | embedded cohort | why |\n|---|---|---|---|")
+    print("| | dissertation | embedded cohort |\n|---|---|---|")
     for row in result.printed.itertuples():
-        print(f"| {row.what} | {row.printed} | {row.ours} | {row.why} |")
+        print(f"| {row.what} | {row.printed} | {row.ours} |")
     for refusal in result.run.refusals:
         print(f"left out: {refusal.participant} {refusal.condition}: {refusal.reason}")
     print(f"report: {result.page}")

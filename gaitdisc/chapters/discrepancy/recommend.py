@@ -18,12 +18,13 @@ from gaitdisc.errors import SchemaError
 Want = Literal["interpretability", "speed", "forecast"]
 WANTS: tuple[Want, ...] = ("interpretability", "speed", "forecast")
 INTERPRETABLE = ("sindy", *OF_TIME)
+ASKED = {"interpretability": "that a person can read ", "speed": "", "forecast": ""}
 BEYOND = 2.0  # times as many samples as were measured, or as few: said
 NEAR = 5.0  # points of accuracy that the fastest method may lose to the best
 FOUND = Path(__file__).with_name("measured_cells.csv")  # what the studies of chapter 3 measured
 COLUMNS = (
     "system", "method", "noise", "dt_s", "samples", "start", "accuracy", "least", "greatest", "valid_s", "seconds",
-    "diverged", "seeds",
+    "diverged", "seeds", "valid_known_s",
 )  # fmt: skip
 ESTIMATED, TRUE = "estimated", "true state (oracle)"  # what a forecast started from
 STARTS = {FORECAST: ESTIMATED, ORACLE: TRUE}
@@ -54,8 +55,8 @@ def recommend(
     The measured cells nearest in noise, then in the step between samples, then in samples, decide, by their forecasts
     from a start that was estimated from the noisy measurement; what the same forecasts reach from the true state, which
     nobody has, is said beside it as an oracle. A method counts by the system on which it did worst, and not at all
-    where it diverged. Where a step, or a length, is more than twice or less than half of what was measured at that
-    noise, `why` says so.
+    where it diverged, or where its forecast is worse than the known model's alone or valid for a shorter time. Where a
+    step, or a length, is more than twice or less than half of what was measured at that noise, `why` says so.
 
     want: `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
         best; `forecast`: the best forecast
@@ -90,8 +91,9 @@ def recommend(
     if not len(better):
         return Recommendation(
             "",
-            f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods forecast better than "
-            "the known model from a start estimated from the data.",
+            f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods {ASKED[want]}forecast "
+            f"better than the known model from a start estimated from the data: the known model alone is best there"
+            f"{_known_words(rows)}.",
             shown,
         )
     best = better.iloc[0]
@@ -109,6 +111,10 @@ def recommend(
     if dt_s is not None and not 1 / BEYOND <= dt_s / step <= BEYOND:
         why += f" This record has a sample every {dt_s:g} s: at this noise nothing was measured there."
     return Recommendation(str(best["method"]), why, shown)
+
+
+def _known_words(rows: pd.DataFrame) -> str:
+    return f", valid for {rows['valid_known_s'].iloc[0]:.2f} s" if len(rows) else ""
 
 
 def _oracle_words(oracle: pd.DataFrame, best: pd.Series) -> str:
@@ -135,7 +141,7 @@ def _allowed(rows: pd.DataFrame, want: Want, samples: int) -> pd.DataFrame:
     allowed = worst[worst["method"].isin(INTERPRETABLE)] if want == "interpretability" else worst
     if samples < DELAYS + 2 * RANK:
         allowed = allowed[~allowed["method"].isin(OF_TIME)]
-    return allowed[allowed["accuracy"] > 0]
+    return allowed[(allowed["accuracy"] > 0) & (allowed["valid_s"] >= allowed["valid_known_s"])]
 
 
 def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
@@ -144,7 +150,7 @@ def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     table = cells_table(kept)
     table["seconds"] = table["fit_s"] + table["run_s"]
     keys = ["system", "method", "noise", "dt_s", "samples", "part", "seed"]
-    seeds = table.groupby(keys, sort=False)[["accuracy", "valid_s", "seconds", "diverged_s"]].median()
+    seeds = table.groupby(keys, sort=False)[["accuracy", "valid_s", "seconds", "diverged_s", "valid_known_s"]].median()
     return evidence_of(seeds.reset_index())
 
 
@@ -152,7 +158,7 @@ def evidence_of(seeds: pd.DataFrame) -> pd.DataFrame:
     """Evidence of forecasts: medians over seeds with their range, by start.
 
     seeds: a row a seed and part: system, method, noise, dt_s, samples, part, accuracy [%], valid_s, seconds,
-        diverged_s
+        diverged_s, valid_known_s (of the known model alone)
     """
     table = seeds[seeds["part"].isin(list(STARTS))].copy()
     table["start"] = table["part"].map(STARTS)
@@ -160,6 +166,6 @@ def evidence_of(seeds: pd.DataFrame) -> pd.DataFrame:
     found = table.groupby(["system", "method", "noise", "dt_s", "samples", "start"], sort=False).agg(
         accuracy=("accuracy", "median"), least=("accuracy", "min"), greatest=("accuracy", "max"),
         valid_s=("valid_s", "median"), seconds=("seconds", "median"), diverged=("diverged", "mean"),
-        seeds=("accuracy", "size"),
+        seeds=("accuracy", "size"), valid_known_s=("valid_known_s", "median"),
     )  # fmt: skip
     return found.reset_index()[list(COLUMNS)]

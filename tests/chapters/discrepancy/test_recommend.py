@@ -2,21 +2,21 @@ import pandas as pd
 import pytest
 
 from gaitdisc.chapters.discrepancy.cell import cell_of
-from gaitdisc.chapters.discrepancy.recommend import COLUMNS, ESTIMATED, FOUND, TRUE, measured_cells, recommend
+from gaitdisc.chapters.discrepancy.recommend import COLUMNS, ESTIMATED, FOUND, TRUE, WANTS, measured_cells, recommend
 from gaitdisc.errors import SchemaError
 
 ROWS = [
-    ("Van der Pol", "sindy", 0.01, 0.01, 3001, ESTIMATED, 90.0, 85.0, 92.0, 20.0, 0.5, 0.0, 3),
-    ("Van der Pol", "dmd", 0.01, 0.01, 3001, ESTIMATED, 99.0, 98.0, 99.5, 20.0, 2.0, 0.0, 3),
-    ("Van der Pol, late", "dmd", 0.01, 0.01, 3001, ESTIMATED, 40.0, 10.0, 50.0, 20.0, 2.0, 0.0, 3),
-    ("Van der Pol", "gp", 0.01, 0.01, 3001, ESTIMATED, 97.0, 96.0, 98.0, 20.0, 5.0, 0.0, 3),
-    ("Van der Pol", "nn", 0.01, 0.01, 3001, ESTIMATED, 94.0, 90.0, 95.0, 20.0, 3.0, 0.0, 3),
-    ("Van der Pol", "gp", 0.01, 0.01, 601, ESTIMATED, 60.0, 50.0, 70.0, 4.0, 2.0, 0.0, 3),
-    ("Van der Pol", "nn", 0.01, 0.01, 601, ESTIMATED, 70.0, 65.0, 75.0, 4.0, 1.0, 0.0, 3),
-    ("Van der Pol", "sindy", 0.1, 0.01, 3001, ESTIMATED, -5.0, -9.0, 1.0, 3.0, 0.5, 0.0, 3),
-    ("Van der Pol", "gp", 0.1, 0.01, 3001, ESTIMATED, 60.0, 50.0, 70.0, 9.0, 5.0, 0.4, 3),
-    ("Van der Pol", "gp", 0.01, 0.001, 12001, ESTIMATED, 80.0, 75.0, 85.0, 8.0, 9.0, 0.0, 1),
-    ("Van der Pol", "nn", 0.01, 0.001, 12001, ESTIMATED, 88.0, 85.0, 89.0, 8.0, 9.0, 0.0, 1),
+    ("Van der Pol", "sindy", 0.01, 0.01, 3001, ESTIMATED, 90.0, 85.0, 92.0, 20.0, 0.5, 0.0, 3, 2.0),
+    ("Van der Pol", "dmd", 0.01, 0.01, 3001, ESTIMATED, 99.0, 98.0, 99.5, 20.0, 2.0, 0.0, 3, 2.0),
+    ("Van der Pol, late", "dmd", 0.01, 0.01, 3001, ESTIMATED, 40.0, 10.0, 50.0, 20.0, 2.0, 0.0, 3, 2.0),
+    ("Van der Pol", "gp", 0.01, 0.01, 3001, ESTIMATED, 97.0, 96.0, 98.0, 20.0, 5.0, 0.0, 3, 2.0),
+    ("Van der Pol", "nn", 0.01, 0.01, 3001, ESTIMATED, 94.0, 90.0, 95.0, 20.0, 3.0, 0.0, 3, 2.0),
+    ("Van der Pol", "gp", 0.01, 0.01, 601, ESTIMATED, 60.0, 50.0, 70.0, 4.0, 2.0, 0.0, 3, 2.0),
+    ("Van der Pol", "nn", 0.01, 0.01, 601, ESTIMATED, 70.0, 65.0, 75.0, 4.0, 1.0, 0.0, 3, 2.0),
+    ("Van der Pol", "sindy", 0.1, 0.01, 3001, ESTIMATED, -5.0, -9.0, 1.0, 3.0, 0.5, 0.0, 3, 2.0),
+    ("Van der Pol", "gp", 0.1, 0.01, 3001, ESTIMATED, 60.0, 50.0, 70.0, 9.0, 5.0, 0.4, 3, 2.0),
+    ("Van der Pol", "gp", 0.01, 0.001, 12001, ESTIMATED, 80.0, 75.0, 85.0, 8.0, 9.0, 0.0, 1, 2.0),
+    ("Van der Pol", "nn", 0.01, 0.001, 12001, ESTIMATED, 88.0, 85.0, 89.0, 8.0, 9.0, 0.0, 1, 2.0),
 ]
 TABLE = pd.DataFrame(ROWS, columns=list(COLUMNS))
 WITH_ORACLE = pd.concat([TABLE, TABLE.assign(start=TRUE, accuracy=TABLE["accuracy"] + 3, valid_s=20.0)])
@@ -104,3 +104,22 @@ def test_what_is_measured_holds_both_starts_of_every_cell():
     keys = ["system", "method", "noise", "dt_s", "samples"]
     assert tuple(table.columns) == COLUMNS
     assert set(table.groupby(keys)["start"].agg(lambda some: tuple(sorted(some)))) == {(ESTIMATED, TRUE)}
+
+
+def test_nothing_that_holds_for_a_shorter_time_than_the_known_model_alone_is_recommended():
+    """DMD forecast .6 % better, but held for .24 s where the known model alone held for .57."""
+    found = recommend(0.1, 3001, "interpretability", chaotic=True, dt_s=0.01)
+    assert found.method == ""
+    assert "none of the methods that a person can read forecast better than the known model" in found.why
+    assert found.why.endswith("the known model alone is best there, valid for 0.57 s.")
+    shorter = TABLE.assign(valid_known_s=30.0)
+    assert not any(recommend(0.01, 3000, want, evidence=shorter).method for want in WANTS)
+
+
+def test_no_measured_record_has_a_method_recommended_that_is_worse_than_the_known_model():
+    cells = pd.read_csv(FOUND)
+    for (system, noise, step, samples), _ in cells.groupby(["system", "noise", "dt_s", "samples"]):
+        for want in WANTS:
+            found = recommend(noise, samples, want, "Lorenz" in system, step)
+            rows = found.evidence[(found.evidence["method"] == found.method) & (found.evidence["start"] == ESTIMATED)]
+            assert (rows["accuracy"] > 0).all() and (rows["valid_s"] >= rows["valid_known_s"]).all(), (system, noise)
