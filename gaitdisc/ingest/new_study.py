@@ -127,7 +127,15 @@ def found_study(
             height_m=bodies[who].height_m,
             sex=bodies[who].sex,
             age_years=bodies[who].age_years,
-            trials=tuple(_planned(t, called, sessions, way) for t in found if (t.group, t.person) == who),
+            trials=tuple(
+                PlannedTrial(
+                    condition=called[trial.word],
+                    session=sessions.get((who, trial.session)),
+                    files=tuple((way / file).as_posix() for file in trial.files),
+                )
+                for trial in found
+                if (trial.group, trial.person) == who
+            ),
         )
         for who, pseudonym in people.items()
     )
@@ -328,16 +336,6 @@ def _sessions(found: Sequence[FoundTrial]) -> dict[tuple[Who, str], str]:
         sessions |= {(who, order): words[order] or f"session {dated.index(order) + 1}" for order in own}
     order = {word: place for (_, place), word in sessions.items()}
     return dict(sorted(sessions.items(), key=lambda item: (item[1].startswith("session"), order[item[1]])))
-
-
-def _planned(
-    trial: FoundTrial, called: Mapping[str, str], sessions: Mapping[tuple[Who, str], str], way: Path
-) -> PlannedTrial:
-    return PlannedTrial(
-        condition=called[trial.word],
-        session=sessions.get(((trial.group, trial.person), trial.session)),
-        files=tuple((way / file).as_posix() for file in trial.files),
-    )
 
 
 def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:

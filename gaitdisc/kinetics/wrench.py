@@ -83,14 +83,3 @@ class Wrench:
         centre = np.full(self.force.shape, np.nan)
         centre[pressed] = point + np.cross(up, self.about(point)[pressed]) / normal[pressed, None]
         return centre
-
-    def free_moment(
-        self, point: NDArray[np.float64], up: NDArray[np.float64], least_load_n: float = LEAST_LOAD_N
-    ) -> NDArray[np.float64]:
-        """Moment about the surface's normal at the centre of pressure, (sample,) [N m]; NaN where there is none.
-
-        point (3,) [m]: a point of the surface
-        up (3,): its unit normal, towards the foot
-        least_load_n: least force along the normal [N]
-        """
-        return self.about(self.pressure_centre(point, up, least_load_n)) @ up

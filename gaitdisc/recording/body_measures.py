@@ -35,11 +35,7 @@ class BodyMeasures:
     # side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of the
     # ankle between its malleoli [m]
     leg_length_m: Mapping[str, float] = field(default_factory=dict)
-    # side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of the
-    # ankle between its malleoli [m]
     knee_width_m: Mapping[str, float] = field(default_factory=dict)
-    # side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of the
-    # ankle between its malleoli [m]
     ankle_width_m: Mapping[str, float] = field(default_factory=dict)
     source: str = "given"  # where they are from: a file's name, or `given`
 

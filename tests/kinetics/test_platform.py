@@ -36,7 +36,7 @@ def test_a_plate_gives_force_point_and_free_moment_in_the_laboratory():
     pressed = plate.load_n > 20
     assert plate.pressure_centre()[pressed] == pytest.approx(np.tile([0.25, 0.4, 0.0], (pressed.sum(), 1)))
     assert np.isnan(plate.pressure_centre()[~pressed]).all()
-    free = plate.wrench.free_moment(plate.point, plate.up)
+    free = plate.wrench.about(plate.pressure_centre()) @ plate.up
     assert free[pressed] == pytest.approx(FREE)
     ((start, end),) = plate.loadings()
     assert TIME[[start, end]] == pytest.approx([0.5 + 0.7 * np.arcsin(50 / 700) / np.pi, 1.2 - 0.7 * np.arcsin(20 / 700) / np.pi], abs=2e-3)  # fmt: skip  # noqa: E501
@@ -149,4 +149,4 @@ def test_wrenches_are_those_of_another_program(gait_data, file):
         pressure = np.asarray(other["center_of_pressure"]).T / 1000
         assert plate.pressure_centre()[loaded] == pytest.approx(pressure[loaded], abs=1e-5)
         free = np.asarray(other["Tz"]).T[:, 2] / 1000
-        assert plate.wrench.free_moment(plate.point, plate.up)[loaded] == pytest.approx(free[loaded], abs=1e-3)
+        assert (plate.wrench.about(plate.pressure_centre()) @ plate.up)[loaded] == pytest.approx(free[loaded], abs=1e-3)

@@ -14,7 +14,7 @@ def test_force_point_and_free_moment_come_back():
     place = np.array([[0.4, 0.1, 0.012], [0.2, 0.33, 0.012]])
     wrench = Wrench.at(place, force, free)
     assert wrench.pressure_centre(POINT, UP) == pytest.approx(place)
-    assert wrench.free_moment(POINT, UP) == pytest.approx(free[:, 2])
+    assert wrench.about(wrench.pressure_centre(POINT, UP)) @ UP == pytest.approx(free[:, 2])
     assert wrench.about(place) == pytest.approx(free)
 
 
