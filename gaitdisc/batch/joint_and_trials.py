@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.errors import StrideError
+from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.joint_record import JointRecord
 from gaitdisc.regression.changed_moment import Change, Walk
 from gaitdisc.regression.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
@@ -51,6 +51,12 @@ Values = NDArray[np.float64]
 def driven_of(record: JointRecord) -> Driven:
     """Return what drives the muscles about the joint of a record."""
     signs = np.array([sign_at(record.joint, name) for name in record.muscles], float)
+    if not signs.any():
+        raise ChannelError(
+            f"a device at the {WORDS[record.joint]} is named from EMG of a muscle that turns the {WORDS[record.joint]}",
+            f"{record.subject} {record.condition} has {', '.join(record.muscles)}",
+            f"Search another joint, as --participant {record.subject}:ankle_angle, or name a muscle in [channels].",
+        )
     return Driven(
         np.nan_to_num(record.envelopes[:, signs != 0]),
         signs[signs != 0],

@@ -1,11 +1,13 @@
 import json
 
+import numpy as np
+import pandas as pd
 import pytest
 from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import MASS, Experiment, record, with_load
 
 from gaitdisc.batch.discover_files import discover_files, discover_model
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
@@ -84,3 +86,15 @@ def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
         assert read.states[0].initial is not None and 0.2 < read.states[0].initial < 0.6
     if verdict == "input_error":
         assert read.replaced[0][1].startswith("delay(pump, 0.1")
+
+
+def test_milliseconds_whose_slopes_overflow_are_refused_in_words(tmp_path):
+    """A pendulum that swings three times in a sample of 10 s: numpy said "SVD did not converge"."""
+    model = '[states.x]\n[states.v]\n[parameters.k]\nvalue = 9.8\n[equations]\nx = "v"\nv = "-k*sin(x)"\n'
+    (tmp_path / "pendulum.toml").write_text(model)
+    t, rng = np.arange(0, 20, 0.01), np.random.default_rng(0)
+    x = 0.5 * np.sin(3 * t) * np.exp(-0.05 * t) + 1e-3 * rng.normal(size=len(t))
+    table = pd.DataFrame({"trial": (t >= 10).astype(int), "time": 1000 * t, "x": x, "v": np.gradient(x, t)})
+    table.to_csv(tmp_path / "walk.csv", index=False)
+    with pytest.raises(SamplingError, match=r"samples are 10 s apart, .* Write times in seconds, not in milliseconds"):
+        discover_files(tmp_path / "pendulum.toml", tmp_path / "walk.csv")

@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_joint import GAIN, made_joint
 
 from gaitdisc.batch.joint_and_trials import nominal_moment, tracked_joint, tracked_trials, weighed
 from gaitdisc.discovery.discover import discover
-from gaitdisc.errors import StrideError
+from gaitdisc.errors import ChannelError, StrideError
 
 SLOW = pytest.mark.slow  # a whole discovery
 
@@ -59,3 +61,11 @@ def test_too_few_strides_are_refused_with_their_number(model):
     record = made_joint(strides=9)
     with pytest.raises(StrideError, match=r"4 times 3 strides in a row.* has 9 strides, 3 times 3 in a row"):
         tracked_trials(record, model, tracked_joint(record, model))
+
+
+def test_a_joint_without_a_muscle_of_its_own_is_refused():
+    """Electrodes on the shank alone say nothing of the hip."""
+    shank = replace(made_joint(seed=1), joint="hip_flexion")
+    said = r"at the hip is named from EMG of a muscle that turns the hip; .* has emg_.*Search another joint, as --part"
+    with pytest.raises(ChannelError, match=said):
+        nominal_moment(shank)
