@@ -49,10 +49,11 @@ class Standing:
 
     def computed(self, planned: PlannedTrial, trial: Trial) -> ComputedTrial:
         """Trial with the angles that the study requests, and its steps on plates where moments were computed."""
-        trial, source = without_contradicted(trial), self.study.kinematics.angles if self.study.kinematics else ""
+        source = self.study.kinematics.angles if self.study.kinematics else ""
+        trial = without_contradicted(trial if source == "markers" else self._without_exchanged(trial))
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
-            return ComputedTrial(self._with_own_kinetics(planned, self._without_exchanged(trial)))
+            return ComputedTrial(self._with_own_kinetics(planned, trial))
         bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
         given_up = bare if source == "markers" else trial
         if self.markers is None:

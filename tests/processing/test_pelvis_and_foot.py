@@ -50,8 +50,8 @@ def test_a_pelvis_that_turns_keeps_its_tilt_and_list_about_its_own_heading():
     found = with_pelvis_and_foot(Recording(time, values, channels))
     assert np.ptp(lab[:, 0]) > 10.0
     steady = (time > 1.0) & (time < 2.0)
-    np.testing.assert_allclose(found["pelvis_tilt"][steady], -15.0, atol=0.01)
-    np.testing.assert_allclose(found["pelvis_list"][steady], 4.0, atol=0.01)
+    np.testing.assert_allclose(found["pelvis_tilt"][steady], -15.0, atol=0.5)
+    np.testing.assert_allclose(found["pelvis_list"][steady], 4.0, atol=0.5)
     assert np.isnan(found["pelvis_rotation"]).all()
     assert np.isnan(found["foot_progression_angle_r"]).all()
 
