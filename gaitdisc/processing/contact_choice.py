@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
@@ -29,6 +28,7 @@ DISAGREEMENT_MS = 50.0  # a twentieth of a stride
 EVENTS_MS = (
     30.0  # three frames of 100 Hz; in 27 walks of ten laboratories events lie within 22 ms of the plates (median)
 )
+OTHER_FOOT_S = 0.1  # markers are early by 21 to 74 ms, and steps are 0.4 s apart or more
 SAME_STEP_S = 0.4  # less than half a stride: events that were marked this late still belong to the plate's step
 SEEN_LATE = ("markers", "angles")  # detectors that see no ground, so that their contacts need a plate to be right
 MOST_OFFSET_S = 0.15  # twice the largest bias seen: what lies farther off is no bias of a detector but another event
@@ -98,15 +98,28 @@ def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mappin
     """
     most = max(strides.values())
     richer = [name for name in strides if ENOUGH * strides[name] > strides.get("events", most)]
-    stand = bool(richer) and all(any(map(len, unmarked(seen["events"], seen[name]).values())) for name in richer)
+    stand = bool(richer) and all(_differ(seen["events"], seen[name]) for name in richer)
     return next(
         name for name in order if name in strides and (strides[name] >= ENOUGH * most or (name == "events" and stand))
     )
 
 
-def unmarked(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, NDArray[np.float64]]:
-    """Contacts of another detector between those that the file marks, side -> times [s]."""
-    return {side: events[side].compared(other[side], MOST_OFFSET_S).extra for side in events if side in other}
+def _differ(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> bool:
+    """Whether a detector misses a contact that the file marks, or sees one between them."""
+    pairs = [events[side].compared(other[side], MOST_OFFSET_S) for side in events if side in other]
+    return any(len(pair.missed) + len(pair.extra) for pair in pairs) or bool(exchanged_contacts(events, other))
+
+
+def exchanged_contacts(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, list[float]]:
+    """Contacts of a foot [s] that lie where the file marks the other foot, and none of this one; sides with any."""
+    found = {}
+    for side, one in other.items():
+        own, across = (events[foot].time if foot in events else np.empty(0) for foot in (side, "rl".replace(side, "")))
+        near = {
+            time: [np.abs(times - time).min(initial=np.inf) for times in (across, own)] for time in one.time.tolist()
+        }
+        found[side] = [time for time, (foot, this) in near.items() if foot <= OTHER_FOOT_S and this > MATCH_S]
+    return {side: times for side, times in found.items() if times}
 
 
 def events_on_plates(

@@ -22,7 +22,7 @@ from gaitdisc.processing.process import quality_findings
 from gaitdisc.processing.shelf import Shelf, ShelvedRecordings, shelf
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
-from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
+from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
 from gaitdisc.processing.trial_cycles import (
     HeelPaths,
     Places,
@@ -141,7 +141,7 @@ def _seen_trials(
 def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, shelved: Shelf) -> _Seen:
     """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
-    computed = standing.computed(planned, read)
+    computed = standing.computed(planned, walking_part(read))
     trial, plate_steps = computed.trial, computed.steps
     direction = study.treadmill.direction if study.treadmill else ""
     weight_n = standing.body_weight_n(planned)
@@ -181,7 +181,7 @@ def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
     legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in joints)
     for side, strides in found.items():
         if not outside or strides.detector == "angles":
-            verify_walking(legs, strides, 1, 0.0 if outside else LEAST_COVERAGE)
+            verify_walking(legs, strides, 1, LEAST_COVERAGE if strides.detector == "angles" and not outside else 0.0)
         if f"knee_angle_{side}" in legs.names:
             verify_sides(legs, strides)
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.processing.contact_choice import (
@@ -14,14 +15,14 @@ from gaitdisc.processing.contact_choice import (
     SEEN_LATE,
     best_detector,
     events_on_plates,
+    exchanged_contacts,
     named_markers,
     seen_contacts,
     trial_direction,
-    unmarked,
 )
-from gaitdisc.recording import Finding, Trial
+from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.contacts import Contacts
-from gaitdisc.signals.direction import Direction
+from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
 
 TOES = {
@@ -31,9 +32,12 @@ TOES = {
 GROUND = ("events", "force")  # what saw the ground, the person who marked the file first
 ORDER = (*GROUND, *SEEN_LATE)
 ONE_EVENT_S = MOST_OFFSET_S  # nearer than this two detectors speak of one event of a foot
-OTHER_FOOT_S = 0.1  # markers are early by 21 to 74 ms, and steps are 0.4 s apart or more
 USUAL_STRIDE_S = 1.1
 LEAST_PATH_M_PER_S = 0.3  # of the pelvis from end to end
+BELT_M = 2.0  # who comes farther walks over ground
+HEEL_M, LEG_DEG = 0.25, 10.0  # least reach of a heel, a hip or a knee within a second of who steps
+AROUND_S = 0.5  # of a second of walking: the first step from standing and the last one stay
+LEAST_CUT_S = 1.0
 NO_WALKWAY_S = 10.0  # a walk that lasts longer and does not show its path is one on a treadmill
 Times = NDArray[np.float64]
 
@@ -126,17 +130,60 @@ def step_events(
 def _exchanged_heels(trial: Trial, seen: Mapping[str, Mapping[str, Contacts]]) -> list[Finding]:
     """Say where a heel lands while the file marks the contact of the other foot, and none of its own."""
     findings = []
-    for side, times in unmarked(seen["events"], seen.get("markers", {})).items():
-        other = seen["events"].get("l" if side == "r" else "r")
-        at = [time for time in times if other is not None and np.abs(other.time - time).min() <= OTHER_FOOT_S]
-        if at:
-            what = (
-                f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, where the file's "
-            )
-            what += "events have the other foot: the heels look exchanged; the events are used"
-            spoils = "lengths and widths of steps, left out for this trial; correct the labels"
-            findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
+    for side, at in exchanged_contacts(seen["events"], seen.get("markers", {})).items():
+        what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, where the file's "
+        what += "events have the other foot: the heels look exchanged; the events are used"
+        spoils = "lengths and widths of steps, left out for this trial; correct the labels"
+        findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
     return findings
+
+
+def walking_part(trial: Trial) -> Trial:
+    """Trial without standing, and turning on the spot, before and after the walk; what was cut is a finding."""
+    shown = _stepping(trial)
+    if shown is None or not shown[1].any():
+        return trial
+    time, walks = shown
+    first, last = (float(time[at]) for at in np.flatnonzero(walks)[[0, -1]])
+    start, end = first - AROUND_S, last + AROUND_S
+    start, end = (
+        (start if start - time[0] > LEAST_CUT_S else -np.inf),
+        (end if time[-1] - end > LEAST_CUT_S else np.inf),
+    )
+    cut = [f"{time[0]:.1f} to {start:.1f} s"] if np.isfinite(start) else []
+    cut += [f"{end:.1f} to {time[-1]:.1f} s"] if np.isfinite(end) else []
+    if not cut:
+        return trial
+    what = f"nobody walks from {' and from '.join(cut)} (standing, or turning on the spot); cut out"
+    said = Finding("note", "standing", trial.name, what, "")
+    streams = {key: part for key, one in trial.streams.items() if len((part := one.between(start, end)).time) > 1}
+    events = tuple(event for event in trial.events if start <= event.time < end)
+    return replace(trial, streams=streams, events=events, findings=(*trial.findings, said))
+
+
+def _stepping(trial: Trial) -> tuple[Times, NDArray[np.bool_]] | None:
+    """Times, and at which of them somebody walks: the pelvis travels, or on the spot heels or joints move."""
+    markers, legs = trial.streams.get("markers"), trial.streams.get("kinematics")
+    try:
+        heels, pelvis = named_markers(markers) if markers is not None else ({}, [])
+    except ChannelError:
+        heels, pelvis = {}, []
+    if markers is not None and heels:
+        centre, half = pelvis_position(markers, pelvis), round(PATH_S / 2 * markers.rate_hz)
+        known = centre[np.isfinite(centre).all(axis=1)]
+        if len(centre) > 2 * half and len(known) and np.linalg.norm(np.ptp(known, axis=0)) >= BELT_M:
+            metres = np.linalg.norm(centre[2 * half :] - centre[: -2 * half], axis=1)
+            return markers.time, np.pad(metres, half, mode="edge") >= LEAST_SPEED * PATH_S
+        return markers.time, _reaches(markers, [f"{heel}.{axis}" for heel in heels.values() for axis in "xyz"], HEEL_M)
+    joints = [] if legs is None else [name for name in legs.names if name[:-1] in ("hip_flexion_", "knee_angle_")]
+    return (legs.time, _reaches(legs, joints, LEG_DEG)) if legs is not None and joints else None
+
+
+def _reaches(recording: Recording, names: list[str], least: float) -> NDArray[np.bool_]:
+    """Whether one of some channels ranges over so much within a second about each sample."""
+    x, size = recording.selected(names).values, round(PATH_S * recording.rate_hz) | 1
+    most, lowest = (maximum_filter1d(np.where(np.isfinite(x), sign * x, -np.inf), size, axis=0) for sign in (1, -1))
+    return np.asarray((most + lowest >= least).any(axis=1))
 
 
 def over_ground(trial: Trial) -> bool:

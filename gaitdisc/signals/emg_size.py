@@ -22,8 +22,7 @@ FEWEST = 3  # channels that both trials have
 def emg_sizes(emg: Recording) -> dict[str, float]:
     """Standard deviation of each channel that has one [V]; without dead and unplugged ones, which have no unit to show.
 
-    They are told by the amplifier's range, and only where the recording shows that: a usual range would depend on the
-    unit.
+    The amplifier's range separates them, and only where the recording shows it: a usual range would depend on the unit.
     """
     found = {name: float(np.nanstd(emg[name])) for name in emg.names if np.isfinite(emg[name]).any()}
     limit = amplifier_range(emg)

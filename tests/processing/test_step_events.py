@@ -10,8 +10,8 @@ import pytest
 from gaitdisc.errors import StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
-from gaitdisc.recording import Trial
+from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
+from gaitdisc.recording import Recording, Trial
 
 NOTHING = {"r": np.empty(0), "l": np.empty(0)}
 
@@ -148,3 +148,40 @@ def test_a_long_walk_that_does_not_show_its_path_is_one_on_a_treadmill(trial):
     assert not over_ground(trial)
     short = {"kinematics": trial.stream("kinematics").between(0.0, 3.0)}
     assert over_ground(Trial("short", short))
+
+
+def _standing_about(walk, before_s, after_s):
+    """Walk with somebody who stands, and sways by some mm, before and after it; events stay where they are."""
+    rng, streams = np.random.default_rng(0), {}
+    for key, one in walk.streams.items():
+        parts = [
+            one.values[[row]] + rng.normal(0, 2e-4, (round(seconds * one.rate_hz), len(one.names)))
+            for row, seconds in ((0, before_s), (-1, after_s))
+        ]
+        time = one.time[0] - before_s + np.arange(len(one.time) + sum(map(len, parts))) / one.rate_hz
+        streams[key] = Recording(time, np.vstack([parts[0], one.values, parts[1]]), one.channels, source=one.source)
+    return replace(walk, streams=streams)
+
+
+@pytest.mark.parametrize(("before_s", "after_s"), [(15.0, 0.0), (0.0, 40.0), (8.0, 8.0)])
+@pytest.mark.parametrize("only", [("markers", "forces"), ("kinematics", "forces")])
+def test_standing_before_and_after_a_walk_is_cut_out_and_said(walks, before_s, after_s, only):
+    for name in ("HC030A22", "HC031A06"):
+        walk = walks[name]
+        walk = replace(walk, streams={key: walk.streams[key] for key in only}, events=())
+        part = walking_part(_standing_about(walk, before_s, after_s))
+        (said,) = [finding for finding in part.findings if finding.kind == "standing"]
+        assert (said.severity, said.file) == ("note", walk.name) and said.what.startswith("nobody walks from ")
+        for recording in part.streams.values():
+            assert recording.time[0] >= -1.1 and recording.time[-1] <= walk.streams[only[0]].time[-1] + 1.1
+        assert over_ground(part)
+        assert walking_part(walk) is walk
+
+
+def test_nothing_is_cut_where_nobody_steps_or_all_do(walks, trial):
+    still = _standing_about(
+        replace(walks["HC030A05"], streams={"markers": walks["HC030A05"].stream("markers")}), 0.0, 9.0
+    )
+    still = replace(still, streams={"markers": still.stream("markers").between(3.0, 10.0)})
+    assert walking_part(still) is still
+    assert walking_part(trial) is trial
