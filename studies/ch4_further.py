@@ -1,10 +1,11 @@
 """Chapter 4, 4.4 and 6.2.2 beyond their figures, on two real runners: bands, sparse terms, a search, a smooth curve.
 
-    python studies/ch4_further.py [FOLDER] [--tables band terms search curve] [--keep] [--quick]
+    python studies/ch4_further.py [FOLDER] [--tables band people terms search curve] [--keep] [--quick]
     python studies/ch4_further.py --print TABLE
 
 welk007 runs a minute without and a minute with a spring between the feet, welk002 without; ten angles, the last 12.5 %
-of each run held out. `band`: what 90 % bands from refits on blocks cover. `terms`: which terms of a sparse Discrepancy
+of each run held out. `band`: what 90 % bands from refits on blocks cover; `people`: the same of forty simulated people
+who walk a minute in each condition, as `gaitdisc run` fits them. `terms`: which terms of a sparse Discrepancy
 are selected in refits on random halves of 16 blocks, beside a control: the first half of the run without the device
 against its second. `search`: layers, nodes and activations by successive halving. `curve`: the Discrepancy over the
 stride by Gaussian processes on the circle, random Fourier features and plain means, with the processes' own bands.
@@ -16,16 +17,20 @@ from pathlib import Path
 
 from command_line import tables_line
 
-TABLES = ("band", "terms", "search", "curve")
+TABLES = ("band", "people", "terms", "search", "curve")
 GIVEN = tables_line(__name__, __doc__, "ch4_further", TABLES)  # before the slow imports
 
-from ch4_band import band, curve
+from ch4_band import band, curve, people, quartiles
 from ch4_search import search
 from ch4_terms import terms
 from further import Made, main
 
 MADE = {
     "band": Made(band, "running, n = 10 outputs of one person, last 12.5 % held out"),
+    "people": Made(
+        lambda quick: quartiles(people(quick)),
+        "90 % bands, 8 outputs a person, 60 s, last 12.5 % of device walking held out",
+    ),
     "terms": Made(terms, "welk007, running, last 12.5 % held out"),
     "search": Made(search, "runs, ten outputs, last 12.5 % held out"),
     "curve": Made(curve, "Discrepancy of welk007, n = 10 outputs, last 12.5 % held out"),

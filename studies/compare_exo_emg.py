@@ -35,8 +35,8 @@ PEOPLE, FORCES = 8, 6  # the first six signals are ground forces
 HARD, EASY = "C6", "C1"
 
 
-def run(data: Path, first: str = HARD, second: str = EASY) -> gd.Mismatch:
-    """Mismatch of two settings, paired over the eight people."""
+def run(data: Path, first: str = EASY, second: str = HARD) -> gd.Mismatch:
+    """Mismatch of two settings, second minus first, paired over the eight people."""
     stored = np.load(data / "ankle_exo_emg_grf" / "assisted.npz")
     signals = [str(name) for name in stored["signals"]][FORCES:]
     pairs = [

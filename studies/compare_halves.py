@@ -76,7 +76,7 @@ def halves(walk: gd.Trial, shift: int) -> Halves:
     middle, end = angles.time[len(angles.time) // 2], angles.time[-1] + 1.0
     first = with_contacts(walk, "first half", angles.between(angles.time[0], middle), 0)
     second = with_contacts(walk, "second half", angles.between(middle, end), shift)
-    return Halves(walk.name, shift, gd.compare(second, first, detector="events"))
+    return Halves(walk.name, shift, gd.compare(first, second, detector="events"))
 
 
 def with_contacts(walk: gd.Trial, name: str, part: gd.Recording, shift: int) -> gd.Trial:

@@ -28,7 +28,7 @@ def compare_files(
     detector: str = "auto",
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
-    """Mismatch of two recordings, first minus second.
+    """Mismatch of two recordings, second minus first.
 
     cutoff_hz: -3 dB frequency of one pass of the low-pass of angles and moments
     """
@@ -55,7 +55,7 @@ def compare_files(
 def compare_study(
     study: Study, participant: str = "", channels: tuple[str, ...] = (), smallest: Smallest = CLINICAL
 ) -> Mismatch:
-    """Mismatch of the device walk against the nominal walk: of one participant's strides, or over participants.
+    """Mismatch of the nominal and the device walk: of one participant's strides, or over participants.
 
     study: with both conditions; its filters and its detector are used
     returns: device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings
@@ -82,7 +82,7 @@ def compare_study(
 
 
 def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary] | str:
-    """Device and nominal walk, or why there are none."""
+    """Nominal and device walk, or why there are none."""
     person = study.participant(participant)
     nominal, device = study.conditions.both
     lacking = refused_participant(study, person) or not_compared(study, person)
@@ -91,7 +91,7 @@ def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary]
     walks, refusals = processed_walks(study, person)
     if refusals:
         return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
-    return walks[device].summary(), walks[nominal].summary()
+    return walks[nominal].summary(), walks[device].summary()
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:

@@ -51,7 +51,7 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
     sets: Mapping[str, np.ndarray] = {
         word: np.stack([leg.cycles[name] for name in names], axis=2) for word, leg in (("a", first), ("b", second))
     }
-    tested = two_sample_test(sets["b"], sets["a"], PLAN)
+    tested = two_sample_test(sets["a"], sets["b"], PLAN)
     apart = sets["b"].mean(axis=0) - sets["a"].mean(axis=0)
     found = []
     for cluster in tested.clusters:

@@ -11,19 +11,19 @@ from gaitdisc.results.mismatch import Alignment
 
 MOST_SHIFT = 15  # % of the stride; farther, the halves of a stride are taken for each other
 LEAST_SHIFT = 0.2  # % of the stride: two milliseconds
-SCATTER = 1.0  # % of the stride by which contacts scatter: a knee moves 4 deg in it, and a gap may hardly shrink
 FEWEST_CHANNELS = 3
-LEAST_AGREEING, WITHIN = 0.6, 2.0  # share of the channels whose own best shift lies within 2 % of the common one
-MOST_LEFT = 0.9  # of the gap, the median over channels, where the shift is more than scatter
+LEAST_AGREEING = 0.6  # of the channels: their gap narrows
+# 62 pairs of real walks cut at the same mark: r rises by less in 96 %; with 8.7 % of the stride planted, more in 97 %
+LEAST_GAIN = 0.05
+MOST_LEFT = 0.9  # or the gap that is left, median over channels: strides of one person show smaller shifts
 
 
 def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Alignment:
-    """By how much later all curves of the first walk fit those of the second best.
+    """By how much later all curves of the first walk together fit those of the second best.
 
-    Each channel's own best shift is taken without its offset; the common one is their median. It is applied where three
-    channels or more have one, 60 % of all lie within 2 % of the stride of the median, and moving the curves leaves 90 %
-    of the gap or less in half of them (where it is less than 1 % of the stride: does not widen it). A joint that turns
-    later by itself, or walks of another rhythm, share none.
+    The shift is where the correlation of the curves, mean over the channels, is highest. It is applied where the gap
+    of 60 % of the channels narrows (offsets aside), and the mean correlation rises by 0.05 or the median gap falls to
+    90 %.
 
     first, second (phase, channel) [each channel's unit]: mean curves over one stride on 101 points
 
@@ -33,37 +33,25 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
     >>> round(found.percent, 1), found.applied, found.agreeing
     (7.0, True, 3)
     """
-    own = np.array([own_shift(a, b) for a, b in zip(first.T, second.T, strict=True)])
-    free = own[np.abs(own) < MOST_SHIFT]
-    if len(free) < FEWEST_CHANNELS:
-        return Alignment(0.0, False, 0, first.shape[1])
-    middle = round(float(np.median(free)), 1)
-    agreeing = int(np.sum(np.abs(own - middle) <= WITHIN))
-    left = _rms(shifted(first, middle), second) / np.maximum(_rms(first, second), 1e-12)
-    applied = (
-        abs(middle) >= LEAST_SHIFT
-        and agreeing >= max(FEWEST_CHANNELS, LEAST_AGREEING * len(own))
-        and float(np.median(left)) <= (MOST_LEFT if abs(middle) >= SCATTER else 1.0)
+    count = first.shape[1]
+    shifts = np.arange(-MOST_SHIFT, MOST_SHIFT + 1.0)
+    gains = np.array([_correlation(shifted(first, shift), second).mean() for shift in shifts])
+    at = int(np.argmax(gains))
+    if at in (0, len(shifts) - 1) or count < FEWEST_CHANNELS:
+        return Alignment(0.0, False, 0, count)
+    before, peak, after = gains[at - 1 : at + 2]  # a parabola through them
+    percent = round(float(shifts[at] + 0.5 * (before - after) / min(before - 2 * peak + after, -1e-12)), 1)
+    moved = shifted(first, percent)
+    left = _rms(moved, second) / np.maximum(_rms(first, second), 1e-12)
+    gain = float(_correlation(moved, second).mean()) - gains[MOST_SHIFT]
+    agreeing = int(np.sum(left < 1.0))
+    applied = bool(
+        abs(percent) >= LEAST_SHIFT
+        and agreeing >= LEAST_AGREEING * count
+        and (gain >= LEAST_GAIN or float(np.median(left)) <= MOST_LEFT)
     )
-    return Alignment(middle, applied, agreeing, len(own))
-
-
-def own_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """By how much later one curve fits another best, whatever lies between them [% stride].
-
-    first, second (phase,) [channel's unit]: mean curves on 101 points
-    returns: to a fraction of a percent, by a parabola through the three least gaps; 15 or -15 where there is none
-        within
-    """
-    one, other = first[:-1] - first[:-1].mean(), second[:-1] - second[:-1].mean()
-    shifts = np.arange(-MOST_SHIFT, MOST_SHIFT + 1)
-    gaps = np.array([np.mean((np.roll(one, shift) - other) ** 2) for shift in shifts])
-    at = int(np.argmin(gaps))
-    if at in (0, len(shifts) - 1):
-        return float(shifts[at])
-    left, middle, right = gaps[at - 1 : at + 2]
-    bend = left - 2 * middle + right
-    return float(shifts[at] + (0.5 * (left - right) / bend if bend > 0 else 0.0))
+    largest = np.abs((first if applied else moved) - second).max(axis=0)
+    return Alignment(percent, applied, agreeing, count, largest.tolist())
 
 
 def shifted(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
@@ -86,6 +74,12 @@ def aligned(walks: Sequence[NDArray[np.float64]], percent: float) -> list[NDArra
     percent: by how much [% stride]
     """
     return [np.moveaxis(shifted(np.moveaxis(curves, 1, 0), percent), 0, 1) for curves in walks]
+
+
+def _correlation(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Correlation of two curves over the stride, (channel,); 0 where one does not move."""
+    one, other = (curves[:-1] - curves[:-1].mean(axis=0) for curves in (first, second))
+    return (one * other).sum(axis=0) / np.maximum(np.sqrt((one**2).sum(axis=0) * (other**2).sum(axis=0)), 1e-12)
 
 
 def _rms(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:

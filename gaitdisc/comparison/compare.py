@@ -70,7 +70,7 @@ def compare_walks(
     plan: PermutationPlan = USUAL,
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
-    """Mismatch of two walks, first minus second; strides, or blocks of them, are the units of exchange.
+    """Mismatch of two walks, second minus first; strides, or blocks of them, are the units of exchange.
 
     Where successive strides depend on each other, blocks of consecutive strides are exchanged, and the dependence that
     blocks still have widens the standard error. A first walk of fewer than six strides (a periodic simulation has one)
@@ -103,8 +103,8 @@ def compare_people(
 ) -> Mismatch:
     """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
 
-    pairs sequence of (WalkSummary, WalkSummary): both walks of each person, in the same order of conditions; first
-        minus second
+    pairs sequence of (WalkSummary, WalkSummary): both walks of each person, in the same order of conditions; second
+        minus first
     wanted: only these channels; by default all that every walk has
     smallest: difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves
     returns: its standard deviations are those from stride to stride, root mean square over people
@@ -123,10 +123,10 @@ def compare_people(
         curves_of[0] = aligned(curves_of[0], alignment.percent)
     means = [np.array([curves.mean(axis=0) for curves in part]) for part in curves_of]
     spreads = [[_sd(curves) for curves in part] for part in curves_of]
-    test = one_sample_test(means[0] - means[1], plan)
+    test = one_sample_test(means[1] - means[0], plan)
     strides = [sum(map(len, common.curves[k::2])) for k in (0, 1)]
     exchange = _exchange("participant", (len(pairs), len(pairs)), (strides[0], strides[1]), test)
-    gap = (means[0] - means[1]).mean(axis=0)
+    gap = (means[1] - means[0]).mean(axis=0)
     sds = tuple(np.sqrt(np.mean(np.square(one), axis=0)) for one in spreads)
     middles = (means[0].mean(axis=0), means[1].mean(axis=0))
     limits = _limits(common.channels, middles[1], smallest)
@@ -192,14 +192,14 @@ def _of_strides(
     units = [block_means(curves, length) for curves in common.curves]
     curve = first.mean(axis=0)
     if as_curve:
-        test = one_sample_test(curve - units[1], plan, worth)
+        test = one_sample_test(units[1] - curve, plan, worth)
         means, counts = (curve, units[1].mean(axis=0)), (1, len(units[1]))
     else:
         test = two_sample_test(units[0], units[1], plan, worth)
         means, counts = (units[0].mean(axis=0), units[1].mean(axis=0)), (len(units[0]), len(units[1]))
     unit = "stride" if length == 1 else f"block of {length} strides"
     exchange = _exchange(unit, counts, (len(first), len(second)), test)
-    return _Compared(test, exchange, means[0] - means[1], means, (_sd(first), _sd(second)), alignment, limits)
+    return _Compared(test, exchange, means[1] - means[0], means, (_sd(first), _sd(second)), alignment, limits)
 
 
 def _exchange(unit: str, counts: tuple[int, int], strides: tuple[int, int], test: ClusterTest) -> Exchange:

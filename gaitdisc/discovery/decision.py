@@ -83,6 +83,31 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
     return Verdict(longer.model.parts[0].candidate.verdict, longer, tuple(rivals), proof=proof)
 
 
+def within_record(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+    """Return a verdict without constants that are beyond the record's length or range.
+
+    What relaxes or yields only there is a linear spring, which is named where it fits as well; else nothing is.
+    """
+    search = problem.search
+    rivals = tuple(one for one in verdict.rivals if search.shows(one.model))
+    if search.shows(verdict.found.model):
+        return replace(verdict, rivals=rivals)
+    found = verdict.found
+    springs = {one.place: one for one in search.candidates if one.name == "linear_stiffness"}
+    parts = tuple(
+        replace(part, candidate=springs[part.candidate.place], values={"factor": part.values["factor"]})
+        if "factor" in part.values and part.candidate.states and part.candidate.place in springs else part
+        for part in found.model.parts
+    )  # fmt: skip
+    starts = found.model.fit.starts[:, : len(search.base.states)]
+    model = fit_model(found.shooting, search.base, parts, starts, like=found.model)
+    spring = scored(found.shooting, search.base, model)
+    proof, closed = held_out_proof(problem, as_read, spring), held_out_proof(problem, as_read, found).closed
+    if search.shows(model) and proof.bears_out and proof.closed >= closed - WORTH:
+        return replace(verdict, word=parts[0].candidate.verdict, found=spring, rivals=rivals, proof=proof)
+    return Verdict("no_gap", as_read, rivals, proof=verdict.proof)
+
+
 def shape_that_leaves_noise(problem: Problem, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
     """Return the verdict on one shape without a name that leaves mere noise where several names together do not."""
     if len(names.found.model.parts) < 2:

@@ -12,7 +12,7 @@ from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.catalogue import Shape
-from gaitdisc.discovery.decision import decide
+from gaitdisc.discovery.decision import decide, within_record
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials
 from gaitdisc.discovery.problem import FEWEST_SAMPLES, set_up_problem, split_in_time
@@ -69,7 +69,7 @@ def discover(
         progress("what is held out never goes where it would act: other data are held out")
         problem, as_read = noted(problem, other), other.as_read()
         verdict = decide(problem, as_read)
-    verdict = read_instead(problem, as_read, read_shape(problem, as_read, verdict))
+    verdict = within_record(problem, as_read, read_instead(problem, as_read, read_shape(problem, as_read, verdict)))
     progress("showing it on what was held out")
     return answer(problem, as_read, verdict, refitted)
 

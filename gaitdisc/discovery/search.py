@@ -105,6 +105,15 @@ class Search:
             low < value < high for value, (low, high) in self._limits(model)
         )
 
+    def shows(self, model: CandidateModel) -> bool:
+        """Whether each relaxation is shorter than the longest trial, each yield narrower than what a run can show."""
+        return all(
+            part.values[slot] < (self.rhythm.duration if kind == "delays" else self._widest(model, part.candidate.role))
+            for part in model.parts
+            if part.candidate.states
+            for slot, kind in (part.candidate.constants or {}).items()
+        )
+
     def _limits(self, model: CandidateModel) -> Iterator[tuple[float, tuple[float, float]]]:
         """Yield each constant of a model, and between which limits it means what its name says."""
         for part in model.parts:

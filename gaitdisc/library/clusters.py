@@ -52,8 +52,8 @@ def permutation_clusters(
     Returns
     -------
     DataFrame
-        One row a cluster: channel, first_point and last_point (both inside), sign (1 where the first set lies above),
-        mass, p; empty where nothing differs. `attrs` holds threshold, permutations and exact.
+        One row a cluster: channel, first_point and last_point (both inside), sign of second minus first (1 where the
+        second set lies above), mass, p; empty where nothing differs. `attrs` holds threshold, permutations and exact.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def permutation_clusters(
     >>> curves = np.random.default_rng(0).normal(0.0, 1.0, (20, 101))
     >>> moved = curves + 3.0 * ((np.arange(101) >= 40) & (np.arange(101) < 60))
     >>> noise = np.random.default_rng(1).normal(0.0, 0.5, curves.shape)
-    >>> gd.permutation_clusters(moved + noise, curves, paired=True)[["first_point", "last_point"]].values.tolist()
+    >>> gd.permutation_clusters(curves, moved + noise, paired=True)[["first_point", "last_point"]].values.tolist()
     [[40, 59]]
     """
     check_level(alpha, "alpha")
@@ -87,7 +87,7 @@ def permutation_clusters(
             "Cut both into strides of 101 points with the same channels.",
         )
     plan = PermutationPlan(alpha, permutations, seed)
-    test = one_sample_test(one - other, plan) if paired else two_sample_test(one, other, plan)
+    test = one_sample_test(other - one, plan) if paired else two_sample_test(one, other, plan)
     rows = [(names[each.channel], each.first, each.last, each.sign, each.mass, each.p) for each in test.clusters]
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     table.attrs.update(threshold=test.threshold, permutations=test.permutations, exact=test.exact)

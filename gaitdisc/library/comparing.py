@@ -34,7 +34,7 @@ def compare(
     Parameters
     ----------
     first, second : path, Trial, DataFrame or Recording
-        A simulated and a measured walk, or two conditions; the gap is first minus second.
+        A simulated and a measured walk, or two conditions; the gap is second minus first.
     channels : sequence of str, or str
         Only these; by default all that both have.
     cutoff_hz : float

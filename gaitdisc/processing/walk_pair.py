@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import GaitdiscError, StrideError
-from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts
+from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
 from gaitdisc.processing.one_stride import TIMES, repeated_stride
 from gaitdisc.processing.process import is_raw, quality_findings, stride_findings
 from gaitdisc.processing.walk import stride_table
@@ -60,13 +60,12 @@ def walk_pair(
     one, other = (
         _summary(trials[k], contacts[k], cutoff_hz, repeated=trials[k] is not given[k]) for k in range(len(given))
     )
-    note = Finding(
-        "note",
-        "detector",
-        f"{first.name}, {second.name}",
-        f"percent stride counted by {chosen} in both, as it places contacts",
-        "",
-    )
+    what = f"percent stride counted by {chosen} in both, as it places contacts"
+    note = Finding("note", "detector", f"{first.name}, {second.name}", what, "")
+    if len(contacts[0]) == 1:
+        foot = {"r": "right", "l": "left"}[next(iter(contacts[0]))]
+        spoils = "percent stride of the other leg"
+        note = replace(note, severity="warning", what=f"{what}; of the {foot} foot, for both legs", spoils=spoils)
     return one, replace(other, findings=(*other.findings, note))
 
 
@@ -99,8 +98,8 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
         serves = [
             name in here and _stride_count(here[name]) >= ENOUGH * top for here, top in zip(found, most, strict=True)
         ]
-        if all(serves) and min(most):
-            return name, [here[name] for here in found]
+        if all(serves) and min(most) and (sides := found[0][name].keys() & found[1][name].keys()):
+            return name, [{side: here[name][side] for side in sides} for here in found]
     raise StrideError(
         "two walks are compared over strides that one detector finds in both: force, events, markers or hip angles",
         ". ".join(reasons),
@@ -110,7 +109,9 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
 
 def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str, Contacts]:
     if name != "angles":
-        return chosen_contacts(trial, name).uncorrected()  # one recording may lack the plate that corrects the other
+        seen, _ = seen_contacts(trial)  # as placed: one recording may lack the plate that corrects the other
+        contacts = {side: one for side, one in seen.get(name, {}).items() if len(one) > 1}
+        return contacts or chosen_contacts(trial, name).contacts  # which says why there are none
     if joints is None:
         raise StrideError(
             "contacts from angles need hip flexion of one side in both recordings",
@@ -134,7 +135,7 @@ def _with_common_joints(trials: list[Trial]) -> list[Recording | None]:
 
 
 def _stride_count(contacts: Mapping[str, Contacts]) -> int:
-    return max((len(one) - 1 for one in contacts.values()), default=0)
+    return sum(len(one) - 1 for one in contacts.values())
 
 
 def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, repeated: bool) -> WalkSummary:

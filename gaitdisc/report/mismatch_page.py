@@ -13,7 +13,7 @@ import pandas as pd
 from gaitdisc.channel import side_of
 from gaitdisc.report.curves import sides_together
 from gaitdisc.report.figure import Figure, save_figures
-from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
+from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences, smallest_p_sentence
 from gaitdisc.report.page import write_page
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
@@ -154,7 +154,7 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
         shaded += f" {mismatch.first} is drawn {moved} later, a shift that the channels share."
     if kind == "gap":
         return (
-            f"Gap, {mismatch.first} minus {mismatch.second}, {counted(count, 'channel')}, {n}. Band: "
+            f"Gap, {mismatch.second} minus {mismatch.first}, {counted(count, 'channel')}, {n}. Band: "
             f"{100 * (1 - done.alpha):g} % for all points and channels together. {shaded}"
         )
     return (
@@ -176,18 +176,22 @@ def _alt(mismatch: Mismatch, names: list[str]) -> str:
 
 
 def regions_table(mismatch: Mismatch) -> Table:
-    """Every stretch that differs, channel by channel, the largest gap against its spread first."""
+    """Every stretch that differs, channel by channel, the largest gap against the smallest that is named first."""
     rows = [row for name in mismatch.ordered() for row in _rows(mismatch, name)]
     caption = (
-        f"Where they differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.first} minus "
-        f"{mismatch.second}; gap: the largest in that part, and in stride-to-stride standard deviations of "
-        f"{mismatch.second} there; p: of that part, corrected for all points and channels."
+        f"Where they differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.second} minus "
+        f"{mismatch.first}; first the channel whose gap is the most times the smallest difference named. Gap: the "
+        f"largest in that part, and in stride-to-stride standard deviations of {mismatch.second} there; p: of that "
+        f"part, corrected for all points and channels. {smallest_p_sentence(mismatch)}"
     )
     return Table("regions", caption, HEADINGS, tuple(rows), mismatch.regions)
 
 
 def channels_table(mismatch: Mismatch) -> Table:
     """Every channel, whether it differs or not, and what the comparison could have seen of it."""
+    found = mismatch.alignment
+    other_way = "without" if found.applied else "with"
+    others = map(amount, found.otherwise) if found.otherwise else [NONE] * len(mismatch.names)  # in an older folder
     rows = tuple(
         (
             spoken(str(row["channel"])),
@@ -204,8 +208,9 @@ def channels_table(mismatch: Mismatch) -> Table:
             _signed(float(row["offset"]), str(row["unit"])),
             amount(float(row["shape"])),
             amount(float(row["limit"])),
+            other,
         )
-        for row in map(mismatch.summary_of, mismatch.names)
+        for row, other in zip(map(mismatch.summary_of, mismatch.names), others, strict=True)
     )
     caption = (
         f"All {counted(len(rows), 'channel')}. rms: root mean square over the stride, of the gap and of the "
@@ -213,11 +218,13 @@ def channels_table(mismatch: Mismatch) -> Table:
         f"agrees within: what the band of the gap allows at its worst point; visible: the gap that four such "
         f"comparisons of five would have seen at a typical point; shift: how much later the curve of "
         f"{mismatch.first} fits best, and the rms gap that is left then; offset: the mean gap; shape: the largest gap "
-        f"without it; named from: the smallest difference that is called one{_moved(mismatch)}."
+        f"without it; named from: the smallest difference that is called one; last column: the largest gap {other_way} "
+        f"the common shift of {mismatch.first}, {found.percent:+.1f} % of the stride, which was "
+        f"{'' if found.applied else 'not '}applied."
     )
     headings = (
         "channel", "differs", "largest gap", "at [%]", "rms gap", "rms sd", "p", "agrees within", "visible",
-        "shift [%]", "rms left", "offset", "shape", "named from",
+        "shift [%]", "rms left", "offset", "shape", "named from", f"gap {other_way} shift",
     )  # fmt: skip
     return Table("channels", caption, headings, rows, mismatch.summary)
 
@@ -260,13 +267,6 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
         )
         for row in regions
     ]
-
-
-def _moved(mismatch: Mismatch) -> str:
-    found = mismatch.alignment
-    if not found.applied:
-        return ""
-    return f". All curves of {mismatch.first} were moved {found.percent:+.1f} % of the stride first, which they share"
 
 
 def _signed(gap: float, unit: str) -> str:

@@ -22,6 +22,7 @@ from gaitdisc.results.mismatch import Exchange, Mismatch
 MOST_NAMED = 3
 MOST_LISTED = 8
 SAID_FROM = 1.0  # % of the stride: less is the scatter of contacts
+P_PRINTED = 0.001  # a smaller p is printed as less than that
 MOSTLY_TIMING = 0.6  # of the gap that is left when the curve is moved along the stride
 
 
@@ -35,6 +36,8 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
         return [_no_gap(mismatch), *moved, _visible(mismatch, list(mismatch.names))]
     if not ordered:
         return [_nothing_named(mismatch, small), *moved, *([_agreeing(mismatch, unseen)] if unseen else [])]
+    if 1 / mismatch.exchange.permutations >= P_PRINTED:
+        moved = [*moved, smallest_p_sentence(mismatch)]
     sentences = [_gap(mismatch, ordered[0]), *moved]
     sentences += [_further(mismatch, name) for name in ordered[1:MOST_NAMED]]
     if len(ordered) > MOST_NAMED:
@@ -47,16 +50,35 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
 
 
 def alignment_sentences(mismatch: Mismatch) -> list[str]:
-    """How far apart the marks of initial contact lie, where that is more than contacts scatter; else nothing."""
+    """Which shift most channels share, whether it was applied, and the gap the other way; nothing in the scatter."""
     found = mismatch.alignment
-    if not found.applied or abs(found.percent) < SAID_FROM:
+    if abs(found.percent) < SAID_FROM or not (found.applied or 2 * found.agreeing > found.channels):
         return []
-    way = "ahead of" if found.percent > 0 else "behind"
-    return [
-        f"All of {mismatch.first} runs {number(abs(found.percent), 1)} % of the stride {way} {mismatch.second} (so fit "
-        f"{found.agreeing} of {counted(found.channels, 'channel')}): the marks of initial contact lie that far apart, "
-        f"or every joint turns at another time; {mismatch.first} was moved by it before anything was compared."
-    ]
+    size = f"{number(abs(found.percent), 1)} % of the stride {'later' if found.percent > 0 else 'earlier'}"
+    narrower = f"the gap of {found.agreeing} of {counted(found.channels, 'channel')} narrows"
+    said = f"{mismatch.first} was not moved: {size}, {narrower}, but only slightly."
+    if found.applied:
+        said = (
+            f"All curves of {mismatch.first} were moved {size} before the test, by which {narrower}: the marks of "
+            f"initial contact lie that far apart, or every joint turns at another time."
+        )
+    if found.otherwise:  # not in a folder of an earlier version
+        name = (mismatch.ordered() or mismatch.names)[0]
+        row = mismatch.summary_of(name)
+        sizes = abs(float(row["largest_gap"])), found.otherwise[mismatch.names.index(name)]
+        moved, unmoved = map(amount, sizes if found.applied else sizes[::-1])
+        unmoved = with_unit(unmoved, str(row["unit"]))
+        said += f" With the shift the largest gap of {spoken(name)} is {moved} instead of {unmoved}."
+    return [said]
+
+
+def smallest_p_sentence(mismatch: Mismatch) -> str:
+    """Smallest p that the units of the test can give, and how many regions have it."""
+    done, p = mismatch.exchange, mismatch.regions["p"]
+    units = done.second if done.first == 1 or done.unit == "participant" else done.first + done.second
+    of = counted(units, done.unit.split()[0]) if done.exact else f"{done.permutations} permutations"
+    have = f"{int((p * done.permutations < 1.5).sum())} of {counted(len(p), 'region')}"
+    return f"p = {1 / done.permutations:.2g} is the smallest value that {of} can give; {have} have it."
 
 
 def _nothing_named(mismatch: Mismatch, small: list[str]) -> str:
@@ -102,15 +124,15 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
         )
         units = _units(mismatch)
     return [
-        f"Gap: mean curve of {mismatch.first} minus that of {mismatch.second}, each channel over the strides of its "
+        f"Gap: mean curve of {mismatch.second} minus that of {mismatch.first}, each channel over the strides of its "
         f"own foot, on 101 points of the stride.",
         units,
         f"A t at every point is held against the largest |t| over all points and all "
         f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}); the "
         f"gap is shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of them exceed anywhere. The p "
-        f"of a stretch is that of its integral above this threshold.",
-        f"A difference is named where its gap reaches {named_from}; a shift along the stride that most channels share "
-        f"is taken off before the test.",
+        f"of a stretch is that of its integral above this threshold. {smallest_p_sentence(mismatch)}",
+        f"A difference is named where its gap reaches {named_from}; the one that is the most times that comes first. A "
+        f"shift along the stride that most channels share is taken off before the test.",
         f"The band of the gap holds {band} for all points and channels together, and widens where successive strides "
         f"depend on each other.",
         f"Standard deviations are those of {mismatch.second} from stride to stride at the same point. {about}",
@@ -158,7 +180,7 @@ def _size(row: Mapping[str, Any]) -> str:
 def _gap(mismatch: Mismatch, name: str) -> str:
     row = _largest(mismatch, name)
     way = direction_words(name, float(row["gap"]), str(row["unit"]))
-    return f"In {mismatch.first} {way} than in {mismatch.second} {_size(row)}{_kind(mismatch, name)}."
+    return f"In {mismatch.second} {way} than in {mismatch.first} {_size(row)}{_kind(mismatch, name)}."
 
 
 def _further(mismatch: Mismatch, name: str) -> str:

@@ -158,7 +158,7 @@ def p_words(p: float) -> str:
 def direction_words(name: str, gap: float, unit: str) -> str:
     """Which way and how far a channel lies from the other walk's.
 
-    gap: first minus second [unit]
+    gap: of this walk minus the other [unit]
 
     >>> direction_words("ankle_angle_r", -6.1, "deg"), direction_words("pelvis_tilt", 2.0, "deg")
     ('the right ankle is up to 6.1 deg more plantarflexed', 'pelvis tilt is up to 2.0 deg higher')

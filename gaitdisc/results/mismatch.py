@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,10 +45,12 @@ class Exchange:
 class Alignment:
     """Shift along the stride that the channels of two walks have in common."""
 
-    percent: float = 0.0  # by how much later the first walk's curves fit best, the median over channels [% stride]
+    percent: float = 0.0  # by how much later all of the first walk's curves together fit best [% stride]
     applied: bool = False  # whether they were moved by it before anything was tested
-    agreeing: int = 0  # channels whose own best shift lies within 2 % of the stride of it, and all
-    channels: int = 0  # channels whose own best shift lies within 2 % of the stride of it, and all
+    agreeing: int = 0  # channels whose gap narrows by it, and all
+    channels: int = 0  # channels whose gap narrows by it, and all
+    # largest gap of each channel the other way [its unit]: without the shift where it was applied, else with it
+    otherwise: Sequence[float] = ()
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class Smallest:
 
 @dataclass(frozen=True, eq=False)
 class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
-    """First minus second, over the stride.
+    """Second minus first, over the stride.
 
     Parameters
     ----------
@@ -90,7 +92,7 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
         That both have.
     curves : mapping of str to ndarray (phase, channel) [channel's unit]
         `first`, `second`: mean curves. `sd_first`, `sd_second`: from stride to stride; NaN where there is one stride.
-        `gap`: first minus second, with `low` and `high`, ends of its band: 1 - alpha for all points and channels
+        `gap`: second minus first, with `low` and `high`, ends of its band: 1 - alpha for all points and channels
         together. `t` [1].
     regions : DataFrame
         One row a stretch of the stride where the gap is more than chance, columns `REGION_COLUMNS`: largest gap, where,
@@ -152,7 +154,15 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
                     f"{name} lacks {', '.join(missing)}",
                     "Compare the walks again: `gaitdisc compare`.",
                 )
-        object.__setattr__(self, "curves", {name: read_only(self.curves[name]) for name in CURVES})
+        curves = {name: np.asarray(self.curves[name], float) for name in CURVES}
+        if np.nansum(curves["gap"] * (curves["second"] - curves["first"])) < 0:  # saved as first minus second
+            curves |= {"gap": -curves["gap"], "t": -curves["t"], "low": -curves["high"], "high": -curves["low"]}
+            for name, table in (("regions", self.regions), ("summary", self.summary)):
+                turned = [
+                    column for column in ("gap", "largest_gap", "gap_sd", "mean_gap", "offset") if column in table
+                ]
+                object.__setattr__(self, name, table.assign(**{column: -table[column] for column in turned}))
+        object.__setattr__(self, "curves", {name: read_only(values) for name, values in curves.items()})
 
     def to_frame(self) -> pd.DataFrame:
         """Curves and gap of every channel, one row a channel and percent of the stride."""
@@ -160,14 +170,14 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
         return pd.concat(tables, ignore_index=True)
 
     def _repr_html_(self) -> str:
-        rows = [("first minus second", f"{self.first} minus {self.second}"), ("channels", str(len(self.names)))]
+        rows = [("second minus first", f"{self.second} minus {self.first}"), ("channels", str(len(self.names)))]
         rows += [
             (f"RMS gap of {channel.name}", f"{self.rmse[channel.name]:.3g} {channel.unit}") for channel in self.channels
         ]
         return html_of("Mismatch", [*rows, ("regions beyond chance", str(len(self.regions)))])
 
     def __repr__(self) -> str:
-        return f"Mismatch({self.first} minus {self.second}: {len(self.names)} channels, {len(self.regions)} regions)"
+        return f"Mismatch({self.second} minus {self.first}: {len(self.names)} channels, {len(self.regions)} regions)"
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -196,10 +206,18 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
         return table
 
     def ordered(self) -> list[str]:
-        """Names of the channels that differ, the largest gap against its own spread first."""
+        """Names of the channels that differ, the largest gap against the smallest difference that is named first.
+
+        Where everything is named (a limit of 0), the usual limits rank.
+        """
         differing = self.summary[self.summary["differs"].astype(bool)]
-        size = differing["rms_gap"] / differing["rms_sd"].clip(lower=1e-12)
-        return [str(name) for name in differing.loc[size.sort_values(ascending=False, kind="stable").index, "channel"]]
+        reaches = dict(zip(self.names, np.ptp(self.curves["second"], axis=0), strict=True))
+        size = {
+            name: abs(row["largest_gap"]) / (row["limit"] or Smallest().of(row["unit"], reaches[name]) or 1.0)
+            for row in _records(differing)
+            for name in [str(row["channel"])]
+        }
+        return sorted(size, key=lambda name: -size[name])
 
     def regions_of(self, name: str) -> list[dict[str, Any]]:
         """Stretches of one channel, in order of the stride: rows of `regions`.

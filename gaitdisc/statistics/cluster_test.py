@@ -27,7 +27,7 @@ class Cluster:
     channel: int
     first: int
     last: int
-    sign: int  # 1 where the first set lies above, -1 where it lies below
+    sign: int  # 1 where the second set lies above, -1 where it lies below
     mass: float  # integral of |t| above the threshold over the points
     p: float  # share of permutations with a cluster of that mass or more anywhere in the stride and in any channel
 
@@ -88,7 +88,7 @@ def two_sample_test(
     plan: PermutationPlan = USUAL,
     worth: NDArray[np.float64] | None = None,
 ) -> ClusterTest:
-    """Test whether two independent sets of curves differ, first minus second.
+    """Test whether two independent sets of curves differ, second minus first.
 
     Under the null the sign of each unit's departure from the mean of its set is by chance. Welch's t at every point;
     the threshold is that of the largest |t| over points and channels. Signs are turned rather than units exchanged
@@ -102,7 +102,7 @@ def two_sample_test(
         exchanges units and pools the variances.
 
     >>> first, second = np.random.default_rng(0).normal(0.0, 1.0, (2, 20, 101, 1))
-    >>> first[:, 40:60] -= 4.0
+    >>> second[:, 40:60] -= 4.0
     >>> [(found.first, found.last, found.sign) for found in two_sample_test(first, second).clusters]
     [(40, 59, -1)]
     """
@@ -125,9 +125,9 @@ def two_sample_test(
             mean = turned @ part / n
             squares = squares + np.maximum((part**2).sum(axis=0) - n * mean**2, 0.0) / (n - 1) / n
             means.append(mean)
-        return ((means[0] - means[1]) / np.sqrt(squares)).reshape(-1, *shape)
+        return ((means[1] - means[0]) / np.sqrt(squares)).reshape(-1, *shape)
 
-    difference = first.mean(axis=0) - second.mean(axis=0)
+    difference = second.mean(axis=0) - first.mean(axis=0)
     variance = first.var(axis=0, ddof=1) / len(first) + second.var(axis=0, ddof=1) / len(second)
     error = np.sqrt(variance + least.reshape(shape))
     return _tested(difference / error, error, t_of, sign_flips(len(first) + len(second), plan), plan, worth)

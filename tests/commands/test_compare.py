@@ -12,7 +12,7 @@ def test_two_recordings_give_a_sentence_a_table_and_a_report(recordings, tmp_pat
     first, second = (recordings / "walker1" / f"{word}.mot" for word in ("exo", "natural"))
     done = CliRunner().invoke(app, ["compare", str(first), str(second), "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
-    assert done.stdout.startswith("In exo the ")
+    assert done.stdout.startswith("In natural the ")
     assert "ankle is up to" in done.stdout.split(".")[0] + done.stdout.split(".")[1]
     assert (tmp_path / "report.html").is_file()
     assert (tmp_path / "mismatch.json").is_file()

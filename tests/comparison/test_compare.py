@@ -42,10 +42,10 @@ def test_a_known_gap_is_found_where_it_is_and_nowhere_else():
     [region] = found.regions_of("ankle_angle_r")
     assert region["from_percent"] == pytest.approx(30, abs=1)
     assert region["to_percent"] == pytest.approx(60, abs=1)
-    assert region["gap"] == pytest.approx(-6, abs=1)
-    assert region["gap_sd"] == pytest.approx(-4, abs=1.2)
+    assert region["gap"] == pytest.approx(6, abs=1)  # second minus first
+    assert region["gap_sd"] == pytest.approx(4, abs=1.2)
     assert region["p"] < 0.001
-    inside = (found.curves["low"] <= -6) & (found.curves["high"] >= -6)
+    inside = (found.curves["low"] <= 6) & (found.curves["high"] >= 6)
     assert inside[32:58, 2].all()
     assert found.summary_of("hip_flexion_r")["within"] < 2.5
     assert found.rmse["ankle_angle_r"] == pytest.approx(6 * np.sqrt(0.31), abs=0.4)
@@ -118,7 +118,7 @@ def test_marks_apart_make_no_gap_and_hide_none(planted):
     named = compare_walks(both, walk("measured", 50, 4))
     assert named.ordered() == ["ankle_angle_r"]
     [region] = named.regions_of("ankle_angle_r")
-    assert region["gap"] == pytest.approx(-6, abs=1.2)
+    assert region["gap"] == pytest.approx(6, abs=1.2)
     assert region["from_percent"] == pytest.approx(30, abs=2)
 
 
@@ -150,7 +150,7 @@ def test_halves_of_a_real_run_whose_marks_lie_apart_do_not_differ(gait_data, pla
 @pytest.mark.slow
 def test_the_band_holds_the_true_gap_everywhere_in_95_percent():
     """Strides that depend on each other, a gap in one channel; 200 pairs of walks."""
-    truth = np.stack([0 * BUMP, 0 * BUMP, BUMP], axis=1)
+    truth = -np.stack([0 * BUMP, 0 * BUMP, BUMP], axis=1)
     held = []
     for seed in range(200):
         found = compare_walks(bent(walk("a", 60, [seed, 1], rho=0.4)), walk("b", 60, [seed, 2], rho=0.4, sd=3.0))

@@ -8,9 +8,10 @@ from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.decision import decide, kept_on_longer_runs, needed, strongest
+from gaitdisc.discovery.decision import Verdict, decide, kept_on_longer_runs, needed, strongest, within_record
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.simulation.simulation import Term
 
 
 def test_what_longer_runs_have_no_use_for_is_not_named(problem, as_read, cubic):
@@ -121,3 +122,35 @@ def test_a_random_push_comes_with_its_place_and_strength_and_without_an_explanat
     assert verdict.process_noise is not None
     assert verdict.process_noise.place.name == "load"
     assert 4.0 < verdict.process_noise.strength < 8.0
+
+
+@pytest.mark.parametrize(("name", "constants"), [("series_elasticity", {"tau": 5e13}), ("hysteresis", {"width": 2e14})])
+def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_that_it_is(name, constants):
+    measured = record(mass().with_effect(Term("load", "port", "hidden", "-30*x")), 3, Experiment(seconds=12.0))
+    problem = set_up_problem(mass(), measured)
+    as_read = problem.as_read()
+    remembering, spring = (
+        next(one for one in problem.search.candidates if one.label == f"{each}@load")
+        for each in (name, "linear_stiffness")
+    )
+    part = Part(remembering, {"factor": -30.0, **constants})
+    base, starts = problem.search.base, as_read.model.fit.starts
+    endless = scored(as_read.shooting, base, fit_model(as_read.shooting, base, (part,), starts, turns=0))
+    assert not problem.search.shows(endless.model)
+    plain = scored(
+        as_read.shooting, base, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts)
+    )
+    as_rival = within_record(problem, as_read, Verdict("missing_physics", plain, (endless, plain)))
+    assert [one.labels for one in as_rival.rivals] == [("linear_stiffness@load",)]
+    found = within_record(problem, as_read, Verdict("missing_physics", endless, ()))
+    assert (found.word, found.found.labels) == ("missing_physics", ("linear_stiffness@load",))
+    assert found.found.model.parts[0].values["factor"] == pytest.approx(-30.0, rel=0.05)
+
+
+def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(problem, as_read, cubic):
+    remembering = next(one for one in problem.search.candidates if one.label == "series_elasticity@load")
+    parts = (Part(cubic, {"factor": -14.0}), Part(remembering, {"factor": 2.0, "tau": 5e13}))
+    model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts, turns=0)
+    endless = scored(as_read.shooting, problem.search.base, model)
+    found = within_record(problem, as_read, Verdict("missing_physics", replace(endless, gained=1.0), ()))
+    assert all(problem.search.shows(one.model) for one in (found.found, *found.rivals))

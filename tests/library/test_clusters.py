@@ -16,7 +16,7 @@ BUMP[30:50, 1] = 4.0
 @pytest.mark.parametrize("paired", [False, True])
 def test_a_bump_in_one_channel_is_found_there_alone(paired):
     found = gd.permutation_clusters(
-        NOISE[0] + BUMP, NOISE[1], paired=paired, channels=("hip", "knee"), permutations=500
+        NOISE[0], NOISE[1] + BUMP, paired=paired, channels=("hip", "knee"), permutations=500
     )
     assert found["channel"].tolist() == ["knee"] and found["sign"].tolist() == [1]
     assert (found["first_point"][0], found["last_point"][0]) == (30, 49)

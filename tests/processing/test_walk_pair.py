@@ -106,3 +106,24 @@ def test_standing_is_refused(gait_data):
     calibration, walked = (read_trial(folder / f"{name}_ik.mot") for name in ("S01DN603", "S01DE504"))
     with pytest.raises(StrideError):
         walk_pair(calibration, walked)
+
+
+def test_the_force_of_one_foot_is_enough_where_force_is_requested():
+    one_foot = []
+    for trial in (walk(1), walk(2)):
+        forces = trial.stream("forces").selected_by(lambda channel: channel.side == "r")
+        one_foot.append(
+            replace(only(trial, "kinematics"), streams={**only(trial, "kinematics").streams, "forces": forces})
+        )
+    walks = walk_pair(*one_foot, detector="force")
+    assert [one.detector for one in walks] == ["force", "force"]
+    by_both = walk_pair(walk(1), walk(2), detector="force")
+    knee = [[channel.name for channel in one.channels].index("knee_angle_r") for one in (walks[0], by_both[0])]
+    np.testing.assert_allclose(walks[0].curves[:, :, knee[0]], by_both[0].curves[: len(walks[0].curves), :, knee[1]])
+    note = walks[1].findings[-1]
+    assert (note.severity, note.spoils) == ("warning", "percent stride of the other leg")
+    assert note.what.endswith("of the right foot, for both legs")
+    assert [one.detector for one in walk_pair(*one_foot)] == ["angles", "angles"]  # which see both feet
+    other = replace(one_foot[1], streams={"forces": walk(2).stream("forces").selected_by(lambda one: one.side == "l")})
+    with pytest.raises(StrideError, match="one detector finds in both"):
+        walk_pair(one_foot[0], other, detector="force")

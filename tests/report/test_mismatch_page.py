@@ -60,9 +60,13 @@ def test_every_region_and_every_channel_has_a_row(mismatch_tables):
 
 
 def test_the_sign_is_printed_and_the_text_lists_all_channels(mismatch_tables):
-    first = regions_table(mismatch_tables).rows[0]
-    assert first[0].endswith("ankle angle")
-    assert first[2][0] in "−+"
+    row = next(row for row in regions_table(mismatch_tables).rows if row[0] == "right ankle angle")
+    largest = mismatch_tables.summary_of("ankle_angle_r")["largest_gap"]
+    assert row[2][0] == ("−" if largest < 0 else "+")
+    column = mismatch_tables.names.index("ankle_angle_r")
+    apart = np.subtract(*(mismatch_tables.curves[word][:, column] for word in ("second", "first")))
+    assert largest == pytest.approx(apart[np.argmax(np.abs(apart))])
+    assert "free minus A exo" in regions_table(mismatch_tables).caption
     assert mismatch_text(mismatch_tables).row_count >= len(mismatch_tables.names)
 
 
@@ -74,7 +78,7 @@ def test_the_page_answers_first_and_needs_nothing_but_itself(tmp_path):
     page = write_mismatch_report(found, tmp_path)
     text = page.read_text(encoding="utf-8")
     HTMLParser().feed(text)
-    assert text.index("In A exo the right ankle") < text.index("<figure>") < text.index("How the numbers were made")
+    assert text.index("In A free the right ankle") < text.index("<figure>") < text.index("How the numbers were made")
     assert "http" not in text.split("</head>")[1]
     assert "<script" not in text
     assert (tmp_path / "channels" / "ankle_angle_r.csv").read_text().startswith("percent,first,second,")

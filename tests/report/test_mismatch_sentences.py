@@ -7,9 +7,10 @@ import pandas as pd
 from gaitdisc.channel import Channel
 from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.mismatch_page import channels_table
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.results import WalkSummary
-from gaitdisc.results.mismatch import Smallest
+from gaitdisc.results.mismatch import Alignment, Smallest
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS
 
 NAMES = ("hip_flexion_r", "ankle_angle_r", "pelvis_tilt")
@@ -27,8 +28,8 @@ def walk(name, seed, strides=20, gap=0.0, channel=1, shift=0):
 
 def test_the_first_sentence_is_the_answer():
     first, *rest = mismatch_sentences(compare_walks(walk("model", 0, gap=-8.0), walk("measured", 1)))
-    assert re.match(r"In model the right ankle is up to [78]\.\d deg", first)
-    assert "deg more plantarflexed than in measured between 12 and 55 % of the stride (" in first
+    assert re.match(r"In measured the right ankle is up to [78]\.\d deg", first)
+    assert "deg more dorsiflexed than in model between 12 and 55 % of the stride (" in first
     assert " stride-to-stride sd, p < .001); 3." in first
     assert first.endswith(" deg of the gap are an offset of the whole curve.")
     assert rest[-1].startswith(
@@ -56,17 +57,20 @@ def test_marks_that_lie_apart_are_said_and_make_no_finding():
     assert found.ordered() == []
     said = mismatch_sentences(found)
     assert said[1].startswith(
-        "All of model runs 7.0 % of the stride ahead of measured (so fit 3 of 3 channels): the marks"
+        "All curves of model were moved 7.0 % of the stride later before the test, by which the gap of 3 of 3 channels "
+        "narrows: the marks of initial contact lie that far apart, or every joint turns at another time. With the "
+        "shift the largest gap of right hip flexion is "
     )
-    assert "model was moved by it before anything was compared" in said[1]
-    assert "a shift along the stride that most channels share is taken off" in " ".join(method_sentences(found))
+    unmoved = np.abs(found.curves["second"] - walk("model", 4, shift=7).curves.mean(axis=0))[:, 0].max()
+    assert said[1].endswith(f" instead of {unmoved:.1f} deg.")
+    assert "A shift along the stride that most channels share is taken off" in " ".join(method_sentences(found))
 
 
 def test_an_offset_is_distinguished_from_a_change_of_shape():
     higher = walk("model", 0, strides=40)
     higher = replace(higher, curves=higher.curves + np.array([0.0, 6.0, 0.0]))
     first = mismatch_sentences(compare_walks(higher, walk("measured", 1, strides=40)))[0]
-    assert "more dorsiflexed than in measured throughout the stride" in first
+    assert "more plantarflexed than in model throughout the stride" in first
     assert re.search(r"\): an offset, for without its mean the shape agrees to within \S+ deg\.$", first)
 
 
@@ -91,3 +95,25 @@ def test_the_method_says_what_p_speaks_of():
     said = " ".join(method_sentences(compare_walks(one, walk("measured", 7))))
     assert "sim has 1 stride and was taken as a curve without spread; 20 strides of measured" in said
     assert "p speaks of these two recordings alone" in said
+
+
+def test_the_smallest_p_that_so_few_strides_can_give_is_said():
+    """Nine strides against one curve: 2^8 patterns of signs."""
+    found = compare_walks(walk("sim", 6, strides=1, gap=-8.0), walk("measured", 7, strides=9))
+    assert found.exchange.permutations == 256 and len(found.regions)
+    have = int((found.regions["p"] == 1 / 256).sum())
+    said = f"p = 0.0039 is the smallest value that 9 strides can give; {have} of "
+    assert said in " ".join(mismatch_sentences(found)) and said in " ".join(method_sentences(found))
+    many = compare_walks(walk("sim", 6, gap=-8.0), walk("measured", 7))
+    assert "p = 0.0005 is the smallest value that 2000 permutations can give" in " ".join(method_sentences(many))
+
+
+def test_a_shift_that_was_not_applied_is_said_with_both_numbers():
+    found = compare_walks(walk("model", 4, gap=-8.0), walk("measured", 5))
+    found = replace(found, alignment=Alignment(4.0, False, 2, 3, [1.0, 5.5, 2.0]))
+    largest = abs(found.summary_of("ankle_angle_r")["largest_gap"])
+    assert mismatch_sentences(found)[1] == (
+        "model was not moved: 4.0 % of the stride later, the gap of 2 of 3 channels narrows, but only slightly. With "
+        f"the shift the largest gap of right ankle angle is 5.5 instead of {largest:.1f} deg."
+    )
+    assert "2.0" in [row[-1] for row in channels_table(found).rows]

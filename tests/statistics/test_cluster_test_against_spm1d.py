@@ -28,7 +28,7 @@ def curves_of(case):
 def ours(kind, first, second):
     plan = PermutationPlan(permutations=5000)
     if kind == "t2":
-        return two_sample_test(first[:, :, None], second[:, :, None], plan)
+        return two_sample_test(second[:, :, None], first[:, :, None], plan)  # spm1d: first minus second
     return one_sample_test((first - second)[:, :, None], plan)
 
 

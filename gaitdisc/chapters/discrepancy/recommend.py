@@ -92,8 +92,8 @@ def recommend(
         return Recommendation(
             "",
             f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods {ASKED[want]}forecast "
-            f"better than the known model from a start estimated from the data: the known model alone is best there"
-            f"{_known_words(rows)}.",
+            f"better than the known model from a start estimated from the data: the known model alone is best there, "
+            f"valid for {table['valid_known_s'].median():.2f} s.",
             shown,
         )
     best = better.iloc[0]
@@ -111,10 +111,6 @@ def recommend(
     if dt_s is not None and not 1 / BEYOND <= dt_s / step <= BEYOND:
         why += f" This record has a sample every {dt_s:g} s: at this noise nothing was measured there."
     return Recommendation(str(best["method"]), why, shown)
-
-
-def _known_words(rows: pd.DataFrame) -> str:
-    return f", valid for {rows['valid_known_s'].iloc[0]:.2f} s" if len(rows) else ""
 
 
 def _oracle_words(oracle: pd.DataFrame, best: pd.Series) -> str:
