@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
+MOVED = 0.01  # share of a number by which it is another one
 PERSON = "run/report/people/P01"
 
 
@@ -27,9 +28,18 @@ class Answer(NamedTuple):
     emg: list[str]
     pages: list[str]  # kinematics, kinetics, emg: what the page draws
 
-    def spoken(self) -> set[str]:
-        """Clinical sentences: side and words."""
-        return {f"{key.rsplit(' ', 1)[1]} {words}" for key, (_, words) in self.numbers.items() if words}
+    def spoken(self, clean: Answer | None = None) -> list[str]:
+        """Clinical sentences, side and words; beside an answer without the fault, those that it does not have.
+
+        Limits depend on how many values a page has: words of a number that did not move are not made of the fault.
+        """
+        found = []
+        for key, (value, words) in self.numbers.items():
+            before, had = clean.numbers.get(key, (float("nan"), "")) if clean else (float("nan"), "")
+            moved = not abs(value - before) <= MOVED * abs(before)
+            if words and words != had and moved:
+                found.append(f"{key.rsplit(' ', 1)[1]} {words}")
+        return sorted(found)
 
 
 def answer_of(folder: Path, reference: Path, angles: str = "file", pages: bool = True) -> Answer:
@@ -57,7 +67,6 @@ def answer_of(folder: Path, reference: Path, angles: str = "file", pages: bool =
     numbers = {
         f"{one['rule']} {one['side']}": (float(one["value"]), one["words"])
         for one in rows_of(study / PERSON / "outstanding.csv")
-        if one["unit"] == "deg" or one["words"]
     }
     drawn = [name for name in ("kinematics", "kinetics", "emg") if (study / PERSON / f"{name}.csv").exists()]
     emg = sorted({name.split("_mean")[0] for row in rows_of(study / PERSON / "emg.csv")[:1] for name in row})
@@ -80,7 +89,7 @@ def undrawn(study: Path, reference: Path, checked: Answer) -> Answer:
     lines += [f"{one.severity}: {one.kind}: {one.channel}, {one.what}" for own in run.cycles for one in own.findings]
     first = [own for own in run.cycles if own.subject == run.cycles[0].subject] if run.cycles else []
     noted = [one for own in first for one in read_beside(own, load_reference(reference)).numbers]
-    numbers = {f"{one.rule} {one.side}": (one.value, one.words) for one in noted if one.unit == "deg" or one.words}
+    numbers = {f"{one.rule} {one.side}": (one.value, one.words) for one in noted}
     held = {channel.name: channel.quantity for own in first for channel in own.channels}
     kinds = {"kinematics": "angle", "kinetics": "moment", "emg": "emg"}
     return checked._replace(

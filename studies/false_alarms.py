@@ -144,7 +144,7 @@ def of_person(job: Any) -> list[dict[str, Any]]:
 def row_of(person: str, kind: str, trials: int, answer: Answer) -> dict[str, Any]:
     """What is kept of an answer: warnings and refusals, sentences, and whether the planted one is there."""
     alarms = sorted({line for line in answer.lines if not line.startswith(("note", "printed"))})
-    spoken = sorted(answer.spoken())
+    spoken = answer.spoken()
     said = any(SPOKEN[kind] in sentence for sentence in spoken) if kind in SPOKEN else ""
     return {
         "person": person,

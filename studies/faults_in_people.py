@@ -277,7 +277,7 @@ def recording_again(*parts: str) -> Plant:
     return plant
 
 
-SAME = r"same (recording|file|trial|bytes|data|content)|identical|equal|twice|duplicate|copy|copies"
+SAME = r"counts once|samples are those|same (recording|file|trial|data)|identical|equal|twice|duplicate|copies"
 FOOT, PLATE = r"[LR](ANK|HEE|TOE)\b|foot|ankle", r"plate|force|newton|weigh"
 KINDS = (
     Kind("1 static ankle and heel", exchange("LANK", "LHEE", "static"), FOOT, "markers", needs="kinematics"),

@@ -49,7 +49,7 @@ from markdown_table import markdown_table
 SHARED_HALVES = {"develop": ("HC030A", "HC031A", "HC002D"), "kept": ("HC032A", "HC033A", "HC036A")}
 QUICK_KINDS = ("1 static heel and toe", "5 gain of a plate 1.3", "9 zeros, angle")
 COLUMNS = ("kind", "person", "half", "skipped", "said", "line", "sentences")
-COLUMNS += ("moved_deg", "cycles", "cycles_clean", "seconds")
+COLUMNS += ("moved", "cycles", "cycles_clean", "seconds")
 Files = dict[str, list[Path]]  # static, walk, turn
 
 
@@ -135,8 +135,8 @@ def tried(job: Job) -> dict[str, Any]:
     return row | {
         "said": said(kind, answer, clean, bool(hits)),
         "line": (hits or [f"other words: {line}" for line in new] or [""])[0][:300],
-        "sentences": "; ".join(sorted(answer.spoken() - clean.spoken())),
-        "moved_deg": round(max(moved, default=0.0), 1),
+        "sentences": "; ".join(answer.spoken(clean)),
+        "moved": round(max(moved, default=0.0), 1),
         "cycles": answer.cycles,
         "cycles_clean": clean.cycles,
         "seconds": round(time.monotonic() - began, 1),

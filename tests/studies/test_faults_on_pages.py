@@ -143,7 +143,9 @@ def test_only_what_is_new_and_named_counts_as_said(study):
     assert study.new_lines(counted, clean) == []
     assert study.new_lines(counted, clean, notes=True) == ["note: stands for 2 s"]
     spoken = clean._replace(numbers={"hip flexion l": (50.0, "increased hip flexion")})
-    assert spoken.spoken() - clean.spoken() == {"l increased hip flexion"}
+    assert spoken.spoken(clean) == ["l increased hip flexion"]
+    tighter_limits = clean._replace(numbers={"hip flexion l": (30.1, "increased hip flexion")})
+    assert tighter_limits.spoken(clean) == []
     kinds = {kind.name: kind for kind in study.KINDS}
     assert not study.said(kinds["6 twice"], clean._replace(cycles=4), clean, True)
     assert study.said(kinds["2 one name in two groups"], clean._replace(people=2), clean, False)
