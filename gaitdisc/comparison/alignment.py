@@ -42,7 +42,7 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
     before, peak, after = gains[at - 1 : at + 2]  # a parabola through them
     percent = round(float(shifts[at] + 0.5 * (before - after) / min(before - 2 * peak + after, -1e-12)), 1)
     moved = shifted(first, percent)
-    left = _rms(moved, second) / np.maximum(_rms(first, second), 1e-12)
+    left = (moved - second)[:-1].std(axis=0) / np.maximum((first - second)[:-1].std(axis=0), 1e-12)
     gain = float(_correlation(moved, second).mean()) - gains[MOST_SHIFT]
     agreeing = int(np.sum(left < 1.0))
     applied = bool(
@@ -80,9 +80,3 @@ def _correlation(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDA
     """Correlation of two curves over the stride, (channel,); 0 where one does not move."""
     one, other = (curves[:-1] - curves[:-1].mean(axis=0) for curves in (first, second))
     return (one * other).sum(axis=0) / np.maximum(np.sqrt((one**2).sum(axis=0) * (other**2).sum(axis=0)), 1e-12)
-
-
-def _rms(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Root mean square of the gap without its mean, (channel,)."""
-    gap = first[:-1] - second[:-1]
-    return gap.std(axis=0)

@@ -206,10 +206,7 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
         return table
 
     def ordered(self) -> list[str]:
-        """Names of the channels that differ, the largest gap against the smallest difference that is named first.
-
-        Where everything is named (a limit of 0), the usual limits rank.
-        """
+        """Names of the channels that differ, the most times the smallest difference named (the usual, if 0) first."""
         differing = self.summary[self.summary["differs"].astype(bool)]
         reaches = dict(zip(self.names, np.ptp(self.curves["second"], axis=0), strict=True))
         size = {
