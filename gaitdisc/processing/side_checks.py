@@ -23,6 +23,7 @@ from gaitdisc.signals.side_labels import load_findings, marker_side_findings, sw
 
 TOES = (("RTOE", "LTOE"), ("RMT5", "LMT5"), ("RMT1", "LMT1"), ("R.Toe.Tip", "L.Toe.Tip"), ("RTOE1", "LTOE1"))
 FEWEST = 2  # steps
+TOES_AHEAD = 0.3  # of heel to toe marker: toes are a quarter of the foot, and the marker lies behind them
 STANDS_STILL = 0.02  # of the weight: who stands sways by less than half of it
 NOTED, WRONG = 0.03, 0.05  # of the mass: plates and scales agree within 1 %, clothes and shoes are 1 to 2 kg
 MOST, LEAST = 0.75, 0.25  # share of the steps that have their foot, exchanged and as they are
@@ -113,7 +114,7 @@ def standing_weight_n(trial: Trial) -> float | None:
     except GaitdiscError:
         return None
     loaded = [one.surface for one in found if one.surface is not None and np.median(one.load_n) > LEAST_LOAD_N]
-    parts = [part for foot in feet.values() for part in (foot.heel, foot.toe)]
+    parts = [part for foot in feet.values() for part in (foot.heel, foot.toe + TOES_AHEAD * (foot.toe - foot.heel))]
     on = all(any(np.nanmedian(one.outside(part)) < BEYOND_EDGE_M for one in loaded) for part in parts)
     total = np.sum([one.load_n for one in found], axis=0)
     still = loaded and np.std(total) < STANDS_STILL * np.median(total)
