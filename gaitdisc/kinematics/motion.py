@@ -154,7 +154,8 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     facing = free["pelvis"].rotation[:, :, 0]
     walking = walking_frame(free["pelvis"].origin, facing, up, markers.rate_hz, forward)
     joined = joined_poses(free, placed, calibration, walking.rotation)
-    poses = {segment: joined[segment].without(unfit[segment]) for segment in SEGMENTS}
+    spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
+    poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
     bridged = {segment: _bridged(poses[segment], placed[segment][1]) for segment in SEGMENTS}
     chosen = calibration.marker_set
