@@ -254,9 +254,11 @@ def standing(person: Recorded, after: bool) -> None:
         if after:
             frames, taken = count - 1 - frames[::-1], count - 1 - taken[::-1]
         file.resampled(frames, taken)
-        times = file.numbers("EVENT:TIMES")
-        if times.size and not after:
-            times[1] += (len(frames) - count) / rate
+        times, first = file.numbers("EVENT:TIMES"), file.header("<H", 4) - 1
+        known = slice(0, -still) if after else slice(still, None)
+        if times.size:
+            places = np.interp(times[1] * rate - first, frames[known], np.arange(len(frames))[known])
+            times[1] = (places + first) / rate
 
 
 def group_folders(person: Recorded) -> None:
@@ -313,7 +315,14 @@ KINDS = (
     Kind("8 hip sign", points("LHipAngles", -1.0, kinds="*", axes=slice(0, 1)), "hip", needs="kinematics"),
     Kind("8 left knee +20 deg", points("LKneeAngles", plus=20.0, axes=slice(0, 1)), "knee", needs="kinematics"),
     Kind("8 EMG sides", emg_sides, r"emg|electrode|muscle"),
-    Kind("9 zeros, marker", stuck("LKNE", ZERO_S, True), r"LKNE|thigh|knee|shank", "markers", needs="kinematics"),
+    Kind(
+        "9 zeros, marker",
+        stuck("LKNE", ZERO_S, True),
+        r"LKNE|zero places|knee|shank",
+        "markers",
+        True,
+        needs="kinematics",
+    ),
     Kind("9 zeros, angle", stuck("LKneeAngles", ZERO_S, True), r"knee", needs="kinematics"),
     Kind("9 frozen marker", stuck("LTOE", FROZEN_S, False), FOOT, "markers", needs="kinematics"),
     Kind("10 dead electrode", lambda person: electrode(person, True), r"dead|flat|unplugged"),
@@ -324,6 +333,6 @@ KINDS = (
         r"[LR]HEE|heel|foot|left and right",
         cycles=">=",
     ),
-    Kind("11 standing before", lambda p: standing(p, False), r"stand|still|not walking", notes=True, cycles=">="),
-    Kind("11 standing after", lambda p: standing(p, True), r"stand|still|not walking", notes=True, cycles=">="),
+    Kind("11 standing before", lambda p: standing(p, False), r"stand|still|not walking", notes=True),
+    Kind("11 standing after", lambda p: standing(p, True), r"stand|still|not walking", notes=True),
 )
