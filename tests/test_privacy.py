@@ -308,10 +308,10 @@ def clinic(tmp_path_factory):
         rows = []
         for number, name in enumerate(names, 1):
             rows.append(f"{name}\tZqname, Erika\t1987-06-05\t{30 + number}\tf\t1.70")
-            for session in ("before", "after") if folder == week else ("before",):
+            for visit, session in enumerate(("before", "after") if folder == week else ("before",)):
                 place = folder / name / session
                 place.mkdir(parents=True)
-                trial = DrivenWalker("A", seed=10 * seed + number).walked(16.0, session)
+                trial = DrivenWalker("A", seed=10 * seed + 5 * visit + number).walked(16.0, session)
                 write_mot(trial, place / "Zqfile_natural_ik.mot")
                 write_c3d(trial, place / "Zqfile_natural_emg.c3d")
         if folder == week:

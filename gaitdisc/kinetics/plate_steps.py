@@ -196,7 +196,7 @@ def weighed_steps(
     """
     named = {platform.name: platform for platform in found}
 
-    def judged(step: PlateStep) -> PlateStep:
+    def weighed(step: PlateStep) -> PlateStep:
         other = airborne.get("l" if step.side == "r" else "r", ()) if step.side else ()
         spans = [(max(start, step.start), min(end, step.end)) for start, end in other]
         start, end = max(spans, key=lambda span: span[1] - span[0], default=(0.0, 0.0))
@@ -207,7 +207,7 @@ def weighed_steps(
         found = f"{reason} from {start:.2f} to {end:.2f} s"
         return replace(step, reason=step.reason or found, doubt="note" if step.reason else "warning")
 
-    return [judged(step) for step in steps]
+    return [weighed(step) for step in steps]
 
 
 def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:

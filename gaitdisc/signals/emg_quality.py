@@ -22,7 +22,7 @@ CLIPPED_SHARE = 1e-3
 SILENT_SHARE = 5e-4  # robust standard deviation: 160 live channels of ten laboratories have 1.0e-3 or more
 RAILS_SHARE = 1e-2  # at the rails
 FLAT_BURST = 1.5  # burst ratio of 400 made channels of clipped Gaussian noise: 1.45 at most
-USUAL_RANGES_V = (1.25, 2.5, 5.0, 10.0)
+USUAL_RANGES_V = (0.01, 1.25, 2.5, 5.0, 10.0)  # the least at the skin, where no EMG is larger; the others amplified
 STEPS = 2**15  # either side of zero, of a 16-bit converter
 FEWEST_AT_RAIL = 3
 
@@ -53,7 +53,8 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     """
     if given_v is not None:
         return AmplifierRange(given_v, "given")
-    values = np.abs(emg.values[np.isfinite(emg.values).all(axis=1)])
+    known = emg.values[:, np.isfinite(emg.values).any(axis=0)]
+    values = np.abs(known[np.isfinite(known).all(axis=1)])
     if not values.size or values.max() == 0:
         return AmplifierRange(USUAL_RANGES_V[0], "assumed: the recording is empty", False)
     top = float(values.max())

@@ -18,7 +18,7 @@ from gaitdisc.errors import SchemaError
 Want = Literal["interpretability", "speed", "forecast"]
 WANTS: tuple[Want, ...] = ("interpretability", "speed", "forecast")
 INTERPRETABLE = ("sindy", *OF_TIME)
-ASKED = {"interpretability": "that a person can read ", "speed": "", "forecast": ""}
+READER = {"interpretability": "that a person can read ", "speed": "", "forecast": ""}
 BEYOND = 2.0  # times as many samples as were measured, or as few: said
 NEAR = 5.0  # points of accuracy that the fastest method may lose to the best
 FOUND = Path(__file__).with_name("measured_cells.csv")  # what the studies of chapter 3 measured
@@ -91,7 +91,7 @@ def recommend(
     if not len(better):
         return Recommendation(
             "",
-            f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods {ASKED[want]}forecast "
+            f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods {READER[want]}forecast "
             f"better than the known model from a start estimated from the data: the known model alone is best there, "
             f"valid for {table['valid_known_s'].median():.2f} s.",
             shown,
