@@ -9,6 +9,7 @@ import signal
 import sys
 from collections.abc import Callable
 from functools import wraps
+from importlib import import_module
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,56 +17,39 @@ from typing import Annotated, Any
 import typer
 
 import gaitdisc
-from gaitdisc.commands.ablate import ablate
-from gaitdisc.commands.angles import angles
-from gaitdisc.commands.apply import apply
-from gaitdisc.commands.chapter import chapter
-from gaitdisc.commands.check import check
-from gaitdisc.commands.cite import cite
-from gaitdisc.commands.compare import compare
-from gaitdisc.commands.demo import demo
-from gaitdisc.commands.discover import discover
-from gaitdisc.commands.doctor import doctor
 from gaitdisc.commands.exit_codes import ENDED, REFUSED
-from gaitdisc.commands.export import export
-from gaitdisc.commands.modalities import modalities
-from gaitdisc.commands.moments import moments
-from gaitdisc.commands.new import new
 from gaitdisc.commands.options import Overwrite
-from gaitdisc.commands.reconstruct import reconstruct
-from gaitdisc.commands.reference import reference
-from gaitdisc.commands.report import report
-from gaitdisc.commands.run import run
-from gaitdisc.commands.sensitivity import sensitivity
-from gaitdisc.commands.watch import watch
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.own_files import guarded
 
-COMMANDS = (
-    new,
-    check,
-    angles,
-    moments,
-    compare,
-    discover,
-    reconstruct,
-    apply,
-    run,
-    watch,
-    ablate,
-    modalities,
-    sensitivity,
-    reference,
-    report,
-    export,
-    cite,
-    demo,
-    chapter,
-    doctor,
+NAMES = (
+    "new",
+    "check",
+    "angles",
+    "moments",
+    "compare",
+    "discover",
+    "reconstruct",
+    "apply",
+    "run",
+    "watch",
+    "ablate",
+    "modalities",
+    "sensitivity",
+    "reference",
+    "report",
+    "export",
+    "cite",
+    "demo",
+    "chapter",
+    "doctor",
+)
+COMMANDS: tuple[Callable[..., None], ...] = tuple(
+    getattr(import_module(f"gaitdisc.commands.{name}"), name) for name in NAMES
 )
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
-WRITE_NOTHING = (check, doctor)
+UNGUARDED = ("check", "doctor", "watch")  # two that write nothing, and one that guards each of its runs
 
 
 def _guarded(command: Callable[..., None]) -> Callable[..., None]:
@@ -86,7 +70,7 @@ def _guarded(command: Callable[..., None]) -> Callable[..., None]:
 
 
 for _command in COMMANDS:
-    app.command()(_command if _command in (*WRITE_NOTHING, watch) else _guarded(_command))
+    app.command()(_command if _command.__name__ in UNGUARDED else _guarded(_command))
 
 
 def _version(wanted: bool) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
-from gaitdisc.commands.run_report import report_on
+from gaitdisc.commands.run_report import claimed, report_on
 
 
 def ablate(
@@ -22,16 +22,8 @@ def ablate(
     """Fit the models to less and less data: how much is enough."""
     from gaitdisc.batch.ablate_study import ablate_study
     from gaitdisc.batch.workers import Workers
-    from gaitdisc.ingest.study_file import load_study
     from gaitdisc.response.data_quantity import LENGTHS_S
-    from gaitdisc.results.run_store import claim_run
 
-    loaded = load_study(study)
-    folder, lengths = out or loaded.folder / "run", tuple(length) if length else LENGTHS_S
-    claim_run(folder)
-    report_on(
-        lambda progress: ablate_study(loaded, folder, lengths, part, Workers(jobs, cluster), progress),
-        loaded,
-        folder,
-        quiet,
-    )
+    loaded, folder = claimed(study, out)
+    lengths, workers = tuple(length) if length else LENGTHS_S, Workers(jobs, cluster)
+    report_on(lambda progress: ablate_study(loaded, folder, lengths, part, workers, progress), loaded, folder, quiet)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from gaitdisc.batch.chapter_parts import Part, costs, parts_of
-from gaitdisc.commands.exit_codes import SOME_REFUSED, STOPPED
+from gaitdisc.commands.exit_codes import SOME_REFUSED
 from gaitdisc.commands.options import Quiet
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from gaitdisc.commands.run_report import stoppable_bar
 
 NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar goes before it is done
 
@@ -35,14 +31,21 @@ def chapter(
     parts = parts_of(number, part)
     lacks = {one: lack_of(one, data) for one in parts}
     possible = [one for one in parts if part or lacks[one] is None]
-    with _progress(possible, quick, quiet) as begun:
-        try:
-            for one in possible:
-                made = run_part(one, out, quick, data, begun(one))
-                typer.echo(f"{one.name}: {'kept as it stands' if made.kept else 'done'}: {made.folder}")
-        except KeyboardInterrupt:
-            typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
-            raise typer.Exit(STOPPED) from None
+    seconds = {one: 60 * (one.quick_minutes if quick else one.minutes) for one in possible}
+    left = sum(seconds.values())
+    with stoppable_bar(quiet) as bar:
+        task = bar.add_task("", total=left)
+        for place, one in enumerate(possible, 1):
+            before, words = sum(seconds.values()) - left, f"{one.name}, {place} of {len(possible)}"
+            if not quiet:
+                typer.echo(f"{words}: about {left / 60:.1f} min of one core left in all", err=True)
+            left -= seconds[one]
+
+            def ticked(spent: float, one: Part = one, before: float = before, words: str = words) -> None:
+                bar.update(task, completed=before + min(spent, NEARLY * seconds[one]), description=words)
+
+            made = run_part(one, out, quick, data, ticked)
+            typer.echo(f"{one.name}: {'kept as it stands' if made.kept else 'done'}: {made.folder}")
     for one in parts:
         if one not in possible:
             typer.echo(f"left out: {lacks[one]}", err=True)
@@ -58,34 +61,3 @@ What is finished is kept; the same command goes on from where it was stopped. Ea
 \b
 {costs()}
 """
-
-
-@contextmanager
-def _progress(parts: list[Part], quick: bool, quiet: bool) -> Iterator[Callable[[Part], Callable[[float], None]]]:
-    """Says which part has begun and about how long the rest takes; a bar where somebody looks on."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    seconds = {one: 60 * (one.quick_minutes if quick else one.minutes) for one in parts}
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left", markup=False),
-        TimeRemainingColumn(),
-    )
-    screen = Console(stderr=True)
-    with Progress(*columns, console=screen, transient=True, disable=quiet or not screen.is_terminal) as bar:
-        task = bar.add_task("", total=sum(seconds.values()))
-
-        def begun(one: Part) -> Callable[[float], None]:
-            before = sum(seconds[other] for other in parts[: parts.index(one)])
-            words = f"{one.name}, {parts.index(one) + 1} of {len(parts)}"
-            if not quiet:
-                left = (sum(seconds.values()) - before) / 60
-                typer.echo(f"{words}: about {left:.1f} min of one core left in all", err=True)
-            return lambda spent: bar.update(
-                task, completed=before + min(spent, NEARLY * seconds[one]), description=words
-            )
-
-        yield begun

@@ -83,15 +83,14 @@ def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
     from gaitdisc.report.saved_page import page_of
 
-    return page_of(run_folder, lambda: _drawn(run, run_folder))
+    def drawn() -> Path:
+        from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
 
+        page = write_report(run, run_folder / "report")
+        write_people(run, run_folder)
+        return page
 
-def _drawn(run: ResponseRun, run_folder: Path) -> Path:
-    from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
-
-    page = write_report(run, run_folder / "report")
-    write_people(run, run_folder)
-    return page
+    return page_of(run_folder, drawn)
 
 
 def write_people(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
-from gaitdisc.commands.vary_report import vary
+from gaitdisc.commands.run_report import vary
 
 
 def modalities(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.options import Jobs
+from gaitdisc.commands.run_report import claimed
 from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
@@ -51,14 +52,12 @@ def reference(
 
 def _run_of(controls: Path, jobs: int) -> ResponseRun:
     """Run of a folder, or of a study, which is computed as far as it is not."""
-    from gaitdisc.results.run_store import claim_run, load_run
+    from gaitdisc.results.run_store import load_run
 
     if (controls / "run.json").is_file():
         return load_run(controls)
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
-    from gaitdisc.ingest.study_file import load_study
 
-    study = load_study(controls)
-    claim_run(study.folder / "run")
-    return run_study(study, study.folder / "run", Workers(jobs))
+    study, folder = claimed(controls, None)
+    return run_study(study, folder, Workers(jobs))

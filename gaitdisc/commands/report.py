@@ -7,6 +7,17 @@ from typing import Annotated
 
 import typer
 
+from gaitdisc.commands.clinic_pages import (
+    keep_reference,
+    keep_words,
+    page_of_run,
+    write_before_after,
+    write_english,
+    write_people,
+    write_person,
+)
+from gaitdisc.errors import SchemaError
+
 
 def report(
     folder: Annotated[
@@ -22,17 +33,23 @@ def report(
     ] = "",
 ) -> None:
     """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
-    from gaitdisc.commands.clinic_report import clinic_report, language_of, run_folder_of
-    from gaitdisc.errors import SchemaError
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.saved_page import draw_saved
 
-    place = run_folder_of(folder)
+    place = folder / "run" if (folder / "run" / "run.json").is_file() else folder
     if place.is_dir():
         claim_folder(place, "report.html", "report/report.html")
-    if language and language_of(folder, language):
+    if language and language != "en" and not Path(language).exists():
+        typer.echo(
+            f"words: {write_english(Path(language))}. Fill in the second column, then give the same command again."
+        )
         return
-    if clinic_report(folder, person, (before, after), reference, pdf):
+    lacking = keep_words(language, place) if language else []
+    if lacking:
+        typer.echo(f"English stays, {len(lacking)} words: {'; '.join(lacking)}")
+    named = bool(person or before or after or reference or pdf)
+    if named or (place / "cycles").is_dir():
+        _people(place, named, person, (before, after), reference, pdf)
         return
     if (folder / "model.json").is_file():
         raise SchemaError(
@@ -42,3 +59,41 @@ def report(
         )
     for word, page in draw_saved(place).items():
         typer.echo(f"{word}: {page}")
+
+
+def _people(
+    run_folder: Path, named: bool, person: str, pair: tuple[str, str], reference: Path | None, pdf: bool
+) -> None:
+    """Draw pages of a run's people again: all, those of one person, or two sessions or conditions of one."""
+    from gaitdisc.report.saved_page import draw_questions
+    from gaitdisc.results.run_store import load_run
+
+    run = load_run(run_folder)
+    if named and not run.cycles:
+        raise SchemaError(
+            "pages of people need a run of pooled cycles", f"{run_folder} has none", "Run a study of short trials."
+        )
+    keep_reference(reference, run_folder)
+    if any(pair):
+        if not (person and all(pair)):
+            raise SchemaError(
+                "a comparison needs --person, --before and --after",
+                f"found person {person!r}, before {pair[0]!r}, after {pair[1]!r}",
+                "Name all three.",
+            )
+        _said(write_before_after(run, run_folder, person, pair))
+    elif person:
+        for page in write_person(run, run_folder, person, pdf):
+            _said(page)
+    elif pdf:
+        typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")
+    else:
+        typer.echo(f"report: {page_of_run(run, run_folder)}")
+        for word, page in draw_questions(run_folder).items():
+            typer.echo(f"{word}: {page}")
+        if run.cycles:
+            typer.echo(f"people: {run_folder / 'report' / 'index.html'}")
+
+
+def _said(page: Path) -> None:
+    typer.echo(f"page: {page}")

@@ -9,7 +9,7 @@ import typer
 
 from gaitdisc.commands.clinic_pages import keep_reference
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
-from gaitdisc.commands.run_report import report_on
+from gaitdisc.commands.run_report import claimed, report_on
 
 
 def run(
@@ -24,14 +24,10 @@ def run(
     """Process, fit, test and report; what an earlier run has finished is kept."""
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
-    from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.results.run_store import claim_run
 
-    loaded = load_study(study)
+    loaded, folder = claimed(study, out)
     if participant:
         chosen = tuple(loaded.participant(name) for name in participant)
         loaded = loaded.model_copy(update={"participants": chosen})
-    folder = out or loaded.folder / "run"
-    claim_run(folder)
     keep_reference(reference, folder)
     report_on(lambda progress: run_study(loaded, folder, Workers(jobs, cluster), progress), loaded, folder, quiet)

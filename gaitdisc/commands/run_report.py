@@ -1,9 +1,10 @@
-"""Work on a run with its progress shown, then its report, then who was refused."""
+"""Work on a run with its progress shown, then its page, then who was refused."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -13,11 +14,24 @@ from gaitdisc.commands.clinic_pages import page_of_run
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 
 if TYPE_CHECKING:
+    from rich.progress import Progress
+
     from gaitdisc.batch.workers import StudyProgress
     from gaitdisc.ingest.study import Study
     from gaitdisc.results import Refusal, ResponseRun
 
 Result = TypeVar("Result")
+
+
+def claimed(place: Path, out: Path | None) -> tuple[Study, Path]:
+    """A study and the folder of its run, which is held until the command ends."""
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.results.run_store import claim_run
+
+    study = load_study(place)
+    folder = out or study.folder / "run"
+    claim_run(folder)
+    return study, folder
 
 
 def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
@@ -40,6 +54,25 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
     end(done.refusals, len(done.reported), page, time.perf_counter() - started)
 
 
+def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
+    """Answer a question beside the study with the progress shown, and write its page."""
+    from gaitdisc.batch.vary_study import vary_study
+    from gaitdisc.batch.workers import Workers
+    from gaitdisc.own_files import claim_file
+    from gaitdisc.report.variants import variant_sentences, write_variants
+
+    study, folder = claimed(place, out)
+    started, side_by_side = time.perf_counter(), Workers(*workers)
+    claim_file(folder / question / "report.html")
+    people = [person.id for person in study.participants]
+    done = worked(lambda progress: vary_study(study, folder, question, side_by_side, progress), people, quiet)
+    say_renewed(done.renewed)
+    page = write_variants(done, folder / question)
+    for sentence in variant_sentences(done):
+        typer.echo(sentence)
+    end(done.refusals, len(done.people), page, time.perf_counter() - started)
+
+
 def say_renewed(renewed: Sequence[str]) -> None:
     """Say which files of an earlier run were not used."""
     for line in renewed:
@@ -48,8 +81,34 @@ def say_renewed(renewed: Sequence[str]) -> None:
 
 def worked(work: Callable[[StudyProgress], Result], people: list[str], quiet: bool) -> Result:
     """Do the work, with a bar that counts participants unless it shall be quiet."""
+    shares = dict.fromkeys(people, 0.0)
+    with stoppable_bar(quiet) as bar:
+        task = bar.add_task("participants", total=len(shares))
+
+        def progress(participant: str, share: float) -> None:
+            shares[participant] = share
+            bar.update(task, completed=sum(shares.values()), description=f"{participant} of {len(shares)} participants")
+
+        return work(progress)
+
+
+@contextmanager
+def stoppable_bar(quiet: bool) -> Iterator[Progress]:
+    """Bar with the time that is left, where somebody looks on; whoever stops the work reads that nothing is lost."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left", markup=False),
+        TimeRemainingColumn(),
+    )
+    screen = Console(stderr=True)
     try:
-        return work(lambda *_: None) if quiet else with_progress(work, people)
+        with Progress(*columns, console=screen, transient=True, disable=quiet or not screen.is_terminal) as bar:
+            yield bar
     except KeyboardInterrupt:
         typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
         raise typer.Exit(STOPPED) from None
@@ -71,27 +130,3 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
     typer.echo(f"{counted(count, 'participant')} in {seconds:.0f} s. report: {page}")
     if refusals:
         raise typer.Exit(SOME_REFUSED if count else REFUSED)
-
-
-def with_progress(work: Callable[[StudyProgress], Result], people: list[str]) -> Result:
-    """Do the work with a bar that counts participants."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    elapsed, left = TimeElapsedColumn(), TimeRemainingColumn()
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        elapsed,
-        TextColumn("left", markup=False),
-        left,
-    )
-    shares = dict.fromkeys(people, 0.0)
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("participants", total=len(shares))
-
-        def progress(participant: str, share: float) -> None:
-            shares[participant] = share
-            bar.update(task, completed=sum(shares.values()), description=f"{participant} of {len(shares)} participants")
-
-        return work(progress)

@@ -14,8 +14,6 @@ from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.own_files import guarded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from gaitdisc.ingest.new_study import Looked
 
 
@@ -52,24 +50,18 @@ def watch(
                     typer.echo(f"  {note}")
                 said.update(notes)
                 with guarded("gaitdisc run", [file, *(recordings / one for one in files)], overwrite):
-                    code = _code_of(lambda: run(file, None, None, jobs, "", reference, quiet))
+                    run(file, None, None, jobs, "", reference, quiet)
+                code = 0
+            except typer.Exit as ended:
+                if ended.exit_code == STOPPED:
+                    raise
+                code = ended.exit_code
             except GaitdiscError as error:
                 typer.echo(f"{error} [{error.code}]", err=True)
                 code = REFUSED
     except KeyboardInterrupt:
         typer.echo("Stopped.", err=True)
     raise typer.Exit(code)
-
-
-def _code_of(once: Callable[[], None]) -> int:
-    """Exit code of one run; whoever stops it in the middle stops the watch."""
-    try:
-        once()
-    except typer.Exit as ended:
-        if ended.exit_code == STOPPED:
-            raise
-        return ended.exit_code
-    return 0
 
 
 def _grown(file: Path, recordings: Path, files: list[Path], looked: Looked) -> list[str]:

@@ -1,10 +1,13 @@
 import shutil
 
+import pytest
+from made_clinic import made_controls, made_person, made_run
 from manufactured_discovery import manufactured
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.results.clinical_reference import save_reference
 
 
 def test_the_report_of_a_run_is_drawn_again_without_fitting(study):
@@ -33,3 +36,74 @@ def test_a_folder_with_no_page_to_draw_is_refused(tmp_path, called):
     assert "holds a saved model, which has none. Name the folder above its `models`" in done.stderr
     done = called("report", tmp_path / "nowhere")
     assert done.returncode == REFUSED and "nowhere is no folder" in done.stderr
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("week") / "run"
+    made_run(made_person("P07", session="s1"), made_person("P07", session="s2", seed=1), made_person("P08")).save(
+        folder
+    )
+    return folder
+
+
+@pytest.fixture
+def without_figures(monkeypatch):
+    """The page of everybody has its words alone: its figures take seconds a person."""
+    monkeypatch.setattr("gaitdisc.report.cycles_page.cycles_figures", lambda *_: [])
+
+
+def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path):
+    save_reference(made_controls(6), tmp_path)
+    one = called("report", run_folder.parent, "--person", "P07", "--reference", tmp_path)
+    assert one.returncode == 0 and "P07_s1.html" in one.stdout and "P07_s2.html" in one.stdout
+    assert "6 controls of the laboratory" in (run_folder / "report" / "people" / "P07_s1.html").read_text()
+    both = called("report", run_folder, "--person", "P07", "--before", "s1", "--after", "s2")
+    assert both.returncode == 0 and "P07_s1_s2.html" in both.stdout
+    assert "s1 walk and s2 walk" in (run_folder / "report" / "people" / "P07_s1_s2.html").read_text()
+
+
+def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
+    nobody = called("report", run_folder, "--person", "P99")
+    assert nobody.returncode == 1 and "'P99'; there are P07, P08" in nobody.stderr
+    half = called("report", run_folder, "--before", "s1")
+    assert "a comparison needs --person, --before and --after" in half.stderr
+    none = called("report", run_folder, "--reference", tmp_path / "none")
+    assert "gaitdisc reference CONTROLS --out FOLDER" in none.stderr
+
+
+def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand(
+    called, run_folder, tmp_path, without_figures
+):
+    report = run_folder / "report"
+    first = called("report", run_folder.parent)
+    assert first.returncode == 0, first.stderr
+    assert f"people: {report / 'index.html'}" in first.stdout and f"report: {report / 'report.html'}" in first.stdout
+    page = report / "people" / "P08.html"
+    drawn, written = page.read_bytes(), page.stat().st_mtime_ns
+    (report / "people" / "P07.pdf").write_text("a page more is no page less")
+    assert called("report", run_folder.parent).stdout == first.stdout
+    assert page.stat().st_mtime_ns == written
+    page.write_text("edited")
+    edited = called("report", run_folder)
+    assert edited.returncode == 1 and "P08.html exists and was changed since gaitdisc report wrote it" in edited.stderr
+    assert page.read_text() == "edited"
+    assert called("report", run_folder, "--overwrite").returncode == 0 and page.read_bytes() == drawn
+    save_reference(made_controls(6), tmp_path)
+    called("report", run_folder, "--reference", tmp_path)
+    assert "6 controls of the laboratory" in page.read_text()
+    assert called("report", run_folder).returncode == 0 and "6 controls of the laboratory" in page.read_text()
+
+
+def test_a_language_is_written_filled_in_kept_and_taken_away(called, run_folder, tmp_path, without_figures):
+    table, page = tmp_path / "de.csv", run_folder / "report" / "people" / "P08.html"
+    empty = called("report", run_folder, "--language", table)
+    assert empty.returncode == 0 and "Fill in the second column" in empty.stdout
+    table.write_text("English,other\nWhat stands out,Auffälliges <i>\nknee flexion,Kniebeugung\n", encoding="utf-8")
+    done = called("report", run_folder, "--language", table)
+    assert done.returncode == 0 and "English stays, " in done.stdout and "hip flexion; " in done.stdout
+    assert "Auffälliges &lt;i&gt;" in page.read_text() and "Kniebeugung" in page.read_text()
+    called("report", run_folder, "--person", "P08")
+    assert "Kniebeugung" in page.read_text()
+    called("report", run_folder, "--language", "en")
+    assert "What stands out" in page.read_text() and "Kniebeugung" not in page.read_text()

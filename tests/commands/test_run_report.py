@@ -35,3 +35,12 @@ def test_a_run_of_cycles_has_pages_of_people_drawn_again_only_beside_another_ref
     save_reference(made_controls(6), tmp_path / "elsewhere")
     keep_reference(tmp_path / "elsewhere", tmp_path)
     assert "6 controls of the laboratory" in page()[1]
+
+
+def test_where_everybody_is_refused_the_exit_code_says_so(study, called, tmp_path):
+    text = (study / "study.toml").read_text(encoding="utf-8").replace("min_strides = 10", "min_strides = 900")
+    other = tmp_path / "study.toml"
+    other.write_text(text.replace("../lab", str(study.parent / "lab")), encoding="utf-8")
+    done = called("modalities", other, "--quiet")
+    assert done.returncode == 1
+    assert "refused: " in done.stderr
