@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from gaitdisc.ingest.writing import write_recording as write
     from gaitdisc.library import plot as plot
     from gaitdisc.library.checking import check as check
-    from gaitdisc.library.clusters import permutation_clusters as permutation_clusters
     from gaitdisc.library.comparing import compare as compare
     from gaitdisc.library.discovering import discover as discover
     from gaitdisc.library.examples import example_files as example_files
@@ -26,13 +25,14 @@ if TYPE_CHECKING:
     from gaitdisc.library.joints import angles as angles
     from gaitdisc.library.joints import moments as moments
     from gaitdisc.library.loading import load as load
-    from gaitdisc.library.pairs import paired_tests as paired_tests
     from gaitdisc.library.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.library.response import fit_response as fit_response
     from gaitdisc.library.simulating import simulate as simulate
     from gaitdisc.library.steps import contacts as contacts
     from gaitdisc.library.steps import contacts_by_detector as contacts_by_detector
     from gaitdisc.library.steps import cycles as cycles
+    from gaitdisc.library.tests_as_tables import paired_tests as paired_tests
+    from gaitdisc.library.tests_as_tables import permutation_clusters as permutation_clusters
     from gaitdisc.processing.inspection import Inspection as Inspection
     from gaitdisc.recording.field import Axis as Axis
     from gaitdisc.recording.field import Field as Field
@@ -105,9 +105,9 @@ _HOME = {
     "Reconstructor": ("library.reconstructor", "Reconstructor"),
     "Reconstruction": ("results.reconstruction", "Reconstruction"),
     "signed_rank": ("statistics.signed_rank", "signed_rank"),
-    "paired_tests": ("library.pairs", "paired_tests"),
+    "paired_tests": ("library.tests_as_tables", "paired_tests"),
     "holm_sidak": ("statistics.holm_sidak", "holm_sidak"),
-    "permutation_clusters": ("library.clusters", "permutation_clusters"),
+    "permutation_clusters": ("library.tests_as_tables", "permutation_clusters"),
     "r2": ("statistics.r2", "r2"),
     "load": ("library.loading", "load"),
     "plot": ("library.plot", ""),

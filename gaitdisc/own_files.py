@@ -108,11 +108,22 @@ _GUARD: ContextVar[Guard | None] = ContextVar("guard", default=None)
 @contextmanager
 def guarded(command: str, inputs: Iterable[Path] = (), overwrite: bool = False) -> Iterator[None]:
     """Let all that is written within be a command's output; within another command it is that one's."""
-    with ExitStack() as held:
-        if _GUARD.get() is None:
-            held.callback(_GUARD.reset, _GUARD.set(Guard(command, overwrite, held=held)))
-            note_inputs(one for path in inputs for one in (path, *(path / name for name in KINDS)))
+    if _GUARD.get() is not None:
         yield
+        return
+    with _at_work(Guard(command, overwrite)):
+        note_inputs(one for path in inputs for one in (path, *(path / name for name in KINDS)))
+        yield
+
+
+@contextmanager
+def _at_work(guard: Guard) -> Iterator[None]:
+    token = _GUARD.set(guard)
+    try:
+        with guard.held:
+            yield
+    finally:
+        _GUARD.reset(token)
 
 
 def note_inputs(paths: Iterable[Path]) -> None:
@@ -163,8 +174,7 @@ def under_this_guard(work: Callable[..., Result]) -> Callable[..., Result]:
 
 
 def _work_under(guard: Guard, work: Callable[..., Result], *given: Any) -> Result:
-    with ExitStack() as held:
-        held.callback(_GUARD.reset, _GUARD.set(guard))
+    with _at_work(guard):
         return work(*given)
 
 
@@ -179,27 +189,19 @@ def content_sha256(data: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
 
-def _sealed_hashes(path: Path) -> dict[Path, str]:
-    """Hashes of a JSON file with a hash of its own and of the files that it names; none where it was changed."""
-    with suppress(OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if data.pop("own_sha256") == content_sha256(data):
-            return {
-                path: file_sha256(path),
-                **{path.parent / name: own for name, own in data.get("sha256", {}).items()},
-            }
-    return {}
-
-
 def _earlier_lines(folder: Path, names: Iterable[str], command: str) -> Lines:
-    """Lines of a result that was saved before there were lists; its pages, without hashes then, count as drawn."""
+    """Lines of a result that was saved before there were lists: pages, without hashes then, and all that is sealed."""
     saved = [folder / name for name in names if name.endswith(".json") and (folder / name).is_file()]
     if not any(b'"own_sha256"' in path.read_bytes() for path in saved):
         return set()
     files = [path for path in folder.rglob("*") if path.is_file()]
     found = {path: file_sha256(path) for path in files if PAGE.intersection(path.relative_to(folder).parts)}
-    for path in files:
-        found |= _sealed_hashes(path) if path.suffix == ".json" else {}
+    for path in (one for one in files if one.suffix == ".json"):
+        with suppress(OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            data = json.loads(path.read_text(encoding="utf-8"))
+            if data.pop("own_sha256") == content_sha256(data):
+                named = {path.parent / name: own for name, own in data.get("sha256", {}).items()}
+                found |= {path: file_sha256(path), **named}
     return {(sha256, command, path.relative_to(folder).as_posix()) for path, sha256 in found.items()}
 
 

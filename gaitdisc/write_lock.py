@@ -6,7 +6,7 @@ import json
 import os
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, NoReturn
@@ -40,34 +40,35 @@ def write_lock(folder: Path, name: str = ".lock", run: bool = False) -> Iterator
         yield
         return
     locked = says.with_name(f"{name}-held")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        lock = _taken(locked, says)
-        if lock is None and run:
-            raise OSError("this disk keeps no file locks")
-    except OSError as error:
-        raise _unwritable(folder, error) from error
-    token = _HELD.set(_HELD.get() | {says})
-    try:
-        holder = _holder(says)
-        if holder.get("host", socket.gethostname()) != socket.gethostname():
-            _refuse(says, f"Process {holder.get('pid')} on {holder['host']}")
+    with ExitStack() as held:
         try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lock = _taken(locked, says)
+            held.callback(_free, locked, lock)
+            if lock is None and run:
+                raise OSError("this disk keeps no file locks")
+            holder = _holder(says)
+            if holder.get("host", socket.gethostname()) != socket.gethostname():
+                _refuse(says, f"Process {holder.get('pid')} on {holder['host']}")
             says.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname()}))
             _sweep(folder, run)
         except OSError as error:
-            raise _unwritable(folder, error) from error
-        try:
-            yield
-        finally:
-            _sweep(folder, run)
-            says.unlink(missing_ok=True)
-    finally:
-        _HELD.reset(token)
-        with suppress(OSError):  # Windows keeps a file that is open
-            locked.unlink()
-        if lock is not None:
-            lock.release()
+            raise WriteError(
+                "a command needs a folder that it can write and lock",
+                f"{folder}: the system says: {error.strerror or error}",
+                "Make room, mend the right to write, or choose another folder with --out.",
+            ) from error
+        held.callback(says.unlink, missing_ok=True)
+        held.callback(_sweep, folder, run)
+        held.callback(_HELD.reset, _HELD.set(_HELD.get() | {says}))
+        yield
+
+
+def _free(locked: Path, lock: Any) -> None:
+    with suppress(OSError):  # Windows keeps a file that is open
+        locked.unlink()
+    if lock is not None:
+        lock.release()
 
 
 def _sweep(folder: Path, run: bool) -> None:
@@ -90,14 +91,6 @@ def _taken(path: Path, says: Path) -> Any:
         lock.release()
         return None
     return lock
-
-
-def _unwritable(folder: Path, error: OSError) -> WriteError:
-    return WriteError(
-        "a command needs a folder that it can write and lock",
-        f"{folder}: the system says: {error.strerror or error}",
-        "Make room, mend the right to write, or choose another folder with --out.",
-    )
 
 
 def _holder(path: Path) -> dict[str, Any]:

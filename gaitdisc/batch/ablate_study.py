@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from gaitdisc.batch.quantity_unit import computed_quantity
+from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
-from gaitdisc.ingest.study import Study
-from gaitdisc.response.data_quantity import LENGTHS_S
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.response.data_quantity import LENGTHS_S, fit_data_quantity
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Refusal, ResponseRun
 from gaitdisc.results.run_store import save_run
+from gaitdisc.results.stores import QUANTITY, RESPONSE
 from gaitdisc.write_lock import write_lock
 
 
@@ -48,3 +52,35 @@ def ablate_study(
         )
         save_run(run, folder)
     return run
+
+
+def computed_quantity(
+    study: Study,
+    participant: Participant,
+    folder: Path,
+    lengths_s: Sequence[float],
+    part: str,
+    progress: Callable[[float], None],
+) -> DataQuantity | Refusal:
+    """Compute what less data gives one participant, or load what was computed from the same files and settings.
+
+    lengths_s: lengths of the training part [s]
+    """
+    key = response_key(unit_keys(study, participant))
+    place = folder / "quantities" / participant.id
+    stored = QUANTITY.kept(place, key)
+    if stored is not None and stored.part == part:
+        there = {round(float(length), 6) for length in stored.table["length_s"]} | set(stored.left_away)
+        if {round(length, 6) for length in lengths_s} <= there:
+            return stored
+    walks, refusals = processed_walks(study, participant)
+    if refusals:
+        return refusals[0]
+    nominal, exo = (walks[word].trajectory for word in study.conditions.both)
+    try:
+        whole = RESPONSE.kept(folder / "responses" / participant.id, key)
+        quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress, whole)
+    except GaitdiscError as error:
+        return Refusal(participant.id, "", str(error))
+    QUANTITY.save(quantity, place, key)
+    return QUANTITY.kept(place, key) or quantity

@@ -130,8 +130,7 @@ def _data_folder(data: Path | None) -> Path:
 
 def _code() -> str:
     """Hash of the package and of the studies."""
-    files = sorted(path for path in studies_folder().rglob("*") if path.suffix in (".py", ".csv", ".toml"))
     digest = hashlib.sha256(code_sha256().encode())
-    for path in files:
+    for path in sorted(path for path in studies_folder().rglob("*") if path.suffix in (".py", ".csv", ".toml")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]

@@ -9,7 +9,7 @@ from pathlib import Path
 from gaitdisc.batch.processed_walks import public_trial
 from gaitdisc.batch.public_words import PublicWords, words_of
 from gaitdisc.batch.unit_key import person_key, unit_key
-from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial, trial_sets
@@ -25,8 +25,8 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
         folder / "cycles" / cycles_name(participant.id, one.session, one.condition)
         for one in trial_sets(study, participant)
     ]
-    stored = _stored(places, key)
-    if stored is not None:
+    stored = tuple(one for one in (CYCLES.kept(place, key) for place in places) if one is not None)
+    if len(stored) == len(places):
         return stored
     from gaitdisc.processing.pooled import pooled_cycles  # brings scipy.signal, which a second run does not need
 
@@ -66,11 +66,3 @@ def _public(pooled: PooledCycles, words: PublicWords) -> PooledCycles:
         findings=tuple(map(words.finding, pooled.findings)),
         refusals=tuple(replace(refusal, reason=words.said(refusal.reason)) for refusal in pooled.refusals),
     )
-
-
-def _stored(places: list[Path], key: str) -> tuple[PooledCycles, ...] | None:
-    try:
-        found = [CYCLES.load_keyed(place) for place in places]
-    except SchemaError:
-        return None
-    return tuple(pooled for pooled, _ in found) if all(stored == key for _, stored in found) else None

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
 from gaitdisc.batch.unit_key import response_key, unit_keys
-from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.walk import Walk
 from gaitdisc.results import ParticipantResponse, PooledCycles, Refusal, WalkSummary
-from gaitdisc.results.stores import RESPONSE, WALK, Refused, load_refused, save_refused, unit_name
+from gaitdisc.results.stores import REFUSED, RESPONSE, WALK, Refused, unit_name
 
 if TYPE_CHECKING:
     from gaitdisc.response.fit_response import ResponseSettings
@@ -91,7 +91,7 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
             return _stored(participant, keys, folder) or ParticipantUnit(_loaded(walks, participant, folder), response)
     refusals = tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
     if not any(isinstance(error, ReadError) for error in errors.values()):  # that may be readable another time
-        save_refused(Refused(refusals, tuple(walks), response_key(keys)), folder / "refused" / participant.id)
+        REFUSED.save(Refused(refusals, tuple(walks)), folder / "refused" / participant.id, response_key(keys))
     return ParticipantUnit(_loaded(walks, participant, folder), None, refusals, response_key(keys))
 
 
@@ -123,33 +123,16 @@ def _fitted(
 def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> ParticipantUnit | None:
     """Whole unit of an earlier run, if all of it rests on the same files and settings."""
     key = response_key(keys)
-    try:
-        refusals, words, stored_key = load_refused(folder / "refused" / participant.id)
-        if stored_key == key:
-            return ParticipantUnit(_with_keys(participant, words, keys, folder), None, refusals, key)
-    except SchemaError:
-        pass  # nobody was refused, or not for what is there now
-    try:
-        response, stored_key = RESPONSE.load_keyed(folder / "responses" / participant.id)
-        walks = _with_keys(participant, tuple(keys), keys, folder)
-    except SchemaError:
+    refused = REFUSED.kept(folder / "refused" / participant.id, key)
+    response = None if refused else RESPONSE.kept(folder / "responses" / participant.id, key)
+    if refused is None and response is None:
         return None
-    return ParticipantUnit(walks, response, (), key) if stored_key == key else None
-
-
-def _with_keys(
-    participant: Participant, words: tuple[str, ...], keys: Mapping[str, str], folder: Path
-) -> tuple[WalkSummary, ...]:
-    """Walks of these conditions, if they rest on the files and settings of the keys."""
-    walks = [(WALK.load_keyed(_walk_folder(folder, participant, word)), keys.get(word)) for word in words]
-    for (walk, stored_key), key in walks:
-        if stored_key != key:
-            raise SchemaError(
-                "a walk that is kept needs the files and settings of now",
-                f"{walk.subject} {walk.condition} rests on others",
-                "It is computed anew.",
-            )
-    return tuple(walk for (walk, _), _ in walks)
+    words = refused.walks if refused else tuple(keys)
+    walks = [WALK.kept(_walk_folder(folder, participant, word), keys[word]) for word in words if word in keys]
+    whole = tuple(walk for walk in walks if walk is not None)
+    return (
+        ParticipantUnit(whole, response, refused.refusals if refused else (), key) if len(whole) == len(words) else None
+    )
 
 
 def _loaded(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:

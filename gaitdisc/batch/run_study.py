@@ -22,6 +22,7 @@ from gaitdisc.results import (
 )
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import created_before, save_run
+from gaitdisc.results.stores import QUANTITY
 from gaitdisc.results.unit_folder import damaged_units
 from gaitdisc.write_lock import write_lock
 
@@ -48,9 +49,12 @@ def run_study(
     with write_lock(folder, run=True):
         renewed = damaged_units(folder)
         compute = partial(computed_unit, study, folder=folder.absolute())
-        units = list(computed_units(workers or Workers(), compute, study.participants, progress, _lost))
+        people, where = study.participants, workers or Workers()
+        units = list(computed_units(where, compute, people, progress, lambda one: ParticipantUnit(refusals=(one,))))
         responses = tuple(unit.response for unit in units if unit.response is not None)
-        quantities = _stored_quantities(study, units, folder)
+        fitted = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
+        stored = (QUANTITY.kept(folder / "quantities" / name, key) for name, key in fitted)
+        quantities = tuple(quantity for quantity in stored if quantity is not None)
         tests, over = _compared(study, responses, quantities)
         run = ResponseRun(
             public_title(study),
@@ -65,7 +69,7 @@ def run_study(
             over,
             renewed,
             tuple(pooled for unit in units for pooled in unit.cycles),
-            _unfitted(study, units),
+            tuple(Refusal(who.id, "", one.unfitted) for who, one in zip(people, units, strict=True) if one.unfitted),
         )
         run = created_before(run, folder)
         save_run(run, folder)
@@ -82,28 +86,6 @@ def _compared(
     from gaitdisc.response.over_participants import compare_participants
 
     return compare_models(responses), compare_participants(responses, quantities, study.models.seed)
-
-
-def _unfitted(study: Study, units: Sequence[ParticipantUnit]) -> tuple[Refusal, ...]:
-    return tuple(
-        Refusal(person.id, "", unit.unfitted)
-        for person, unit in zip(study.participants, units, strict=True)
-        if unit.unfitted
-    )
-
-
-def _lost(refusal: Refusal) -> ParticipantUnit:
-    return ParticipantUnit(refusals=(refusal,))
-
-
-def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
-    whole = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
-    if not whole:
-        return ()
-    from gaitdisc.batch.quantity_unit import stored_quantity  # brings scipy.signal
-
-    found = (stored_quantity(study.participant(name), folder, key) for name, key in whole)
-    return tuple(quantity for quantity in found if quantity is not None)
 
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:

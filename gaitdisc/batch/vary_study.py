@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
+import pandas as pd
+
+from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.public_words import words_of
 from gaitdisc.batch.run_study import run_study
-from gaitdisc.batch.variant_unit import computed_variants
+from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
-from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.study import Study
-from gaitdisc.response.modalities import compare_modalities
-from gaitdisc.response.sensitivity import compare_settings
-from gaitdisc.results import Refusal, ResponseRun
-from gaitdisc.results.stores import save_variant_run
-from gaitdisc.results.variants import QUESTIONS, VariantRun, Variants
+from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.processing.filter_null import filter_null_of
+from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.recording import Trajectory
+from gaitdisc.response.data_quantity import shortened
+from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
+from gaitdisc.response.modalities import compare_modalities, fit_without
+from gaitdisc.response.sensitivity import Setting, compare_settings, settings_around
+from gaitdisc.results import Refusal
+from gaitdisc.results.stores import VARIANTS, save_variant_run
+from gaitdisc.results.variants import QUESTIONS, VARIANT_COLUMNS, VariantRun, Variants
 from gaitdisc.write_lock import write_lock
+
+Progress = Callable[[float], None]
 
 
 def vary_study(
@@ -42,21 +57,93 @@ def vary_study(
         people = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
         found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
-        varied = _varied(run, question, found)
+        computed = tuple(each for each in found if isinstance(each, Variants))
+        lengths = [response.held_out_s for response in run.responses] or [0.0]
+        varied = VariantRun(
+            run.title,
+            run.exo,
+            question,
+            computed,
+            compare_modalities(computed) if question == "modalities" else compare_settings(computed),
+            (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
+            (min(lengths), max(lengths)),
+            run.renewed,
+        )
         save_variant_run(varied, folder / question)
     return varied
 
 
-def _varied(run: ResponseRun, question: str, found: Sequence[Variants | Refusal]) -> VariantRun:
-    people = tuple(each for each in found if isinstance(each, Variants))
-    lengths = [response.held_out_s for response in run.responses] or [0.0]
-    return VariantRun(
-        run.title,
-        run.exo,
-        question,
-        people,
-        compare_modalities(people) if question == "modalities" else compare_settings(people),
-        (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
-        (min(lengths), max(lengths)),
-        run.renewed,
-    )
+def computed_variants(
+    study: Study, participant: Participant, folder: Path, question: str, progress: Progress
+) -> Variants | Refusal:
+    """Compute one participant's variants, or load what was computed from the same files and settings."""
+    place = folder / question / "people" / participant.id
+    varied = [question, *(repr(setting) for setting in _settings(study) if question == "sensitivity")]
+    parts = [response_key(unit_keys(study, participant)), *varied]
+    key = hashlib.sha256("\n".join(parts).encode()).hexdigest()
+    stored = VARIANTS.kept(place, key)
+    if stored is not None:
+        return stored
+    found = (_modalities if question == "modalities" else _sensitivity)(study, participant, progress)
+    if isinstance(found, Variants):
+        VARIANTS.save(found, place, key)
+    return found
+
+
+def _modalities(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
+    walks, refusals = processed_walks(study, participant)
+    if refusals:
+        return refusals[0]
+    nominal, exo = (walks[word].trajectory for word in study.conditions.both)
+    try:
+        table = fit_without(nominal, exo, response_settings(study), progress)
+    except GaitdiscError as error:
+        return Refusal(participant.id, "", str(error))
+    return Variants(participant.id, "modalities", table, {})
+
+
+def _sensitivity(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
+    public = words_of(study, participant)
+    try:
+        with C3DReader() as reader:
+            planned = {word: participant.trials_of(word)[0] for word in study.conditions.both}
+            own = StudyWalks(study, participant, lambda one: read_planned_trial(study, participant, one, reader))
+            trials = {word: own.read_walk(one) for word, one in planned.items()}
+    except GaitdiscError as error:
+        return Refusal(participant.id, "", str(public.error(error)))
+    tables, left_away = [], {}
+    settings = _settings(study)
+    for number, setting in enumerate(settings):
+        try:
+            share = partial(lambda before, done: progress((before + done) / len(settings)), number)
+            tables.append(_under(study, trials, setting, share).assign(variant=setting.name))
+        except GaitdiscError as error:
+            left_away[setting.name] = str(public.error(error))
+    if not tables:
+        return Refusal(participant.id, "", next(iter(left_away.values())))
+    table = pd.concat(tables, ignore_index=True)[list(VARIANT_COLUMNS)]
+    return Variants(participant.id, "sensitivity", table, left_away)
+
+
+def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, progress: Progress) -> pd.DataFrame:
+    """R2 on device walking under one setting."""
+    cut_offs = {"kinematics_hz": setting.angles_hz, "emg_lowpass_hz": setting.emg_hz}
+    filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
+    nominal, exo = (trials[word].processed(filtered) for word in study.conditions.both)
+    fits = response_settings(study)
+    null = filter_null_of(exo, filtered.filters)
+    less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))
+    found = fit_response(less_nominal, less_exo, fits, null, progress).r2
+    return found[found["walk"] == "exo"]
+
+
+def _first_share(walk: Trajectory, fits: ResponseSettings, share: float) -> Trajectory:
+    """Walk of whose training part the first so much is used."""
+    if share == 1:
+        return walk
+    return shortened(walk, fits, share * len(held_out_part(walk, fits)[0].time) / walk.rate_hz, "first")
+
+
+def _settings(study: Study) -> tuple[Setting, ...]:
+    filters = study.filters
+    return settings_around(filters.kinematics_hz, filters.emg_lowpass_hz, bool(study.models.emg))

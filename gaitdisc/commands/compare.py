@@ -61,12 +61,11 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     page = write_mismatch_report(mismatch, folder)
     typer.echo(" ".join(mismatch_sentences(mismatch)))
     Console().print(mismatch_text(mismatch))
-    refused = [finding for finding in mismatch.findings if finding.severity == "refused"]
     for finding in mismatch.findings:
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)
     typer.echo(f"report: {page}")
-    if refused:
+    if any(finding.severity == "refused" for finding in mismatch.findings):
         raise typer.Exit(SOME_REFUSED)
 
 

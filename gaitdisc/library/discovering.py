@@ -73,13 +73,13 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
+    chosen = None if catalogue is None else Path(catalogue)
     if isinstance(model, Path | str) and names_engine(model):
-        return _of_engine(Path(model), data, catalogue, progress)
+        return _of_engine(Path(model), data, chosen, progress or _to_the_terminal)
     simulation = model_of(model)
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
         files[Path(model)] = "simulation"
-    chosen = None if catalogue is None else Path(catalogue)
     slow = simulation.manner if isinstance(simulation, PythonSimulation) else ""
     report = progress or (_to_the_terminal if slow else lambda _: None)
     if slow:
@@ -92,7 +92,7 @@ def _to_the_terminal(step: str) -> None:
 
 
 def _of_engine(
-    model: Path, data: Any, catalogue: Path | str | None, progress: Callable[[str], None] | None
+    model: Path, data: Any, catalogue: Path | None, report: Callable[[str], None]
 ) -> tuple[Discovery, Simulation]:
     from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
     from gaitdisc.engines.tracked_mapping import read_tracked
@@ -107,8 +107,7 @@ def _of_engine(
             )
         from gaitdisc.batch.discover_tracked import discover_tracked
 
-        of_user = None if catalogue is None else Path(catalogue)
-        answered = discover_tracked(walk, Path(data), of_user, progress or _to_the_terminal)
+        answered = discover_tracked(walk, Path(data), catalogue, report)
         return answered.found, answered.augmented
 
     files: dict[Path, str] = {}
@@ -119,18 +118,16 @@ def _of_engine(
             return measured_of_file(Path(data), mapping)
         return _measured(data, mapping)[0]
 
-    chosen = None if catalogue is None else Path(catalogue)
-    answer = discover_engine(model, read, chosen, files, progress or _to_the_terminal)
+    answer = discover_engine(model, read, catalogue, files, report)
     return answer.found, answer.augmented
 
 
 def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path, str]]:
     if isinstance(data, Path | str):
         return read_measured(data, simulation), {Path(data): "measured table"}
-    if isinstance(data, Recording):
-        return measured_of_recordings([data], simulation), {}
-    if isinstance(data, list | tuple) and data and all(isinstance(one, Recording) for one in data):
-        return measured_of_recordings(data, simulation), {}
+    several: Any = data if isinstance(data, list | tuple) else [data]
+    if several and all(isinstance(one, Recording) for one in several):
+        return measured_of_recordings(several, simulation), {}
     import pandas as pd
 
     if isinstance(data, list | tuple) and data and all(isinstance(one, pd.DataFrame) for one in data):

@@ -108,7 +108,10 @@ def simulation_from_function(
     )
     seen = tuple((observations or {}).items())
     try:
-        equations = _equations(taken, count)
+        texts = [written(tree) for tree in traced_equations(taken.function, taken.arguments)]
+        if len(texts) != count or max(map(len, texts)) > LONGEST:
+            raise NotTraced("its expressions are too long")
+        equations = tuple(zip(taken.signals[:count], texts, strict=True))
         simulation = Simulation(taken.title, *parts, equations=equations, observations=seen)
         return _refuse_other_numbers(simulation, taken)
     except NotTraced as reason:
@@ -194,7 +197,7 @@ class _Taken:
         """Derivatives at one point."""
         plain, named = self.arguments(point.__getitem__)
         found = self.function(*plain, **named)
-        if _are_floats(found):
+        if isinstance(found, tuple | list) and all(type(one) is float for one in found):
             return [*found]
         if found is None or isinstance(found, str | Mapping):
             raise _NoNumbersError(f"{self.title} returns {str(found)[:60] if found is None else type(found).__name__}")
@@ -256,13 +259,6 @@ class _Called:
             return self.taken.at(point)
         except (ValueError, ArithmeticError):  # `math` raises where NumPy gives what is no number
             return [np.nan] * self.states
-
-
-def _equations(taken: _Taken, count: int) -> tuple[tuple[str, str], ...]:
-    texts = [written(tree) for tree in traced_equations(taken.function, taken.arguments)]
-    if len(texts) != count or max(map(len, texts)) > LONGEST:
-        raise NotTraced("its expressions are too long")
-    return tuple(zip(taken.signals[:count], texts, strict=True))
 
 
 def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
@@ -341,10 +337,6 @@ def _as_vectors(
     swapped = len(taken) > wanted and taken[0].name != TIME and any(one.name == TIME for one in taken)
     remedy = f"The time comes first: def {_title(function)}(t, {taken[0].name}): ..." if swapped else _Taken.remedy
     return _Taken(function, (*states, *inputs), numbers, (), from_values, remedy)
-
-
-def _are_floats(found: Any) -> bool:
-    return isinstance(found, tuple | list) and all(type(one) is float for one in found)
 
 
 def _title(function: Callable[..., Any]) -> str:

@@ -101,7 +101,6 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     'stride [%]'
     """
     from gaitdisc.report.cycles_page import draw_cycles
-    from gaitdisc.report.wording import label, unit_text
 
     _refuse_other(strides, "Strides", "gaitdisc.cycles")
     one = recording_of(recording).selected([channel])
@@ -111,7 +110,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     if len(every):
         sd = every.std(axis=0, ddof=1) if len(every) > 1 else np.zeros(every.shape[1])
         draw_cycles(axes, every, every.mean(axis=0), sd, side_of(channel))
-    _stride_axis(axes, label(channel), unit_text(one.channels[0].unit))
+    _stride_axis(axes, channel, one.channels[0].unit)
     return axes
 
 
@@ -145,7 +144,6 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     """
     from gaitdisc.report.curves import curve_numbers, draw_walks, walks_key
     from gaitdisc.report.palette import SIDES
-    from gaitdisc.report.wording import label, unit_text
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers = curve_numbers(run, participant or _first(run.reported))
@@ -153,7 +151,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     axes = axes_or_new(ax)
     draw_walks(axes, numbers, SIDES[side_of(channel)].colour)
     axes.legend(handles=[walks_key(run)[0], walks_key(run)[1 if side_of(channel) == "l" else 2]], frameon=False)
-    _stride_axis(axes, label(channel), unit_text(str(numbers["unit"].iloc[0])))
+    _stride_axis(axes, channel, str(numbers["unit"].iloc[0]))
     return axes
 
 
@@ -272,7 +270,6 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     """
     from gaitdisc.report.mismatch_page import draw_both, draw_gap, mismatch_key, mismatch_numbers
     from gaitdisc.report.palette import SIDES
-    from gaitdisc.report.wording import label, unit_text
 
     _refuse_other(found, "Mismatch", "gaitdisc.compare")
     numbers = mismatch_numbers(found, [_known(channel, found.names)])
@@ -284,7 +281,7 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
         own.set_label(found.first)
         key = [key[0], own, key[-1]]
     axes.legend(handles=key, frameon=False)
-    _stride_axis(axes, label(channel), unit_text(str(numbers["unit"].iloc[0])))
+    _stride_axis(axes, channel, str(numbers["unit"].iloc[0]))
     return axes
 
 
@@ -317,7 +314,6 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     >>> gd.plot.reconstruction(gd.load("reconstruct"), "knee_angle_l")  # doctest: +SKIP
     """
     from gaitdisc.report.reconstruction_page import draw_state, shown_curves, states_key
-    from gaitdisc.report.wording import label, unit_text
 
     _refuse_other(done, "Reconstruction", "`gaitdisc reconstruct`")
     numbers = shown_curves(done, participant or _first(done.participants))
@@ -326,7 +322,7 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     draw_state(axes, numbers)
     axes.legend(handles=states_key(list(dict.fromkeys(numbers["model"]))), frameon=False)
     unit = next(channel.unit for channel in done.states if channel.name == state)
-    _stride_axis(axes, label(state), unit_text(unit))
+    _stride_axis(axes, state, unit)
     return axes
 
 
@@ -388,11 +384,13 @@ def _refuse_other(given: object, kind: str, made_by: str) -> None:
         )
 
 
-def _stride_axis(axes: Axes, title: str, unit: str) -> None:
+def _stride_axis(axes: Axes, channel: str, unit: str) -> None:
+    from gaitdisc.report.wording import label, unit_text
+
     axes.set_xlim(0, 100)
     axes.set_xlabel(STRIDE)
-    axes.set_ylabel(f"[{unit}]")
-    axes.set_title(title)
+    axes.set_ylabel(f"[{unit_text(unit)}]")
+    axes.set_title(label(channel))
 
 
 def _known(name: str, among: object) -> str:

@@ -84,11 +84,16 @@ def fit_response(
         )
     inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
     models = Models(angles=inputs, emg=several(emg), outputs=several(outputs), seed=seed)
-    study = _study(trials, models, HeldOut(share=held_out_share))
+    person = trials[WITH].subject or trials[WITHOUT].subject or "P01"
+    study = Study(
+        conditions=Conditions(nominal=WITHOUT, device=WITH),
+        models=models,
+        held_out=HeldOut(share=held_out_share),
+        participants=(Participant(id=person),),
+    )
     walks = {word: processed(trial, study) for word, trial in trials.items()}
     settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)
     response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null, banded=True)
-    person = study.participants[0].id
     summaries = tuple(replace(walk.summary(), subject=person) for walk in walks.values())
     files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}
     made = {**public_settings(study), "fits": asdict(settings)}
@@ -109,13 +114,3 @@ def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence
             "Leave it out of outputs, or name it in angles.",
         )
     return chosen
-
-
-def _study(trials: Mapping[str, Trial], models: Models, held_out: HeldOut) -> Study:
-    """The settings of these two walks as a study has them."""
-    return Study(
-        conditions=Conditions(nominal=WITHOUT, device=WITH),
-        models=models,
-        held_out=held_out,
-        participants=(Participant(id=trials[WITH].subject or trials[WITHOUT].subject or "P01"),),
-    )

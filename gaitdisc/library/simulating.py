@@ -151,7 +151,9 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
             f"the inputs are given as {type(given).__name__}, without names",
             f"Name them: inputs={{{names[0]!r}: values}}, or a DataFrame or Recording with these columns.",
         )
-    given = _read_at_times(given)
+    table: Any = given
+    if hasattr(table, "columns") and has_times(table):  # it is read at the simulation's times
+        given = recording_of(table.select_dtypes("number"))
     known = given.names if isinstance(given, Recording) else [str(name) for name in given]
     columns = []
     for name in names:
@@ -161,7 +163,10 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
                 f"{name!r} is not among the inputs given ({', '.join(known) or 'none'})",
                 f"Give it: inputs={{{name!r}: values}}.",
             )
-        values = _at(given, time, name) if isinstance(given, Recording) else _values(given[name], time)
+        if isinstance(given, Recording):
+            values = interpolated(given.time, given.selected([name]).values, time)[:, 0]
+        else:
+            values = _values(given[name], time)
         if values.shape != time.shape:
             raise ShapeError(
                 f"the input {name!r} has one value a time",
@@ -179,15 +184,6 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
             "Fill the gap, or simulate a shorter time.",
         )
     return driven
-
-
-def _at(recording: Recording, time: NDArray[np.float64], name: str) -> NDArray[np.float64]:
-    return interpolated(recording.time, recording.selected([name]).values, time)[:, 0]
-
-
-def _read_at_times(given: Any) -> Any:
-    """A DataFrame with times as a Recording, which is read at the simulation's times; all else as it is."""
-    return recording_of(given.select_dtypes("number")) if hasattr(given, "columns") and has_times(given) else given
 
 
 def _values(given: Any, time: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,12 +4,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gaitdisc.results.over_participants import OverParticipants, PairTests
-    from gaitdisc.results.participant_response import DataQuantity, HeldOut, ParticipantResponse
-    from gaitdisc.results.pooled_cycles import PooledCycles
-    from gaitdisc.results.provenance import Provenance, Refusal
-    from gaitdisc.results.response_run import ResponseRun
-    from gaitdisc.results.walk_summary import WalkSummary
+    from gaitdisc.results.over_participants import OverParticipants as OverParticipants
+    from gaitdisc.results.over_participants import PairTests as PairTests
+    from gaitdisc.results.participant_response import DataQuantity as DataQuantity
+    from gaitdisc.results.participant_response import HeldOut as HeldOut
+    from gaitdisc.results.participant_response import ParticipantResponse as ParticipantResponse
+    from gaitdisc.results.pooled_cycles import PooledCycles as PooledCycles
+    from gaitdisc.results.provenance import Provenance as Provenance
+    from gaitdisc.results.provenance import Refusal as Refusal
+    from gaitdisc.results.response_run import ResponseRun as ResponseRun
+    from gaitdisc.results.walk_summary import WalkSummary as WalkSummary
 
 _HOME = {
     "DataQuantity": "participant_response",
@@ -23,18 +27,6 @@ _HOME = {
     "ResponseRun": "response_run",
     "WalkSummary": "walk_summary",
 }
-__all__ = [
-    "DataQuantity",
-    "HeldOut",
-    "OverParticipants",
-    "PairTests",
-    "ParticipantResponse",
-    "PooledCycles",
-    "Provenance",
-    "Refusal",
-    "ResponseRun",
-    "WalkSummary",
-]
 
 
 def __getattr__(name: str) -> Any:

@@ -162,16 +162,14 @@ def _leg_data(leg: ReferenceLeg) -> dict[str, object]:
         "side": leg.side,
         "cycles": leg.cycles,
         "stance_percent": None if np.isnan(leg.stance_percent) else round(leg.stance_percent, DIGITS),
-        "curves": {name: _plain(curve) for name, curve in leg.curves.items()},
+        "curves": {
+            name: [round(float(value), DIGITS) if np.isfinite(value) else None for value in curve]  # as JSON has them
+            for name, curve in leg.curves.items()
+        },
         "values": {name: round(value, DIGITS) for name, value in leg.values.items()},
         "leg_m": None if leg.leg_m is None else round(leg.leg_m, DIGITS),
         "age_years": leg.age_years,
     }
-
-
-def _plain(curve: NDArray[np.float64]) -> list[float | None]:
-    """Numbers as JSON has them, nothing where none is known."""
-    return [round(float(value), DIGITS) if np.isfinite(value) else None for value in curve]
 
 
 def _leg(data: Mapping[str, object]) -> ReferenceLeg:

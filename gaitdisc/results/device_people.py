@@ -24,9 +24,11 @@ def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
         for effect in one.effects:
             for number, each in effect.estimates.items():
                 own.setdefault((effect.name, effect.place, number, each.unit), {})[person] = each.value
-    rows: list[tuple[object, ...]] = [
-        (*key, len(each), len(found), *_mean(list(each.values())), _who(each)) for key, each in own.items()
-    ]
+    rows: list[tuple[object, ...]] = []
+    for key, each in own.items():
+        largest = sorted(each.items(), key=lambda one: -abs(one[1]))
+        who = ", ".join(f"{person} {value:.3g}" for person, value in largest)
+        rows.append((*key, len(each), len(found), *_mean(list(each.values())), who))
     without = [person for person, one in found.items() if not one.effects]
     if without:
         rows.append((NOTHING, "", "", "", len(without), len(found), *[float("nan")] * 3, ", ".join(without)))
@@ -54,8 +56,3 @@ def _mean(values: list[float]) -> tuple[float, float, float]:
         return mean, float("nan"), float("nan")
     half = float(t.ppf(0.975, len(values) - 1) * np.std(values, ddof=1) / np.sqrt(len(values)))
     return mean, mean - half, mean + half
-
-
-def _who(each: Mapping[str, float]) -> str:
-    """Everyone who shows it, the largest response first."""
-    return ", ".join(f"{person} {value:.3g}" for person, value in sorted(each.items(), key=lambda one: -abs(one[1])))

@@ -209,7 +209,12 @@ class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
             f"{self.held_out.before:.3g} before, {self.held_out.after:.3g} after, noise {self.held_out.noise_floor:.3g}"
         )
         rows = [("verdict", self.verdict.replace("_", " ")), ("held-out gap", gap)]
-        rows += [(f"{one.name} at {one.place}", _amounts(one)) for one in self.effects]
+        for one in self.effects:
+            amounts = (
+                f"{name} {each.value:.3g} ({each.low:.3g} to {each.high:.3g}) {each.unit}".strip()
+                for name, each in one.estimates.items()
+            )
+            rows.append((f"{one.name} at {one.place}", "; ".join(amounts)))
         return html_of(self.sentence, rows)
 
     def to_json(self) -> dict[str, Any]:
@@ -227,13 +232,6 @@ class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
             "findings": [asdict(one) for one in self.findings],
             "provenance": asdict(self.provenance) if self.provenance else None,
         }
-
-
-def _amounts(one: FoundEffect) -> str:
-    return "; ".join(
-        f"{name} {each.value:.3g} ({each.low:.3g} to {each.high:.3g}) {each.unit}".strip()
-        for name, each in one.estimates.items()
-    )
 
 
 def _place(one: Whereabouts | FoundEffect) -> dict[str, str]:
@@ -259,29 +257,26 @@ def _effect(one: FoundEffect) -> dict[str, Any]:
 
 
 def _correction(one: Correction) -> dict[str, Any]:
-    found = one.found
-    low, high = _number(found.low), _number(found.high)
     return {
         "parameter": one.parameter,
         "from": _number(one.given),
-        "to": _number(found.value),
-        "low": low,
-        "high": high,
-        "unit": found.unit,
+        "to": _number(one.found.value),
+        "low": _number(one.found.low),
+        "high": _number(one.found.high),
+        "unit": one.found.unit,
     }
 
 
 def _gap(one: GapSize) -> dict[str, Any]:
-    words = ("before", "after", "noise_floor")
-    channels = {name: dict(zip(words, map(_number, sizes), strict=True)) for name, sizes in one.channels.items()}
+    def named(sizes: tuple[float, float, float]) -> dict[str, float | None]:
+        return dict(zip(("before", "after", "noise_floor"), map(_number, sizes), strict=True))
+
     return {
-        "before": _number(one.before),
-        "after": _number(one.after),
-        "noise_floor": _number(one.noise_floor),
+        **named((one.before, one.after, one.noise_floor)),
         "unexplained": _number(one.unexplained),
         "p": _number(one.p),
         "pieces": one.pieces,
-        "channels": channels,
+        "channels": {name: named(sizes) for name, sizes in one.channels.items()},
     }
 
 

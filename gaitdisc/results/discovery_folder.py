@@ -66,7 +66,9 @@ def load_discovery(folder: Path) -> Discovery:
             runs=_runs(table, channels),
             findings=tuple(map(stored_finding, data["findings"])),
             provenance=Provenance(**made) if made else None,
-            corrections=tuple(map(_correction, data["corrections"])),
+            corrections=tuple(
+                Correction(one["parameter"], _number(one["from"]), _estimate(one, "to")) for one in data["corrections"]
+            ),
             beside={name: _number(one) for name, one in data.get("beside", {}).items()},
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -79,24 +81,19 @@ def _number(value: float | None, absent: float = float("nan")) -> float:
     return absent if value is None else float(value)
 
 
-def _estimate(row: Mapping[str, Any]) -> Estimate:
-    return Estimate(_number(row["value"]), _number(row["low"]), _number(row["high"]), row["unit"])
-
-
-def _place(row: Mapping[str, Any]) -> tuple[str, str]:
-    """Kind and name of the place, which stand first."""
-    return next(iter(row.items()))
+def _estimate(row: Mapping[str, Any], value: str = "value") -> Estimate:
+    return Estimate(_number(row[value]), _number(row["low"]), _number(row["high"]), row["unit"])
 
 
 def _where(row: Mapping[str, Any]) -> Whereabouts:
-    kind, place = _place(row)
+    kind, place = next(iter(row.items()))  # they stand first
     phase = tuple(_number(share) for share in row["phase"])
     return Whereabouts(kind, place, _number(row["share_of_gap"]), phase, row["region"])
 
 
 def _effect(row: Mapping[str, Any]) -> FoundEffect:
     bounds = tuple(_number(bound, edge) for bound, edge in zip(row.get("bounds", ()), (-np.inf, np.inf), strict=False))
-    kind, place = _place(row)
+    kind, place = next(iter(row.items()))
     reading = row.get("reads_as", {"expression": "", "effect": None})
     return FoundEffect(
         kind=kind,
@@ -113,11 +110,6 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         reads_as=reading["expression"],
         reads_as_effect=reading["effect"] or "",
     )
-
-
-def _correction(row: Mapping[str, Any]) -> Correction:
-    found = Estimate(_number(row["to"]), _number(row["low"]), _number(row["high"]), row["unit"])
-    return Correction(row["parameter"], _number(row["from"]), found)
 
 
 def _gap(row: Mapping[str, Any]) -> GapSize:

@@ -11,13 +11,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import SchemaError, ShapeError
+from gaitdisc.errors import ShapeError
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.saved import Saved
+from gaitdisc.results.saved import Saved, check_columns
 
+AGAIN = "Compare the walks again: `gaitdisc compare`."
 CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
 REGION_COLUMNS = ("channel", "unit", "from_percent", "to_percent", "gap", "at_percent", "gap_sd", "mean_gap", "p")
 CHANNEL_COLUMNS = (
@@ -141,19 +142,10 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
                 raise ShapeError(
                     f"a mismatch needs {name!r} of shape {wanted}",
                     f"found {found}",
-                    "Compare the walks again: `gaitdisc compare`.",
+                    AGAIN,
                 )
-        for name, table, columns in (
-            ("regions", self.regions, REGION_COLUMNS),
-            ("summary", self.summary, CHANNEL_COLUMNS),
-        ):
-            missing = [column for column in columns if column not in table]
-            if missing:
-                raise SchemaError(
-                    f"a mismatch needs the columns {', '.join(columns)} in {name}",
-                    f"{name} lacks {', '.join(missing)}",
-                    "Compare the walks again: `gaitdisc compare`.",
-                )
+        tables = {"regions": (self.regions, REGION_COLUMNS), "summary": (self.summary, CHANNEL_COLUMNS)}
+        check_columns(tables, "a mismatch needs", AGAIN)
         curves = {name: np.asarray(self.curves[name], float) for name in CURVES}
         if np.nansum(curves["gap"] * (curves["second"] - curves["first"])) < 0:  # saved as first minus second
             curves |= {"gap": -curves["gap"], "t": -curves["t"], "low": -curves["high"], "high": -curves["low"]}

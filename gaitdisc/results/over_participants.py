@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from gaitdisc.errors import SchemaError
+from gaitdisc.results.saved import check_columns
 
 PAIRS = (("nominal", "augmented"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "perfect"))
 FAMILIES = ("pair", "all", "variable")
@@ -52,17 +52,8 @@ class PairTests:
 
     def __post_init__(self) -> None:
         """Check columns once."""
-        for name, table, columns in (
-            ("tests", self.tests, TEST_COLUMNS),
-            ("families", self.families, FAMILY_COLUMNS),
-        ):
-            missing = [column for column in columns if column not in table]
-            if missing:
-                raise SchemaError(
-                    f"paired tests need the columns {', '.join(columns)} in {name}",
-                    f"{name} lacks {', '.join(missing)}",
-                    "Compare the models again: `gaitdisc run` on the study.",
-                )
+        tables = {"tests": (self.tests, TEST_COLUMNS), "families": (self.families, FAMILY_COLUMNS)}
+        check_columns(tables, "paired tests need", "Compare the models again: `gaitdisc run` on the study.")
 
     def of_pair(self, first: str, second: str) -> pd.DataFrame:
         """Tests of one pair of models, one row a variable."""
@@ -90,14 +81,9 @@ class OverParticipants:
 
     def __post_init__(self) -> None:
         """Check columns once."""
-        for name, columns in TABLES.items():
-            missing = [column for column in columns if column not in getattr(self, name)]
-            if missing:
-                raise SchemaError(
-                    f"comparisons over participants need the columns {', '.join(columns)} in {name}",
-                    f"{name} lacks {', '.join(missing)}",
-                    "Compare the participants again: `gaitdisc run` on the study.",
-                )
+        tables = {name: (getattr(self, name), columns) for name, columns in TABLES.items()}
+        again = "Compare the participants again: `gaitdisc run` on the study."
+        check_columns(tables, "comparisons over participants need", again)
 
     def enough_length(self, second: str = WHOLE) -> float | None:
         """Shortest training length [s] from which on no variable is shown to differ; None where there is none.

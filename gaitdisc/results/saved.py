@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder, guarded
 from gaitdisc.whole_file import written_together
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 HERE = "gaitdisc.results"
 READERS = {  # the JSON file of each kind, and what reads its folder
@@ -45,6 +48,16 @@ class Saved:
             claim_folder(place)
             _function(self._by)(self, place)
         return place
+
+
+def check_columns(tables: Mapping[str, tuple[pd.DataFrame, Sequence[str]]], needing: str, do: str) -> None:
+    """Refuse a result of which a table lacks columns; tables: name -> the table, and the columns it must have."""
+    for name, (table, columns) in tables.items():
+        missing = [column for column in columns if column not in table]
+        if missing:
+            raise SchemaError(
+                f"{needing} the columns {', '.join(columns)} in {name}", f"{name} lacks {', '.join(missing)}", do
+            )
 
 
 def load_saved(folder: Path, readers: Mapping[str, str] = READERS) -> Any:

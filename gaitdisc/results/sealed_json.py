@@ -41,12 +41,7 @@ def sealed_text(data: Mapping[str, Any]) -> str:
     True
     """
     as_read = json.loads(json.dumps(data))
-    return json_text({**as_read, OWN: content_sha256(as_read)})
-
-
-def json_text(data: Mapping[str, Any]) -> str:
-    """Write JSON the same way each time."""
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+    return json.dumps({**as_read, OWN: content_sha256(as_read)}, indent=1, ensure_ascii=False) + "\n"
 
 
 def check_files(folder: Path, hashes: Mapping[str, str]) -> None:

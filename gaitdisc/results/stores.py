@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, is_dataclass
-from functools import cache
+from functools import cache, partial
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Mismatch
 from gaitdisc.results.on_disk import Arrays
@@ -34,6 +35,14 @@ from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Var
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 
 T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Why a participant was refused: a run that goes on does not read and process the walks again."""
+
+    refusals: tuple[Refusal, ...]
+    walks: tuple[str, ...]  # conditions whose walk was processed
 
 
 class CSV(NamedTuple):
@@ -82,6 +91,14 @@ class Form(Generic[T]):
         found |= {name: self._table(csv, tables) for name, csv in self.tables.items()}
         found |= {name: arrays.later(made) if self.later else made(arrays) for name, made in self.arrays.items()}
         return Keyed(self.kind(**found), data.get("key", ""))
+
+    def kept(self, folder: Path, key: str) -> T | None:
+        """Load a result that was computed from this very key; None where there is none that is whole."""
+        try:
+            found = self.load_keyed(folder)
+        except SchemaError:
+            return None
+        return found.result if found.key == key else None
 
     def _table(self, csv: CSV, tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
         table = tables.get(csv.file)
@@ -138,10 +155,6 @@ def _held_out(arrays: Arrays) -> HeldOut:
     return HeldOut(arrays["time"], arrays["phi"], arrays["measured"], predicted, bands)
 
 
-def _residuals(arrays: Arrays) -> dict[str, NDArray[np.float64]]:
-    return _keyed(arrays, "residual_")
-
-
 def _predicted(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
     held = response.held_out
     every = {"predicted": held.predicted, "band": held.bands, "residual": response.residuals}
@@ -174,7 +187,7 @@ RESPONSE = Form(
     "response.json",
     ("participant", "inputs", "outputs", "units", "held_out_s"),
     {"r2": CSV("r2.csv", R2_COLUMNS), "fits": CSV("fits.csv", FIT_COLUMNS)},
-    {"held_out": _held_out, "residuals": _residuals},
+    {"held_out": _held_out, "residuals": partial(_keyed, prefix="residual_")},
     _predicted,
 )
 QUANTITY = Form(
@@ -207,6 +220,7 @@ OVER = Form(
     keyed=False,
     blank=("left_out",),
 )
+REFUSED = Form(Refused, "refused.json", ("refusals", "walks"))
 MISMATCH = Form(
     Mismatch,
     "mismatch.json",
@@ -230,26 +244,6 @@ RECONSTRUCTION = Form(
     keyed=False,
     words=("participant", "model", "state", "unit"),
 )
-
-
-class Refused(NamedTuple):
-    """Why a participant was refused, the conditions whose walk was processed, and the key of what this rests on."""
-
-    refusals: tuple[Refusal, ...]
-    walks: tuple[str, ...]
-    key: str
-
-
-def save_refused(refused: Refused, folder: Path) -> None:
-    """Save why a participant was refused, so that a run that goes on does not read and process the walks again."""
-    data = {"key": refused.key, "refusals": _plain(refused.refusals, ""), "walks": list(refused.walks)}
-    save_unit(folder, "refused.json", data, {}, {})
-
-
-def load_refused(folder: Path) -> Refused:
-    """Load why a participant was refused."""
-    data, _, _ = load_unit(folder, "refused.json")
-    return Refused(_typed(tuple[Refusal, ...], data["refusals"]), tuple(data["walks"]), data["key"])
 
 
 def save_variant_run(run: VariantRun, folder: Path) -> None:

@@ -1,8 +1,11 @@
 import pytest
 
-from gaitdisc.batch.ablate_study import ablate_study
+from gaitdisc.batch.ablate_study import ablate_study, computed_quantity
+from gaitdisc.batch.participant_unit import response_key, unit_keys
 from gaitdisc.batch.run_study import run_study
+from gaitdisc.results import DataQuantity, Refusal
 from gaitdisc.results.run_store import load_run
+from gaitdisc.results.stores import QUANTITY
 
 
 @pytest.mark.slow
@@ -16,3 +19,38 @@ def test_a_run_keeps_what_ablate_added(study, tmp_path):
     assert medians.loc[1.0, "exo"] < medians["exo"].iloc[-1]
     assert [each.participant for each in run_study(one, tmp_path).quantities] == ["P01"]
     assert load_run(tmp_path).quantities[0].table.equals(load_run(tmp_path).quantities[0].table)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("quantities")
+
+
+def test_it_is_computed_once_and_loaded_afterwards(study, folder):
+    person, shares = study.participants[0], []
+    key = response_key(unit_keys(study, person))
+    assert QUANTITY.kept(folder / "quantities" / person.id, key) is None
+    first = computed_quantity(study, person, folder, (5.0,), "first", shares.append)
+    assert isinstance(first, DataQuantity)
+    assert shares[-1] == 1.0
+    work = len(shares)
+    again = computed_quantity(study, person, folder, (5.0,), "first", shares.append)
+    assert isinstance(again, DataQuantity)
+    kept = QUANTITY.kept(folder / "quantities" / person.id, key)
+    assert kept is not None and again.table.equals(kept.table)
+    assert len(shares) == work
+
+
+def test_other_settings_are_not_taken_for_these(study, folder):
+    person = study.participants[0]
+    other = study.model_copy(update={"models": study.models.model_copy(update={"seed": 7})})
+    assert QUANTITY.kept(folder / "quantities" / person.id, response_key(unit_keys(other, person))) is None
+
+
+def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
+    person = study.participants[0]
+    broken = person.trials[1].model_copy(update={"files": ("nowhere.mot",)})
+    person = person.model_copy(update={"trials": (person.trials[0], broken)})
+    refused = computed_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
+    assert isinstance(refused, Refusal)
+    assert "exo, file 1 is to be read" in refused.reason and "nowhere.mot" not in refused.reason

@@ -20,14 +20,13 @@ from gaitdisc.results.run_store import load_run, save_run
 from gaitdisc.results.stores import (
     OVER,
     QUANTITY,
+    REFUSED,
     RESPONSE,
     TESTS,
     VARIANTS,
     WALK,
     Refused,
-    load_refused,
     load_variant_run,
-    save_refused,
     save_variant_run,
     unit_name,
 )
@@ -40,7 +39,7 @@ OTHER = (None, True, -1, 1e308, "x", [], {}, [[]], {"x": []})
 LOAD = {
     "walks/P01-exo": WALK.load_keyed,
     "responses/P01": RESPONSE.load_keyed,
-    "refused/P02": load_refused,
+    "refused/P02": REFUSED.load_keyed,
     "quantities/P01": QUANTITY.load_keyed,
     "modalities/people/P01": VARIANTS.load_keyed,
     "modalities": load_variant_run,
@@ -68,7 +67,7 @@ def folder(everything, run, pair_tests, tmp_path):
         varied = VariantRun("t", "exo", "modalities", (variants,), no_tests, (Refusal("P02", "", "short"),), (7.0, 8.0))
         WALK.save(run.walks[0], everything / "walks" / unit_name("P01", "exo"), "key")
         RESPONSE.save(run.responses[0], everything / "responses" / "P01", "key")
-        save_refused(Refused((Refusal("P02", "exo", "short"),), ("exo",), "key"), everything / "refused" / "P02")
+        REFUSED.save(Refused((Refusal("P02", "exo", "short"),), ("exo",)), everything / "refused" / "P02", "key")
         QUANTITY.save(quantity, everything / "quantities" / "P01", "key")
         VARIANTS.save(variants, everything / "modalities" / "people" / "P01", "key")
         save_variant_run(varied, everything / "modalities")

@@ -17,15 +17,14 @@ from gaitdisc.results.stores import (
     CYCLES,
     MISMATCH,
     OVER,
+    REFUSED,
     RESPONSE,
     TESTS,
     VARIANTS,
     WALK,
     Refused,
     cycles_name,
-    load_refused,
     load_variant_run,
-    save_refused,
     save_variant_run,
     unit_name,
 )
@@ -103,8 +102,9 @@ def test_saving_twice_gives_the_same_bytes(response, tmp_path):
 
 def test_why_somebody_was_refused_comes_back_as_it_was(tmp_path):
     refusals = (Refusal("P07", "exo", "the gait changes at 38 s"),)
-    save_refused(Refused(refusals, ("nominal",), "key"), tmp_path)
-    assert load_refused(tmp_path) == (refusals, ("nominal",), "key")
+    refused = Refused(refusals, ("nominal",))
+    REFUSED.save(refused, tmp_path, "key")
+    assert REFUSED.load_keyed(tmp_path) == (refused, "key")
 
 
 @pytest.fixture
