@@ -114,10 +114,10 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
 
 def _print_of(trial: Trial) -> str:
     """Hash of what was measured: equal for two files of one recording, whatever their headers and formats."""
-    most = max(trial.streams.values(), key=lambda recording: recording.values.size)
-    markers = trial.streams.get("markers", most)
-    whole = markers if np.isfinite(markers.values).any() else most
-    return hashlib.sha256(whole.values.tobytes()).hexdigest()
+    whole = hashlib.sha256()
+    for key in sorted(trial.streams):
+        whole.update(trial.stream(key).values.tobytes())
+    return whole.hexdigest()
 
 
 def _seen_trials(
