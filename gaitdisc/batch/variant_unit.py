@@ -22,8 +22,7 @@ from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.data_quantity import shortened
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
-from gaitdisc.response.modalities import fit_without
-from gaitdisc.response.sensitivity import Setting, settings_around
+from gaitdisc.response.modalities import Setting, fit_without, settings_around
 from gaitdisc.results import Refusal
 from gaitdisc.results.stores import VARIANTS
 from gaitdisc.results.variants import VARIANT_COLUMNS, Variants

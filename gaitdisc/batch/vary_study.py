@@ -11,8 +11,7 @@ from gaitdisc.batch.variant_unit import computed_variants
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Study
-from gaitdisc.response.modalities import compare_modalities
-from gaitdisc.response.sensitivity import compare_settings
+from gaitdisc.response.modalities import compare_modalities, compare_settings
 from gaitdisc.results import Refusal, ResponseRun
 from gaitdisc.results.stores import save_variant_run
 from gaitdisc.results.variants import QUESTIONS, VariantRun, Variants

@@ -14,9 +14,8 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.networks.feedforward import FeedForward
-from gaitdisc.networks.schedule import Schedule
 from gaitdisc.networks.torch_steps import TorchSteps
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.networks.training_settings import Schedule, TrainingSettings
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from gaitdisc.networks.schedule import Schedule
+from gaitdisc.networks.training_settings import Schedule
 
 
 class TorchSteps:

@@ -80,16 +80,14 @@ class SensingModel:
 @written_together()
 def save_model(model: SensingModel, folder: Path) -> None:
     """Save a model: `weights.npz`, and `model.json` with the hashes of both."""
-    from gaitdisc.regression.fourier_ridge import FourierRidge
-    from gaitdisc.regression.ridge_file import save_ridge
+    from gaitdisc.regression.fourier_ridge import FourierRidge, save_ridge
 
     done = model.reconstructor
     places = [folder / WEIGHTS]
     if isinstance(done.model, FourierRidge):
         save_ridge(done.model, folder / WEIGHTS)
     else:
-        from gaitdisc.networks.ensemble import Ensemble, member_path, save_ensemble
-        from gaitdisc.networks.trained_network import TrainedNetwork, save_network
+        from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork, member_path, save_ensemble, save_network
 
         if isinstance(done.model, Ensemble):
             save_ensemble(done.model, folder / WEIGHTS)
@@ -161,11 +159,10 @@ def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path)
 
 def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
     if "ridge" in kind or kind == "linear":
-        from gaitdisc.regression.ridge_file import load_ridge
+        from gaitdisc.regression.fourier_ridge import load_ridge
 
         return load_ridge(folder / WEIGHTS)
-    from gaitdisc.networks.ensemble import Ensemble, member_path
-    from gaitdisc.networks.trained_network import load_network
+    from gaitdisc.networks.trained_network import Ensemble, load_network, member_path
 
     build = network_of(kind, len(what.sensors))
     if kind == ENSEMBLE:

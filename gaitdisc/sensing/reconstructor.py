@@ -172,7 +172,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
         return fit_fourier_ridge
     if kind == "fourier ridge":
         return partial(fit_fourier_ridge, features=FEATURES, seed=seed)
-    from gaitdisc.networks.ensemble import Ensemble
+    from gaitdisc.networks.trained_network import Ensemble
     from gaitdisc.networks.trainer import train
     from gaitdisc.networks.training_settings import TrainingSettings
 
@@ -191,8 +191,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
 
 def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     """Return what makes the network of a kind, from its numbers of inputs and outputs."""
-    from gaitdisc.networks.shallow_decoder import ShallowDecoder
-    from gaitdisc.networks.shred import Shred
+    from gaitdisc.networks.shred import ShallowDecoder, Shred
 
     if kind == "shallow decoder":
         return ShallowDecoder

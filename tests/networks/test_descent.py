@@ -9,9 +9,8 @@ from torch import nn
 from gaitdisc.errors import TrainingError
 from gaitdisc.networks.descent import descend
 from gaitdisc.networks.feedforward import FeedForward
-from gaitdisc.networks.schedule import epochs_of, schedule_of
 from gaitdisc.networks.torch_steps import TorchSteps
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.networks.training_settings import TrainingSettings, epochs_of, schedule_of
 
 
 class Slope(nn.Module):

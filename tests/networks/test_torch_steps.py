@@ -5,10 +5,9 @@ import pytest
 import torch
 from torch import nn
 
-from gaitdisc.networks.schedule import schedule_of
 from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.torch_steps import TorchSteps
-from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings
+from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings, schedule_of
 
 
 def test_one_epoch_is_that_of_a_loop_written_out():

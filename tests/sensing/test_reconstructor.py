@@ -52,7 +52,7 @@ def test_the_networks_of_the_dissertations_code_have_its_weights():
 def test_a_network_is_fitted_for_as_many_steps_as_the_dissertations_code_makes(pair, monkeypatch):
     monkeypatch.setattr(reconstructor, "TEXT_STEPS", 40)
     seen = {}
-    monkeypatch.setattr("gaitdisc.networks.schedule.LEAST_STEPS", 1)
+    monkeypatch.setattr("gaitdisc.networks.training_settings.LEAST_STEPS", 1)
     monkeypatch.setattr("gaitdisc.networks.trainer.descend", lambda *a: seen.update(settings=a[4]) or descend(*a))
     done = fit_reconstructor("shred-text", pair.what, pair.parts.fitted().rows(slice(0, 640)), pair.parts.checked())
     kept = seen["settings"]
