@@ -99,7 +99,7 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     """Train on one kind of targets and test in the field."""
     import torch
 
-    from gaitdisc.networks.torch_steps import TorchSteps
+    from gaitdisc.networks.descent import TorchSteps
     from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
 
     torch.set_num_threads(1)

@@ -16,7 +16,7 @@ from gaitdisc.chapters.regression.gaussian_process import fit_gaussian_process
 from gaitdisc.chapters.regression.kernels import KernelKind
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.response.band import Refit, covered, response_bands
+from gaitdisc.response.fit_response import Refit, covered, response_bands
 from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network, refitted_network
 
 SIDES = 1.645  # standard deviations of a normal law's 90 %

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, leg_of
-from gaitdisc.cohort.device import FOOT_KG, SHANK_KG, STIFFNESS, Spring
 from gaitdisc.cohort.ground import gate, habitual_force, pressure_centre
 from gaitdisc.cohort.habit import activity
 from gaitdisc.cohort.leg_path import (
@@ -29,7 +28,7 @@ from gaitdisc.cohort.leg_path import (
     thigh_shank_foot,
 )
 from gaitdisc.cohort.muscles import MOST, capacities, cycle_activation, cycle_excitation, strength_of
-from gaitdisc.cohort.person import GROUPS, Person, Recruitment
+from gaitdisc.cohort.person import FOOT_KG, GROUPS, SHANK_KG, STIFFNESS, Person, Recruitment, Spring
 
 LAG_S = 0.030  # of what the muscles leave of the moments
 SMOOTH = 40  # scale of the harmonics of what the muscles leave
@@ -51,11 +50,9 @@ class Columns(NamedTuple):
     excitation: int = 15  # muscle groups [1], and what they leave of the moments [N m]
     others: int = 24  # muscle groups [1], and what they leave of the moments [N m]
     side: int = 27  # adduction and rotation: angle, rate and second rate by phase, in turn [rad]
-    # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
-    gmed: int = 33
-    hip: int = 34  # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
-    # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
-    sway: int = 36
+    gmed: int = 33  # habitual activation of gluteus medius [1]
+    hip: int = 34  # acceleration of the hip [m/s2]
+    sway: int = 36  # speed of the hip forwards [m/s]
     width: int = 37
 
 

@@ -120,15 +120,11 @@ def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
     return moved
 
 
-def _sagittal(walk: TrueWalk, side: int) -> NDArray[np.float64]:
-    thigh = walk.angles[:, side, 0]
-    shank = thigh - walk.angles[:, side, 3]
-    return np.radians(np.column_stack([thigh, shank, shank + walk.angles[:, side, 4]]))
-
-
 def _pressed(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
     """Point under the pressure from the hip (time, 2), forwards and up [m]."""
-    psi = _sagittal(walk, side)
+    thigh = walk.angles[:, side, 0]
+    shank = thigh - walk.angles[:, side, 3]
+    psi = np.radians(np.column_stack([thigh, shank, shank + walk.angles[:, side, 4]]))
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] + 0.5 * side
     pressure = pressure_centre(staged(walk.person, phase % 1.0), leg.sole_m)
     return ankle_place(leg, psi) + pressed_point(leg, psi[:, 2], pressure)

@@ -110,7 +110,8 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     angles = _has_angles(done)
     rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
     noun = "future state" if _ahead(done) else "other state"
-    what = counted(len(done.states), noun) if angles else _quantities(done)
+    units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
+    what = counted(len(done.states), noun) if angles else f"{counted(len(done.states), 'channel')} [{units}]"
     sentences = [
         f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
@@ -183,11 +184,6 @@ def _what_is_tested(done: Reconstruction) -> str:
     if not _has_angles(done):
         return "all that is reconstructed"
     return "all angles" if _ahead(done) else "the angles that no sensor measures"
-
-
-def _quantities(done: Reconstruction) -> str:
-    units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
-    return f"{counted(len(done.states), 'channel')} [{units}]"
 
 
 def _spread(row: Any, measure: str, digits: int) -> str:

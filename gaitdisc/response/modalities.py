@@ -33,8 +33,9 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
     >>> input_families(("knee_angle_r", "emg_sol_r", "emg_gas_r", "d(emg_sol_r)/dt", "phi"))["emg_sol"]
     ('emg_sol_r', 'd(emg_sol_r)/dt')
     """
-    channels = {name: _channel(name) for name in inputs if name != PHASE}
+    channels = {name: name for name in inputs if name != PHASE}
     fast = {name for name in channels if name.startswith("d(")}
+    channels |= {name: name.removeprefix("d(").removesuffix(")/dt") for name in fast}
     emg = {name for name in channels if channels[name].startswith("emg_")}
     angles = set(channels) - emg
     groups = {
@@ -47,7 +48,8 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
         "EMG velocities": emg & fast,
     }
     for name, channel in channels.items():
-        groups.setdefault(_sideless(channel), set()).add(name)
+        sideless = channel.removesuffix(f"_{side_of(channel)}") if side_of(channel) else channel
+        groups.setdefault(sideless, set()).add(name)
     found: dict[str, tuple[str, ...]] = {}
     for family, members in groups.items():
         chosen = tuple(name for name in inputs if name in members)
@@ -132,14 +134,6 @@ def _without(samples: Samples, left_away: Sequence[str]) -> Samples:
     return replace(samples, x=samples.x[:, np.array(kept)], inputs=names)
 
 
-def _channel(name: str) -> str:
-    return name.removeprefix("d(").removesuffix(")/dt") if name.startswith("d(") else name
-
-
-def _sideless(channel: str) -> str:
-    return channel.removesuffix(f"_{side_of(channel)}") if side_of(channel) else channel
-
-
 ANGLES_HZ = (4.0, 6.0, 8.0, 10.0, 12.0)
 EMG_HZ = (4.0, 6.0, 10.0, 15.0, 20.0)
 SHARES = (0.25, 0.5)
@@ -186,13 +180,8 @@ def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.Dat
     table = pd.concat([each.table.assign(participant=each.participant) for each in people], ignore_index=True)
     table = table[table["kind"] == "network"]
     parts = []
-    for variant, own in table.groupby("variant", sort=False):
-        nominal, augmented = (
-            own[own["model"] == model]
-            .pivot_table(index="participant", columns="variable", values="r2", sort=False, dropna=False)
-            .reindex(index=table["participant"].unique(), columns=table["variable"].unique())
-            for model in ("nominal", "augmented")
-        )
+    for variant in table["variant"].unique():
+        nominal, augmented = (_by_participant(table, variant, model) for model in ("nominal", "augmented"))
         found = compare_columns(nominal, augmented, alpha)
         parts.append(found.assign(variant=variant, model="augmented", first="nominal", second="augmented"))
     return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]

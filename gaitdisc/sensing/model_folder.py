@@ -121,7 +121,12 @@ def load_model(folder: Path) -> SensingModel:
         channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
         half, kind = np.array(data["half_widths"], float), data["kind"]
         numbers = data["n_fitted"], data["seconds"], data["device"]
-        _refuse_parts(kind, what, channels, half)
+        if kind not in (*KINDS, *ON_REQUEST):
+            raise ValueError(f"it is a {kind!r}, which this version does not know")
+        if tuple(channel.name for channel in channels) != (*what.sensors, *what.states):
+            raise ValueError("its channels are others than its sensors and states")
+        if half.shape != (len(what.states),):
+            raise ValueError(f"it has {half.size} half widths for {len(what.states)} states")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise SchemaError(
             f"{folder.name}/{NAME} is to be read as a model of gaitdisc",
@@ -135,15 +140,6 @@ def load_model(folder: Path) -> SensingModel:
 
 def _said(error: Exception) -> str:
     return error.found if isinstance(error, DamagedError) else str(error)
-
-
-def _refuse_parts(kind: str, what: Sensing, channels: Sequence[Channel], half: NDArray[np.float64]) -> None:
-    if kind not in (*KINDS, *ON_REQUEST):
-        raise ValueError(f"it is a {kind!r}, which this version does not know")
-    if tuple(channel.name for channel in channels) != (*what.sensors, *what.states):
-        raise ValueError("its channels are others than its sensors and states")
-    if half.shape != (len(what.states),):
-        raise ValueError(f"it has {half.size} half widths for {len(what.states)} states")
 
 
 def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path) -> None:

@@ -44,19 +44,16 @@ def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool
         turned = (np.arange(1, 2 ** (n - 1))[:, None] >> np.arange(n - 1)) & 1
     else:
         turned = np.random.default_rng(plan.seed).integers(0, 2, (plan.permutations - 1, n - 1))
-    _check_count(len(turned) + 1, plan)
-    signs = np.ones((len(turned), n))
-    signs[:, 1:] -= 2.0 * turned
-    return signs, exact
-
-
-def _check_count(count: int, plan: PermutationPlan) -> None:
+    count = len(turned) + 1
     if plan.alpha * count < 1:
         raise ComparisonError(
             f"a permutation test at level {plan.alpha:g} needs {int(np.ceil(1 / plan.alpha))} permutations or more",
             f"there are {count}",
             "Raise the number of permutations, or the level.",
         )
+    signs = np.ones((len(turned), n))
+    signs[:, 1:] -= 2.0 * turned
+    return signs, exact
 
 
 Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]

@@ -7,13 +7,17 @@ import pytest
 
 from gaitdisc.errors import ChannelError, SamplingError, TrainingError
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.recording import PERCENT
+from gaitdisc.recording import PERCENT, Samples
 from gaitdisc.response.fit_response import (
+    BLOCKS,
     ResponseSettings,
+    covered,
     fit_both,
     fit_response,
     held_out_part,
+    parted,
     residual_strides,
+    response_bands,
     training_samples,
 )
 from gaitdisc.response.models import fit_linear, fit_models
@@ -171,3 +175,48 @@ def test_running_with_an_exotendon(gait_data, settings):
         assert found.r2_of(variable, "nominal", walk="nominal") > 0.97
     before, after = (mean_over_strides(found.residuals[model]).rms for model in ("nominal", "augmented"))
     assert np.all(after < 0.3 * before)
+
+
+def walk(seed: int, gain: float, count: int = 2000) -> Samples:
+    """y = gain x + noise that is three times as large in the first half of the stride."""
+    rng, time = np.random.default_rng(seed), np.arange(count) / 100
+    phi, x = 100 * (time % 1.0), rng.normal(size=(count, 1))
+    noise = rng.normal(size=(count, 1)) * np.where(phi < 50, 0.3, 0.1)[:, None]
+    return Samples(np.column_stack([x, phi]), gain * x + noise, ("a", "phi"), ("b",), time, phi)
+
+
+@pytest.fixture(scope="module")
+def bands():
+    nominal, exo, held = walk(0, 1.0), walk(1, 2.0), walk(2, 2.0)
+    models = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=2))
+    found = response_bands(models, lambda _, samples: fit_linear(samples, harmonics=2).model, nominal, exo, held)
+    return held, found
+
+
+def test_nine_in_ten_lie_inside_and_fewer_inside_the_nominal_models(bands):
+    held, found = bands
+    assert covered(held.y, found["exo"])[0] == pytest.approx(0.9, abs=0.025)
+    assert covered(held.y, found["augmented"])[0] == pytest.approx(0.9, abs=0.025)
+    assert covered(held.y, found["nominal"])[0] < 0.5
+
+
+def test_a_band_is_wide_where_errors_are_large(bands):
+    held, found = bands
+    width = (found["exo"][1] - found["exo"][0])[:, 0]
+    wide, narrow = (np.median(width[part]) for part in (held.phi < 45, held.phi > 55))
+    assert wide / narrow == pytest.approx(3.0, rel=0.1)
+    assert wide == pytest.approx(2 * 1.645 * 0.3, rel=0.1)
+
+
+def test_a_block_and_what_lies_within_the_seam_are_left_out():
+    samples = walk(0, 1.0, 800)
+    rest, block = parted(samples, 3)
+    assert block.time[[0, -1]].tolist() == [3.0, 3.99]
+    assert rest.time[np.searchsorted(rest.time, 3.0) + np.array([-1, 0])].round(2).tolist() == [2.69, 4.3]
+    assert sum(len(parted(samples, number)[1]) for number in range(BLOCKS)) == 800
+
+
+def test_a_short_walk_has_no_band():
+    models = fit_models(walk(0, 1.0), walk(1, 2.0), fit=lambda part, _: fit_linear(part, harmonics=2))
+    short = walk(0, 1.0, 1500)
+    assert response_bands(models, lambda model, _: model, short, walk(1, 2.0), walk(2, 2.0)) == {}
