@@ -22,11 +22,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import torch
 
-from gaitdisc.networks.schedule import schedule_of
+from gaitdisc.networks.descent import TorchSteps
 from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.threads import torch_threads
-from gaitdisc.networks.torch_steps import TorchSteps
-from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings
+from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings, schedule_of
 
 STEPS, TRIES = 3, 6
 

@@ -29,7 +29,7 @@ import numpy as np
 from scipy.stats import spearmanr
 from sensing_walks import Person, chosen_walks
 
-from gaitdisc.networks.ensemble import Ensemble
+from gaitdisc.networks.trained_network import Ensemble
 from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.reconstructor import ENSEMBLE, fit_reconstructor
 

@@ -99,9 +99,8 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     """Train on one kind of targets and test in the field."""
     import torch
 
-    from gaitdisc.networks.schedule import schedule_of
-    from gaitdisc.networks.torch_steps import TorchSteps
-    from gaitdisc.networks.training_settings import TrainingSettings
+    from gaitdisc.networks.descent import TorchSteps
+    from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
 
     torch.set_num_threads(1)
     torch.manual_seed(0)

@@ -14,11 +14,10 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.cohort.body import bias, inertia, leg_of
-from gaitdisc.cohort.device import FOOT_KG
 from gaitdisc.cohort.leg_path import PHASES, hip_motion
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.muscles import activated, capacities, strength_of
-from gaitdisc.cohort.person import GROUPS, Person
+from gaitdisc.cohort.person import FOOT_KG, GROUPS, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 

@@ -10,7 +10,7 @@ import gaitdisc as gd
 from gaitdisc.batch.demonstration import OUTPUTS
 from gaitdisc.report.wording import sideless
 from gaitdisc.response.comparison import r2_by_participant
-from gaitdisc.response.residual_reduction import representative
+from gaitdisc.response.over_participants import representative
 
 ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]
 

@@ -33,8 +33,7 @@ from further import Made, Number, main
 
 import gaitdisc as gd
 from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
-from gaitdisc.networks.ensemble import Ensemble
-from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
 from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.sensing.calibration import calibrated, first_strides

@@ -13,8 +13,7 @@ from real_people import turning
 import gaitdisc as gd
 from gaitdisc.chapters.regression.sindy import fit_sindy
 from gaitdisc.sensing.forecast import persistence, phase_average
-from gaitdisc.sensing.latent_states import latent_states
-from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor, latent_states
 from gaitdisc.sensing.splits import Parts, split_by_subject
 from gaitdisc.sensing.windows import Lags
 

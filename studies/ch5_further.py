@@ -33,8 +33,15 @@ from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field
 from gaitdisc.chapters.fields.routes import fixed_at_random
 from gaitdisc.report.curves import LATENT, MODES, course_numbers, latent_course_figure
 from gaitdisc.report.figure import save_figures
-from gaitdisc.sensing.latent_states import latent_states, leading
-from gaitdisc.sensing.reconstructor import KINDS, OF_TEXT, WITHOUT_NETWORK, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import (
+    KINDS,
+    OF_TEXT,
+    WITHOUT_NETWORK,
+    Sensing,
+    fit_reconstructor,
+    latent_states,
+    leading,
+)
 from gaitdisc.sensing.splits import RANDOM, split_by_subject
 from gaitdisc.sensing.windows import Lags
 

@@ -26,15 +26,16 @@ from collections.abc import Mapping
 
 import ch5_gait as gait
 import pandas as pd
+from ch5_disturbance import against_missing, against_noise
 from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell
+from ch5_set_figures import disturbance_figure, sensor_sets_figure
+from ch5_set_table import sensor_sets_table
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
 from gaitdisc.ingest.study import Study
 from gaitdisc.report.page import Block, write_blocks
-from gaitdisc.report.sensor_sets import disturbance_figure, sensor_sets_figure, sensor_sets_table
 from gaitdisc.report.table import save_table
-from gaitdisc.sensing.disturbance import against_missing, against_noise
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing
 from gaitdisc.sensing.splits import RANDOM, RULES
 

@@ -15,8 +15,7 @@ from real_people import real_people
 from gaitdisc.batch.sensed_walks import sensed_walks
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.latent_states import latent_states
-from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Sensing, fit_reconstructor, latent_states
 from gaitdisc.sensing.splits import split_by_trial
 from gaitdisc.sensing.windows import stacked
 

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from gaitdisc import envelope
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.person import MUSCLES, Person, Spring
 from gaitdisc.cohort.walk import TrueWalk, walked
 
 WALK_S = 60.0

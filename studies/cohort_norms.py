@@ -20,10 +20,9 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import MUSCLES
+from gaitdisc.cohort.person import MUSCLES, Spring
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.signals.contact_force import force_contacts
 

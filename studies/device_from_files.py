@@ -36,10 +36,9 @@ import gaitdisc as gd
 from gaitdisc.batch.demonstration import FORCES
 from gaitdisc.batch.device_study import FOOT_SHOWS_AT, device_walks, joint_records, weighed_foot
 from gaitdisc.batch.discover_files import discover_study
-from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.marker_trial import marker_trial
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import Person, drawn
+from gaitdisc.cohort.person import STIFFNESS, Person, Spring, drawn
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage

@@ -67,8 +67,7 @@ def person_of(made: Made) -> Person:
 def write_person(made: Made, folder: Path) -> None:
     """A static trial on both plates and some walks over them, as C3D files of a laboratory."""
     from gaitdisc.batch.demonstration import write_marker_trial
-    from gaitdisc.cohort.marker_trial import marker_trial, standing
-    from gaitdisc.cohort.overground import overground
+    from gaitdisc.cohort.marker_trial import marker_trial, overground, standing
     from gaitdisc.cohort.walk import walked
 
     person, who = person_of(made), f"rec/M{made.number:03d}"

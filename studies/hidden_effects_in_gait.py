@@ -29,8 +29,7 @@ from ankle_records import ankle_trials, own_foot_kg
 
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.device import STIFFNESS, Spring
-from gaitdisc.cohort.person import Person
+from gaitdisc.cohort.person import STIFFNESS, Person, Spring
 from gaitdisc.cohort.walk import walked
 from gaitdisc.discovery.discover import discover
 

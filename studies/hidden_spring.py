@@ -23,7 +23,7 @@ from ankle_records import INPUTS, ankle_trials, own_foot_kg
 
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.device import STIFFNESS, Spring
+from gaitdisc.cohort.person import STIFFNESS, Spring
 from gaitdisc.cohort.walk import walked
 from gaitdisc.simulation.measured import Measured
 

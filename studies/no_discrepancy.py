@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import MUSCLES, Person, drawn
+from gaitdisc.cohort.person import MUSCLES, Person, Spring, drawn
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed

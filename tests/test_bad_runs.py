@@ -58,7 +58,7 @@ def ran(recordings, tmp_path_factory):
         shutil.copy(recordings / f"{word}.mot", folder)
     written(folder, walker("P01"))
     with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+        brief.setattr("gaitdisc.networks.training_settings.epochs_of", lambda *_: 2)
         assert said("run", folder)[0] == 0
     return folder
 

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from gaitdisc.cohort.cohort import the_twelve, walks_of
-from gaitdisc.cohort.marker_trial import standing
-from gaitdisc.cohort.overground import overground
+from gaitdisc.cohort.marker_trial import overground, standing
 from gaitdisc.cohort.person import Person
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.c3d_writing import write_c3d

@@ -19,8 +19,9 @@ from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, fitting_device, sensing
+from gaitdisc.sensing.sensor_search import search_sensors
 from gaitdisc.sensing.splits import RULES, Parts, split_by_subject, split_by_trial, split_within
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import Lags, windows_of
 
 SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
@@ -151,3 +152,24 @@ def _result(
         walks.findings,
         made_now(used, settings.seed, walks.files, SECTION),
     )
+
+
+def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
+    """Find the best sets of sensors among the states of a study, for all participants together.
+
+    returns: as of `gaitdisc.sensing.sensor_search.search_sensors`
+    """
+    settings = settings or ReconstructionSettings()
+    if settings.targets != STATES or settings.ahead_s:
+        raise SchemaError(
+            "sensors are searched for the states at their last reading",
+            f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
+            "Search without --targets and --ahead; then name the sensors with --sensors.",
+        )
+    walks = sensed_walks(study, (), settings.condition_read)
+    names, lags = [channel.name for channel in walks.channels], settings.lags(walks.rate_hz)
+    windows = {
+        person: [windows_of(walk.recording, names, names, lags, walk.phi) for walk in found]
+        for person, found in walks.people.items()
+    }
+    return search_sensors([parts_of(walks, windows, person, settings) for person in windows], walks.channels, most)

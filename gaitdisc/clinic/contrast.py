@@ -10,8 +10,7 @@ from gaitdisc.errors import ComparisonError
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, DifferingSpan
 from gaitdisc.results.clinical_variables import BY_NAME, KINEMATICS
 from gaitdisc.results.leg_curves import FEET, LegCurves
-from gaitdisc.statistics.cluster_test import two_sample_test
-from gaitdisc.statistics.permutation import PermutationPlan
+from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
 
 ALPHA = 0.05 / len(FEET)  # both legs are tested
 MATTERS = {"deg": 5.0, "N m/kg": 0.1, "W/kg": 0.5}  # degrees: McGinley et al. 2009

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.cohort.device import FOOT_KG, SHANK_KG
+from gaitdisc.cohort.person import FOOT_KG, SHANK_KG
 from gaitdisc.compiled import compiled
 
 GRAVITY = 9.81

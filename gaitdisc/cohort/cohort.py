@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.other_people import PATTERNS, walking_with
-from gaitdisc.cohort.person import Person, drawn
+from gaitdisc.cohort.person import STIFFNESS, Person, Spring, drawn
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Trial
 
@@ -64,7 +63,11 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
 
     person = replace(person, change_s=person.change_s * duration_s / WALK_S)
     spring, changed, late_s = _with_effect(person, hidden)
-    seeds = {word: _trial_seed(person, number) for number, word in enumerate(CONDITIONS)}
+    whose = round(person.mass_kg * 1e6)
+    seeds = {
+        word: int(np.random.SeedSequence([whose, number]).generate_state(1)[0])
+        for number, word in enumerate(CONDITIONS)
+    }
     nominal = walked(person, None, duration_s, seeds["nominal"])
     exo = walked(changed, spring, duration_s, seeds["exo"])
     trials = {
@@ -117,7 +120,3 @@ def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, fl
         return None, walking_with(person, hidden), 0.0
     weak = replace(person, plantarflexors=0.75 if hidden == "weak plantarflexor" else 1.0)
     return None, replace(weak, foot_kg=0.8 if hidden == "foot mass" else 0.0), 0.04 if hidden == "late EMG" else 0.0
-
-
-def _trial_seed(person: Person, number: int) -> int:
-    return int(np.random.SeedSequence([round(person.mass_kg * 1e6), number]).generate_state(1)[0])

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, leg_of
-from gaitdisc.cohort.device import FOOT_KG, SHANK_KG, STIFFNESS, Spring
 from gaitdisc.cohort.ground import gate, habitual_force, pressure_centre
 from gaitdisc.cohort.habit import activity
 from gaitdisc.cohort.leg_path import (
@@ -29,8 +28,7 @@ from gaitdisc.cohort.leg_path import (
     thigh_shank_foot,
 )
 from gaitdisc.cohort.muscles import MOST, capacities, cycle_activation, cycle_excitation, strength_of
-from gaitdisc.cohort.person import GROUPS, Person, Recruitment
-from gaitdisc.cohort.static_optimisation import shared
+from gaitdisc.cohort.person import FOOT_KG, GROUPS, SHANK_KG, STIFFNESS, Person, Recruitment, Spring
 
 LAG_S = 0.030  # of what the muscles leave of the moments
 SMOOTH = 40  # scale of the harmonics of what the muscles leave
@@ -52,11 +50,9 @@ class Columns(NamedTuple):
     excitation: int = 15  # muscle groups [1], and what they leave of the moments [N m]
     others: int = 24  # muscle groups [1], and what they leave of the moments [N m]
     side: int = 27  # adduction and rotation: angle, rate and second rate by phase, in turn [rad]
-    # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
-    gmed: int = 33
-    hip: int = 34  # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
-    # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
-    sway: int = 36
+    gmed: int = 33  # habitual activation of gluteus medius [1]
+    hip: int = 34  # acceleration of the hip [m/s2]
+    sway: int = 36  # speed of the hip forwards [m/s]
     width: int = 37
 
 
@@ -157,3 +153,59 @@ def _smoothed(cycle: NDArray[np.float64], harmonics: int) -> NDArray[np.float64]
     spectrum = np.fft.rfft(cycle, axis=0)
     spectrum *= np.exp(-((np.arange(len(spectrum)) / harmonics) ** 2))[:, None]
     return np.fft.irfft(spectrum, len(cycle), axis=0)
+
+
+SOFTNESS = 1e-4  # of the squared strength of a typical joint: what is missing stays below a percent where it can
+STEPS, HALVINGS = 60, 20
+NEARLY = 1e-7  # of the largest moment
+
+
+def shared(
+    wanted: NDArray[np.float64],
+    capacity: NDArray[np.float64],
+    habit: NDArray[np.float64],
+    least: NDArray[np.float64],
+    dear: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Activations (phase, muscle) nearest to `habit` that give moments (phase, joint); `dear` is each muscle's cost.
+
+    Static optimisation around a habit, for all phases of a stride at once. At every phase the activations a minimise
+    dear |a - habit|^2 + |missing moment|^2 / softness  within their bounds, where the missing moment is what the
+    muscles leave of the wanted one. The problem is convex with three multipliers m, one a joint: a = clip(habit +
+    capacity m / dear), missing = softness m. Newton's method on the multipliers, all phases together, ends after a few
+    steps, because the equations are linear between changes of the set of muscles that stand at a bound.
+    """
+    soft = SOFTNESS * float(np.mean(np.sum(capacity**2, axis=1)))
+    small = NEARLY * (1.0 + np.abs(wanted).max())
+    multiplier, found = np.zeros_like(wanted), np.clip(habit, least, 1.0)
+    unsolved = np.arange(len(wanted))  # phases whose equations do not hold yet
+    for _ in range(STEPS):
+        task = wanted[unsolved], capacity[unsolved], habit[unsolved], least[unsolved], dear, soft
+        found[unsolved], missing = _at(multiplier[unsolved], *task)
+        keep = np.abs(missing).max(axis=1) > small
+        unsolved, missing, task = unsolved[keep], missing[keep], (*(part[keep] for part in task[:4]), dear, soft)
+        if not len(unsolved):
+            break
+        free = (found[unsolved] > task[3]) & (found[unsolved] < 1.0)
+        slope = np.matmul((task[1] * (free / dear)[:, :, None]).transpose(0, 2, 1), task[1]) + soft * np.eye(3)
+        multiplier[unsolved] += _step(
+            np.linalg.solve(slope, missing[:, :, None])[:, :, 0], multiplier[unsolved], missing, task
+        )
+    return found
+
+
+def _step(step, multiplier, missing, task):
+    """Newton's step, halved at every phase until the equations hold better."""
+    size = np.sum(missing**2, axis=1)
+    for _ in range(HALVINGS):
+        worse = np.sum(_at(multiplier + step, *task)[1] ** 2, axis=1) > size
+        if not worse.any():
+            break
+        step[worse] *= 0.5
+    return step
+
+
+def _at(multiplier, wanted, capacity, habit, least, dear, soft):
+    """Activations of the multipliers, and what is left of the equations."""
+    found = np.clip(habit + np.matmul(capacity, multiplier[:, :, None])[:, :, 0] / dear, least, 1.0)
+    return found, wanted - np.matmul(found[:, None], capacity)[:, 0] - soft * multiplier

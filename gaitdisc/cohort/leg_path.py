@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, Leg, ankle_place, cycle_rate
-from gaitdisc.cohort.device import STIFFNESS
 from gaitdisc.cohort.ground import STANCE, habitual_force, pressure_centre
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.person import HARMONICS, JOINTS, Person
+from gaitdisc.cohort.person import HARMONICS, JOINTS, STIFFNESS, Person
 
 PHASES = 1000
 LOADED_SHARE = 0.596  # of the stride: where the habitual vertical force of a typical adult falls below 20 N

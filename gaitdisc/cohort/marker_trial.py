@@ -14,6 +14,8 @@ Rajagopal 2016, IEEE Trans Biomed Eng 63:2068. Leardini 2005, Gait Posture 21:21
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +27,7 @@ from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, staged
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Surface, Trial
+from gaitdisc.recording.runs import runs
 
 SIDES = (("r", 1.0), ("l", -1.0))
 ASIS_WIDTH, PELVIS_DEPTH = 0.145, 0.090  # of height
@@ -117,15 +120,11 @@ def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
     return moved
 
 
-def _sagittal(walk: TrueWalk, side: int) -> NDArray[np.float64]:
-    thigh = walk.angles[:, side, 0]
-    shank = thigh - walk.angles[:, side, 3]
-    return np.radians(np.column_stack([thigh, shank, shank + walk.angles[:, side, 4]]))
-
-
 def _pressed(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
     """Point under the pressure from the hip (time, 2), forwards and up [m]."""
-    psi = _sagittal(walk, side)
+    thigh = walk.angles[:, side, 0]
+    shank = thigh - walk.angles[:, side, 3]
+    psi = np.radians(np.column_stack([thigh, shank, shank + walk.angles[:, side, 4]]))
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] + 0.5 * side
     pressure = pressure_centre(staged(walk.person, phase % 1.0), leg.sole_m)
     return ankle_place(leg, psi) + pressed_point(leg, psi[:, 2], pressure)
@@ -238,3 +237,79 @@ def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generat
     return Recording(
         walk.quick_s, np.hstack(columns), tuple(channels), walk.person.name, condition, Source(reader="cohort")
     )
+
+
+STRIDES = 2.9  # in the cameras' view
+BEFORE = 0.7  # strides before the step on the first plate
+PLATE_M = (0.6, 0.9)  # along and across the walkway; shorter where a step is
+STANDS_N = 20.0
+
+
+def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: float, name: str) -> Trial:
+    """Trial of two to three strides over two plates, of a walk on two belts with markers.
+
+    The belts' frame moves on at the belts' speed. The right foot's step is seen by `plate_1`, the left foot's after it
+    by `plate_2`; other steps fall beside the plates.
+    """
+    end_s = start_s + STRIDES * stride_s
+    parts = {key: one.between(start_s, end_s) for key, one in belts.streams.items()}
+    right = _step(parts["forces"], "plate_1", start_s + BEFORE * stride_s)
+    left = _step(parts["forces"], "plate_2", right.start_s)
+    length = min(PLATE_M[0], 0.9 * 0.5 * stride_s * speed_m_per_s)
+    plates, columns = [], []
+    rng = np.random.default_rng([round(1000 * start_s), 47])
+    for step, belt in zip((right, left), belts.surfaces, strict=True):
+        plate = _plate(step, belt, length, speed_m_per_s * (step.middle_s - start_s))
+        columns += _seen(step, belt, plate, speed_m_per_s * (parts["forces"].time - start_s), rng)
+        plates.append(plate)
+    walked = np.zeros_like(parts["markers"].values)
+    walked[:, 0::3] = speed_m_per_s * (parts["markers"].time - start_s)[:, None]
+    parts["markers"] = parts["markers"].with_values(parts["markers"].values + walked)
+    parts["forces"] = parts["forces"].with_values(np.hstack(columns))
+    streams = {key: replace(one, time=one.time - one.time[0]) for key, one in parts.items()}
+    return Trial(name, streams, subject=belts.subject, condition=belts.condition, surfaces=tuple(plates))
+
+
+class _Step:
+    """One step on one belt: its force and its moment about the belt's middle while the foot stands, else zero."""
+
+    def __init__(self, time: NDArray[np.float64], loads: NDArray[np.float64], rows: slice) -> None:
+        stands = np.zeros((len(time), 1))
+        stands[rows] = 1.0
+        self.force, self.moment = loads[:, :3] * stands, loads[:, 3:] * stands
+        self.start_s, self.middle_s = float(time[rows.start]), float(0.5 * (time[rows.start] + time[rows.stop - 1]))
+        self.rows = rows
+
+    @property
+    def along_m(self) -> float:
+        """Where the pressure stands in mid-stance, from the belt's middle."""
+        middle = (self.rows.start + self.rows.stop) // 2
+        return float(-self.moment[middle, 1] / self.force[middle, 2])
+
+
+def _step(forces: Recording, belt: str, after_s: float) -> _Step:
+    """First step on a belt that begins after a time and ends within the recording."""
+    loads = forces.selected([f"{belt}_{kind}{axis}" for kind in "fm" for axis in "xyz"]).values
+    stands = runs(loads[:, 2] > STANDS_N)
+    whole = [(a, b) for a, b in stands if forces.time[a] > after_s and b < len(loads) and b - a > 0.2 * forces.rate_hz]
+    return _Step(forces.time, loads, slice(*whole[0]))
+
+
+def _plate(step: _Step, belt: Surface, length: float, walked_m: float) -> Surface:
+    """Plate around the step, across the whole walkway."""
+    middle = belt.corners.mean(axis=0)[0] + step.along_m + walked_m
+    half = PLATE_M[1] / 2
+    corners = [[length / 2, -half, 0.0], [-length / 2, -half, 0.0], [-length / 2, half, 0.0], [length / 2, half, 0.0]]
+    return Surface(belt.name, np.array(corners) + np.array([middle, 0.0, 0.0]))
+
+
+def _seen(
+    step: _Step, belt: Surface, plate: Surface, walked_m: NDArray[np.float64], rng: np.random.Generator
+) -> list[NDArray[np.float64]]:
+    """Force and moment about the middle of the plate, as it reports them."""
+    apart = belt.corners.mean(axis=0) - plate.corners.mean(axis=0) + walked_m[:, None] * np.array([1.0, 0.0, 0.0])
+    moment = step.moment + np.cross(apart, step.force)
+    return [
+        step.force + rng.normal(0.0, FORCE_N, step.force.shape),
+        moment + rng.normal(0.0, MOMENT_NM, moment.shape),
+    ]

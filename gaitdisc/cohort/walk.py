@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.controller import learnt_table
-from gaitdisc.cohort.device import FOOT_KG, SHANK_KG, Spring
 from gaitdisc.cohort.ground import Belt
 from gaitdisc.cohort.motion import (
     NOISE,
@@ -24,7 +23,7 @@ from gaitdisc.cohort.motion import (
     moved,
 )
 from gaitdisc.cohort.muscles import strength_of
-from gaitdisc.cohort.person import GROUPS, MUSCLES, Person
+from gaitdisc.cohort.person import FOOT_KG, GROUPS, MUSCLES, SHANK_KG, Person, Spring
 from gaitdisc.errors import StrideError
 from gaitdisc.recording.body_measures import LEG_OF_STATURE
 

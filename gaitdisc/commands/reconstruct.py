@@ -46,8 +46,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     Each participant's recommended model is saved; `gaitdisc apply` reconstructs a recording with it.
     """
-    from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
-    from gaitdisc.batch.search_study import search_study
+    from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study, search_study
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.figure import file_names

@@ -27,13 +27,14 @@ from gaitdisc.results.provenance import Provenance, made_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,
+    USUAL,
     Cluster,
     ClusterTest,
+    PermutationPlan,
     one_sample_test,
     two_sample_test,
 )
-from gaitdisc.statistics.permutation import USUAL, PermutationPlan
-from gaitdisc.statistics.stride_blocks import block_length, block_means, block_worth, stride_correlation
+from gaitdisc.statistics.stride_residuals import block_length, block_means, block_worth, stride_correlation
 
 MOST_SHIFT = 10  # % of the stride
 CLINICAL = Smallest()

@@ -359,7 +359,7 @@ def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | No
     >>> gd.plot.latent(gd.load("model"), readings, percent)  # doctest: +SKIP
     """
     from gaitdisc.report.curves import LATENT, course_numbers, draw_course
-    from gaitdisc.sensing.latent_states import latent_states, leading
+    from gaitdisc.sensing.reconstructor import latent_states, leading
 
     _refuse_other(model, "Reconstructor", "gaitdisc.Reconstructor")
     windows = model.windows(x, percent)

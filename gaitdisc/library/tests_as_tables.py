@@ -14,10 +14,9 @@ from gaitdisc.recording.arrays import real_array
 from gaitdisc.recording.recording import several
 from gaitdisc.recording.strides import PERCENT
 from gaitdisc.response.comparison import compare_columns
-from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
+from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
 from gaitdisc.statistics.holm_sidak import check_level
 from gaitdisc.statistics.labels import check_numbers, check_same, in_one_order
-from gaitdisc.statistics.permutation import PermutationPlan
 
 POINTS = len(PERCENT)  # of a stride; as many rows of another length are a set on its side
 COLUMNS = ("channel", "first_point", "last_point", "sign", "mass", "p")

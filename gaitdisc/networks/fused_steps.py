@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.fused_kernels import descend_epoch, mean_squared_error
-from gaitdisc.networks.schedule import Schedule
+from gaitdisc.networks.training_settings import Schedule
 
 
 class FusedSteps:

@@ -10,9 +10,9 @@ import pandas as pd
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
-from gaitdisc.report.r2 import LOWEST, held_out_text
+from gaitdisc.report.r2 import LOWEST, held_out_text, models_key
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, number
+from gaitdisc.report.wording import counted, label, number
 from gaitdisc.results import DataQuantity, ResponseRun
 from gaitdisc.results.over_participants import WHOLE
 
@@ -40,7 +40,7 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
         _draw(axes, numbers[numbers["variables"] == group], low)
         axes.set_title(GROUPS[group])
     row[0].set_ylabel("R² on the held-out device walk [1]")
-    legend(drawn, _key())
+    legend(drawn, models_key(ms=3.5))
     return Figure("quantity", _caption(run, low), _alt(run), numbers, drawn)
 
 
@@ -115,15 +115,6 @@ def _draw(axes: Axes, rows: pd.DataFrame, low: float) -> None:
     axes.set_xlabel("training length [s]")
 
 
-def _key() -> list:
-    from matplotlib.lines import Line2D
-
-    return [
-        Line2D([], [], color=look.colour, linestyle=look.line, marker=look.mark, ms=3.5, label=MODEL_WORDS[model])
-        for model, look in MODELS.items()
-    ]
-
-
 def _caption(run: ResponseRun, low: float) -> str:
     parts = {quantity.part for quantity in run.quantities}
     edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
@@ -169,7 +160,8 @@ def length_sentences(run: ResponseRun) -> list[str]:
         return []
     longest = over.lengths["length_s"].max()
     same, whole = over.enough_length("exo"), over.enough_length(WHOLE)
-    exceptions = _lengths_of(over.lengths, "exo")
+    apart = (over.lengths["second"] == "exo") & over.lengths["different"].astype(bool)
+    exceptions = sorted(set(over.lengths.loc[apart, "length_s"]))
     return [
         f"(i) Augmented against Exo at the same length: a difference is shown at "
         f"{', '.join(f'{x:g}' for x in exceptions)} s."
@@ -182,10 +174,6 @@ def length_sentences(run: ResponseRun) -> list[str]:
         f"variable still differs.",
         f"n = {counted(int(over.lengths['n'].max()), 'participant')}: that no difference is shown is no equality.",
     ]
-
-
-def _lengths_of(tests: pd.DataFrame, second: str) -> list[float]:
-    return sorted(set(tests.loc[(tests["second"] == second) & tests["different"].astype(bool), "length_s"]))
 
 
 def _cells(rows: pd.DataFrame) -> tuple[str, str, str]:

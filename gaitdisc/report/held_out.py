@@ -233,7 +233,9 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
             else:
                 axes.tick_params(labelbottom=False)
         grid[row][0].set_ylabel(f"[{unit_text(str(of_variable['unit'].iloc[0]))}]")
-        grid[row][0].set_title(_residual_title(str(variable)), loc="left", color=SIDES[side_of(str(variable))].colour)
+        up = f" (up: towards {towards})" if (towards := upwards(str(variable))) else ""
+        title = f"{label(str(variable))}{up}"
+        grid[row][0].set_title(title, loc="left", color=SIDES[side_of(str(variable))].colour)
     for column, model in enumerate(models):
         x = grid[0][column].get_position()
         drawn.text(
@@ -265,11 +267,6 @@ def _limits(numbers: pd.DataFrame, each: list[str]) -> tuple[float, float]:
     values = values[np.isfinite(values)]
     reach = 1.05 * float(np.max(np.abs(values))) if len(values) else 1.0
     return -(reach or 1.0), reach or 1.0
-
-
-def _residual_title(variable: str) -> str:
-    up = upwards(variable)
-    return f"{label(variable)} (up: towards {up})" if up else label(variable)
 
 
 def _residual_caption(response: ParticipantResponse, numbers: pd.DataFrame) -> str:

@@ -13,7 +13,7 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
-from gaitdisc.report.r2 import held_out_text
+from gaitdisc.report.r2 import held_out_text, models_key
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import ResponseRun
@@ -97,7 +97,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
         axes.set_xlabel("smaller than Nominal’s by [%]")
         axes.set_title(words)
     legend(drawn, _key(len(tests) > 0))
-    return Figure("reduction", _caption(run), _alt(run), reductions, drawn)
+    return Figure("reduction", _caption(run), " ".join(reduction_sentences(run)), reductions, drawn)
 
 
 def reduction_table(run: ResponseRun) -> Table | None:
@@ -176,10 +176,7 @@ def _cell(own: pd.DataFrame, tests: pd.DataFrame, variable: str, measure: str, m
 def _key(tested: bool) -> list:
     from matplotlib.lines import Line2D
 
-    marks = [
-        Line2D([], [], marker=MODELS[m].mark, color=MODELS[m].colour, linestyle="", ms=4, mew=0, label=MODEL_WORDS[m])
-        for m in OFFSETS
-    ]
+    marks = models_key(tuple(OFFSETS), linestyle="", ms=4, mew=0)
     middle = Line2D([], [], marker="|", color="#111111", ms=8, mew=1.6, linewidth=1.4, label="estimate, 95 % interval")
     return [*marks, middle] if tested else marks
 
@@ -194,10 +191,6 @@ def _caption(run: ResponseRun) -> str:
         f"Marks: participants; values below {number(LOWEST, 0)} % stand at the edge. After Fig. 4.3 of the "
         f"dissertation, which gives one number: 52.8 %, hip, one participant, the measure not said."
     )
-
-
-def _alt(run: ResponseRun) -> str:
-    return " ".join(reduction_sentences(run))
 
 
 def baseline_table(run: ResponseRun) -> Table | None:

@@ -12,7 +12,7 @@ import pandas as pd
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
-from gaitdisc.report.r2 import held_out_text, lowest_drawn, r2_numbers, variables
+from gaitdisc.report.r2 import held_out_text, lowest_drawn, models_key, r2_numbers, variables
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import PairTests, ResponseRun
@@ -221,6 +221,8 @@ def comparison_figures(run: ResponseRun) -> list[Figure]:
 
 
 def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str) -> Figure:
+    from matplotlib.lines import Line2D
+
     names = list(dict.fromkeys(numbers["variable"]))
     drawn, [[axes]] = panels(1, 1, HEIGHT, Room(left=0.6, bottom=0.75))
     low = lowest_drawn(numbers)
@@ -230,7 +232,10 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
         for height, pair in enumerate(BARS):
             row = tests.of_pair(*pair)
             if bool(row.loc[row["variable"] == variable, "different"].any()):
-                _draw_bar(axes, [place + PLACES[model] for model in pair], 1 + (height + 0.7) * step, 0.2 * step)
+                left, right = (place + PLACES[model] for model in pair)
+                y = 1 + (height + 0.7) * step
+                across, up = [left, left, right, right], [y - 0.2 * step, y, y, y - 0.2 * step]
+                axes.plot(across, up, color="#111111", linewidth=0.9, clip_on=False)
     axes.set_xticks(
         range(len(names)), [textwrap.fill(label(variable), 14, break_long_words=False) for variable in names]
     )
@@ -242,7 +247,8 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
     axes.set_ylabel("R² on the held-out device walk [1]")
     for edge in np.arange(len(names) - 1) + 0.5:
         axes.axvline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
-    legend(drawn, _key())
+    bar = Line2D([], [], color="#111111", linewidth=0.9, label="different")
+    legend(drawn, [*models_key(linestyle="-", ms=4, mew=0), bar])
     return Figure(name, _caption(run, tests, numbers, low), _alt(tests, names), numbers, drawn)
 
 
@@ -254,21 +260,6 @@ def _draw_boxes(axes: Axes, rows: pd.DataFrame, place: int) -> None:
             continue
         draw_box(axes, values, x, look.colour)
         axes.plot(np.full(len(values), x), values, look.mark, color=look.colour, ms=2.0, mew=0, zorder=3)
-
-
-def _draw_bar(axes: Axes, across: list[float], y: float, tick: float) -> None:
-    left, right = across
-    axes.plot([left, left, right, right], [y - tick, y, y, y - tick], color="#111111", linewidth=0.9, clip_on=False)
-
-
-def _key() -> list:
-    from matplotlib.lines import Line2D
-
-    models = [
-        Line2D([], [], marker=look.mark, color=look.colour, linestyle="-", ms=4, mew=0, label=MODEL_WORDS[model])
-        for model, look in MODELS.items()
-    ]
-    return [*models, Line2D([], [], color="#111111", linewidth=0.9, label="different")]
 
 
 def _caption(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, low: float) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -162,7 +163,7 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
     row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
     drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
     draw_r2(axes, numbers)
-    null = _has_null(numbers)
+    null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
     legend(drawn, r2_key(len(run.responses), null))
     return Figure(name, _caption(run, low, null), _alt(run, numbers), numbers, drawn)
 
@@ -183,10 +184,6 @@ def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
         axes.axhline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
     if low < 0:
         axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
-
-
-def _has_null(numbers: pd.DataFrame) -> bool:
-    return bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
 
 
 def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None:
@@ -218,17 +215,26 @@ def _below(values: np.ndarray, low: float) -> str:
     return ", ".join(number(value) for value in left)
 
 
+def models_key(models: Sequence[str] = tuple(MODELS), **style: Any) -> list[Line2D]:
+    """Handles of a legend that explains models; without a style of its own each has its line."""
+    from matplotlib.lines import Line2D
+
+    return [
+        Line2D(
+            [], [], color=look.colour, marker=look.mark, label=MODEL_WORDS[model], **{"linestyle": look.line} | style
+        )
+        for model, look in MODELS.items()
+        if model in models
+    ]
+
+
 def r2_key(people: int, null: bool) -> list[Line2D]:
     """Handles of the legend."""
     from matplotlib.lines import Line2D
 
-    models = [
-        Line2D([], [], marker=look.mark, color=look.colour, linestyle="", ms=5, mew=0, label=MODEL_WORDS[model])
-        for model, look in MODELS.items()
-    ]
     hollow = "ridge" if people == 1 else "ridge, median"
     return [
-        *models,
+        *models_key(linestyle="", ms=5, mew=0),
         Line2D([], [], marker="o", mfc="none", mec="#333333", linestyle="", ms=6.5, label=hollow),
         *([Line2D([], [], color=NULL.colour, linestyle=NULL.line, label="band-limited noise")] if null else []),
     ]

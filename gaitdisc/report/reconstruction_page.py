@@ -12,10 +12,9 @@ from gaitdisc.report.figure import Figure, file_names, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels_for, sheets
-from gaitdisc.report.sensor_sets import NOT_MSE, search_sentences, search_table
 from gaitdisc.report.table import Table, left_out_table, provenance_tables, save_tables, seen_table
 from gaitdisc.report.wording import counted, label, listed, number, plain, unit_text
-from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction
+from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, WORTH, Reconstruction, enough_sensors
 
 if TYPE_CHECKING:
     import rich.table
@@ -26,6 +25,10 @@ WITH_SENSORS, COVERAGE = "with sensors [1]", "coverage [%]"  # left out where th
 BESIDE = ("shred", "fourier ridge", "delay ridge", "linear", *FLOORS)
 MOST_PANELS = 16
 MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
+NOT_MSE = (
+    "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
+    "prints it in degrees; it has no unit. It is compared with the relative L2 here, and with no number in degrees."
+)
 FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used as they are."
 
 
@@ -107,7 +110,8 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     angles = _has_angles(done)
     rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
     noun = "future state" if _ahead(done) else "other state"
-    what = counted(len(done.states), noun) if angles else _quantities(done)
+    units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
+    what = counted(len(done.states), noun) if angles else f"{counted(len(done.states), 'channel')} [{units}]"
     sentences = [
         f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
@@ -180,11 +184,6 @@ def _what_is_tested(done: Reconstruction) -> str:
     if not _has_angles(done):
         return "all that is reconstructed"
     return "all angles" if _ahead(done) else "the angles that no sensor measures"
-
-
-def _quantities(done: Reconstruction) -> str:
-    units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
-    return f"{counted(len(done.states), 'channel')} [{units}]"
 
 
 def _spread(row: Any, measure: str, digits: int) -> str:
@@ -263,6 +262,55 @@ def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
             axes.fill_between(rows["percent"], low, high, color=MEASURED.colour, alpha=0.2, linewidth=0)
         look = RECONSTRUCTED[str(model).removesuffix(", calibrated")]
         axes.plot(rows["percent"], rows["reconstructed"], color=look.colour, linestyle=look.line, linewidth=1.1)
+
+
+def search_table(found: pd.DataFrame) -> Table:
+    """Best set of every size.
+
+    found: `search` of a reconstruction
+    """
+    chosen = enough_sensors(found)
+    rows = tuple(
+        (
+            f"{row['sensors']}{' *' if k == chosen else ''}",
+            listed([label(name) for name in str(row["names"]).split(", ")]),
+            number(float(row["loss"]) ** 0.5, 3),
+            number(float(row["rmse_deg"]), 2),
+            str(row["fits"]),
+            f"{row['seconds']:.1f}",
+        )
+        for k, row in found.reset_index(drop=True).iterrows()
+    )
+    caption = (
+        "Best set of sensors of every size, by ridge regression on their history, all participants together: all sets "
+        "of up to three, then the sensor that helps most. Chosen by the RMSE of all angles on the checked windows, "
+        "sensors counted as exact; beside it that of the angles that no sensor measures, on the test windows. * the "
+        f"smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; without one, the largest."
+    )
+    columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")
+    return Table("search", caption, columns, rows, found)
+
+
+def search_sentences(found: pd.DataFrame) -> list[str]:
+    """How many sensors are enough, and what one more would bring.
+
+    found: `search` of a reconstruction
+    """
+    chosen = enough_sensors(found)
+    row = found.iloc[chosen]
+    names = listed([label(name) for name in str(row["names"]).split(", ")])
+    size = int(row["sensors"])
+    if chosen + 1 < len(found):
+        less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
+        said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}; one more "
+        said += f"takes {100 * less:.0f} % off the error of all angles"
+    else:
+        said = (
+            f"The best set of {counted(size, 'sensor')} is {names}; whether it is enough is not known, no larger one "
+        )
+        said += "was tried"
+    cost = f"{counted(int(found['fits'].sum()), 'regression')}, {found['seconds'].sum():.1f} s"
+    return [f"{said} (search: {cost})."]
 
 
 def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:

@@ -47,7 +47,9 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         return write_cycles_page(run, folder)
     people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
     names = file_names(people)
-    sections = _sections(run, names, folder)
+    limit = largest_inline(FIGURES_A_PERSON * len(run.responses))
+    alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
+    sections = drawn_side_by_side(_section, alone, MOST_OPEN)  # drawing takes seconds a participant
     overview = save_figures(r2_figures(run) if run.responses else [], folder)
     compared = save_figures(comparison_figures(run), folder)
     pair_tables = comparison_tables(run)
@@ -77,13 +79,6 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         "briefly": len(sections) > MOST_OPEN,
     }
     return write_page("report", shown, folder)
-
-
-def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Section]:
-    """Drawing takes seconds a participant: with more than two of them they are drawn side by side."""
-    limit = largest_inline(FIGURES_A_PERSON * len(run.responses))
-    alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
-    return drawn_side_by_side(_section, alone, MOST_OPEN)
 
 
 def _of_one(run: ResponseRun, person: str) -> ResponseRun:
@@ -163,7 +158,9 @@ def _filter_sentence(run: ResponseRun) -> str:
     rates = sorted({walk.rate_hz for walk in run.walks})
     together = " or ".join(f"{effective_cutoff_hz(cutoff, rate, order):.2f} Hz at {rate:g} samples/s" for rate in rates)
     emg = ""
-    if {"emg_highpass_hz", "emg_lowpass_hz"} <= set(filters) and _has_emg(run):
+    if {"emg_highpass_hz", "emg_lowpass_hz"} <= set(filters) and any(
+        channel.quantity == "emg" for walk in run.walks for channel in walk.channels
+    ):
         emg = (
             f"; EMG was high-passed at {filters['emg_highpass_hz']:g} Hz, rectified, and low-passed at "
             f"{filters['emg_lowpass_hz']:g} Hz with the same order"
@@ -172,7 +169,3 @@ def _filter_sentence(run: ResponseRun) -> str:
         f"Angles were low-passed by a Butterworth filter of order {order} a pass, forwards and backwards, so without "
         f"lag, {cutoff:g} Hz at −3 dB of one pass{f' (both passes: {together})' if together else ''}{emg}."
     )
-
-
-def _has_emg(run: ResponseRun) -> bool:
-    return any(channel.quantity == "emg" for walk in run.walks for channel in walk.channels)

@@ -41,7 +41,8 @@ def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     table["kept"] = table["kept"].astype(bool)
     table["reason"] = table["reason"].fillna("").astype(str).where(~table["kept"], "")
     kinds = list(dict.fromkeys(table.loc[~table["kept"], "reason"].map(reason_kind)))
-    codes = {kind: _letters(i) for i, kind in enumerate(kinds)}
+    letters = string.ascii_uppercase
+    codes = {kind: (letters[i // 26 - 1] if i >= 26 else "") + letters[i % 26] for i, kind in enumerate(kinds)}
     table["code"] = [("" if kept else codes[reason_kind(r)]) for kept, r in zip(table["kept"], table["reason"])]  # noqa: B905
     return table[list(COLUMNS)]
 
@@ -141,11 +142,6 @@ def _alt(participant: str, numbers: pd.DataFrame) -> str:
         for condition, rows in numbers.groupby("condition", sort=False)
     ]
     return f"Strides of {participant}. {listed(parts)}."
-
-
-def _letters(index: int) -> str:
-    first = index // 26
-    return (string.ascii_uppercase[first - 1] if first else "") + string.ascii_uppercase[index % 26]
 
 
 def walks_table(run: ResponseRun) -> Table:

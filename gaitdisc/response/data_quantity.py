@@ -12,6 +12,7 @@ import pandas as pd
 from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
+from gaitdisc.response.models import report_share
 from gaitdisc.results import ParticipantResponse
 from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
 
@@ -49,7 +50,7 @@ def fit_data_quantity(
     tables = []
     for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
         less_nominal, less_exo = (shortened(walk, settings, length, part) for walk in (nominal, exo))
-        report = partial(_reported, progress, number, len(wanted) + 1)
+        report = partial(report_share, progress, number, len(wanted) + 1)
         try:
             response = fit_response(less_nominal, less_exo, settings, progress=report)
         except TrainingError as error:
@@ -86,7 +87,3 @@ def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, par
     else:
         usable[: max(0, good[-1] + 1 - keep)] = False
     return replace(walk, usable=usable)
-
-
-def _reported(progress: Callable[[float], None], number: int, count: int, fraction: float) -> None:
-    progress((number + fraction) / count)

@@ -44,12 +44,9 @@ class ResponseSettings:
 class FittedResponse:
     """The models of one participant, of every kind."""
 
-    # networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone
     network: ResponseModels
-    # networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone
-    ridge: ResponseModels
-    # networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone
-    linear: ResponseModels
+    ridge: ResponseModels  # regressions with phase harmonics
+    linear: ResponseModels  # regressions on the networks' own inputs alone
 
 
 def fit_response(

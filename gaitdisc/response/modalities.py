@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -33,8 +33,9 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
     >>> input_families(("knee_angle_r", "emg_sol_r", "emg_gas_r", "d(emg_sol_r)/dt", "phi"))["emg_sol"]
     ('emg_sol_r', 'd(emg_sol_r)/dt')
     """
-    channels = {name: _channel(name) for name in inputs if name != PHASE}
+    channels = {name: name for name in inputs if name != PHASE}
     fast = {name for name in channels if name.startswith("d(")}
+    channels |= {name: name.removeprefix("d(").removesuffix(")/dt") for name in fast}
     emg = {name for name in channels if channels[name].startswith("emg_")}
     angles = set(channels) - emg
     groups = {
@@ -47,7 +48,8 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
         "EMG velocities": emg & fast,
     }
     for name, channel in channels.items():
-        groups.setdefault(_sideless(channel), set()).add(name)
+        sideless = channel.removesuffix(f"_{side_of(channel)}") if side_of(channel) else channel
+        groups.setdefault(sideless, set()).add(name)
     found: dict[str, tuple[str, ...]] = {}
     for family, members in groups.items():
         chosen = tuple(name for name in inputs if name in members)
@@ -132,9 +134,54 @@ def _without(samples: Samples, left_away: Sequence[str]) -> Samples:
     return replace(samples, x=samples.x[:, np.array(kept)], inputs=names)
 
 
-def _channel(name: str) -> str:
-    return name.removeprefix("d(").removesuffix(")/dt") if name.startswith("d(") else name
+ANGLES_HZ = (4.0, 6.0, 8.0, 10.0, 12.0)
+EMG_HZ = (4.0, 6.0, 10.0, 15.0, 20.0)
+SHARES = (0.25, 0.5)
+AS_STUDIED = "as the study has it"
 
 
-def _sideless(channel: str) -> str:
-    return channel.removesuffix(f"_{side_of(channel)}") if side_of(channel) else channel
+@dataclass(frozen=True)
+class Setting:
+    """Filters and training length under which a study is fitted again.
+
+    >>> [setting.name for setting in settings_around(6.0, 10.0, emg=False)][:3]
+    ['as the study has it', 'angles 4 Hz', 'angles 8 Hz']
+    """
+
+    name: str
+    angles_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
+    emg_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
+    share: float = 1.0  # share of the training part that is used, from its beginning; 1 for all of it
+
+
+def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[Setting, ...]:
+    """Settings to try: the study's own, then one thing changed at a time.
+
+    angles_hz, emg_hz: the study's low-pass of the joint angles and of the rectified EMG [Hz]
+    """
+    angles = [Setting(f"angles {hz:g} Hz", hz, emg_hz) for hz in ANGLES_HZ if hz != angles_hz]
+    envelopes = [Setting(f"EMG {hz:g} Hz", angles_hz, hz) for hz in EMG_HZ if emg and hz != emg_hz]
+    lengths = [Setting(f"{share:.0%} of the training part", angles_hz, emg_hz, share) for share in SHARES]
+    return (Setting(AS_STUDIED, angles_hz, emg_hz), *angles, *envelopes, *lengths)
+
+
+def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
+    """Test Nominal against Augmented under every setting, over participants.
+
+    R2 under two settings are not of the same thing, for the filter makes what is to be predicted as well; the order of
+    the models under each setting can be compared, and how far each lies above the null of its filters.
+
+    people: of the question `sensitivity`; fewer than six are not tested
+    alpha: of each family of tests: the variables under one setting
+    returns: columns `VARIANT_TEST_COLUMNS`; model and second are `augmented`, first `nominal`
+    """
+    if len(people) < FEWEST:
+        return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
+    table = pd.concat([each.table.assign(participant=each.participant) for each in people], ignore_index=True)
+    table = table[table["kind"] == "network"]
+    parts = []
+    for variant in table["variant"].unique():
+        nominal, augmented = (_by_participant(table, variant, model) for model in ("nominal", "augmented"))
+        found = compare_columns(nominal, augmented, alpha)
+        parts.append(found.assign(variant=variant, model="augmented", first="nominal", second="augmented"))
+    return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]

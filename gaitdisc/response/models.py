@@ -57,7 +57,7 @@ def fit_models(
 
     nominal, exo: training parts of the walks without and with the device; same inputs and outputs
     """
-    parts = [partial(_third, progress or (lambda _: None), done) for done in range(3)]
+    parts = [partial(report_share, progress or (lambda _: None), done, 3) for done in range(3)]
     f = _named("Nominal", fit, nominal, parts[0])
     y = _named("Exo", fit, exo, parts[1])
     g = _named("Discrepancy", fit, exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
@@ -77,8 +77,9 @@ def _named(
         raise TrainingError(f"the {model} model: {error.needed}", error.found, error.remedy) from error
 
 
-def _third(progress: Callable[[float], None], done: int, fraction: float) -> None:
-    progress((done + fraction) / 3)
+def report_share(progress: Callable[[float], None], done: int, count: int, fraction: float) -> None:
+    """Say how far a whole is, of which so many equal parts are done and so much of the next."""
+    progress((done + fraction) / count)
 
 
 def fit_network(

@@ -4,11 +4,216 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gaitdisc.response.baseline_comparison import compare_baselines
-from gaitdisc.response.length_comparison import compare_lengths, why_no_lengths
-from gaitdisc.response.residual_reduction import compare_reductions, residual_reductions
-from gaitdisc.response.subgroups import responder_table
-from gaitdisc.results import DataQuantity, OverParticipants, ParticipantResponse
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ComparisonError
+from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns, r2_by_participant, too_few
+from gaitdisc.results import OverParticipants, ParticipantResponse
+from gaitdisc.results.over_participants import (
+    BASELINE_COLUMNS,
+    LENGTH_COLUMNS,
+    REDUCTION_COLUMNS,
+    REDUCTION_TEST_COLUMNS,
+    RESPONDER_COLUMNS,
+    WHOLE,
+    no_rows,
+)
+from gaitdisc.results.participant_response import BASELINES, MODELS, DataQuantity
+from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
+from gaitdisc.statistics.groups import Groups, find_groups
+from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_strides
+
+
+def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = ALPHA) -> pd.DataFrame:
+    """Compare the networks' R2 on held-out device walking with that of ridge regressions and of the filters' null.
+
+    alpha: of each family: the variables of one model and baseline
+    returns: columns `BASELINE_COLUMNS`: first is the baseline, second `network`; empty for fewer than six
+        participants. A network that is shown to be no better than its baseline in a variable earns nothing there
+    """
+    if len(responses) < FEWEST:
+        return no_rows("baselines")
+    null = r2_by_participant(responses, "nominal", "null")
+    parts = []
+    for model in MODELS:
+        network = r2_by_participant(responses, model)
+        for kind in BASELINES:
+            baseline = null if kind == "null" else r2_by_participant(responses, model, kind)
+            parts.append(compare_columns(baseline, network, alpha).assign(model=model, first=kind, second="network"))
+    return pd.concat(parts, ignore_index=True)[list(BASELINE_COLUMNS)]
+
+
+def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
+    """Compare, at every training length, Augmented with Exo, and Exo with the Exo of the whole training part.
+
+    alpha: of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
+        would hold 72 tests or more and at most 52 can
+    returns: columns `LENGTH_COLUMNS`, one row a length, comparison and variable; empty for fewer than six
+        participants. second is `exo` or `exo, whole training part`. A participant without a length is left out of it
+        by name
+    Source: Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
+    """
+    if len(quantities) < FEWEST:
+        return no_rows("lengths")
+    tables = {q.participant: q.table[(q.table["kind"] == "network") & (q.table["walk"] == "exo")] for q in quantities}
+    longest = {person: float(table["length_s"].max()) for person, table in tables.items()}
+    whole = pd.DataFrame({p: _r2(table, "exo", longest[p]) for p, table in tables.items()}).T
+    lengths = sorted({float(n) for p, table in tables.items() for n in table["length_s"] if n < longest[p]})
+    parts = []
+    for length in lengths:
+        models = {
+            model: pd.DataFrame({p: _r2(table, model, length) for p, table in tables.items()}).T.reindex(
+                index=whole.index, columns=whole.columns
+            )
+            for model in ("augmented", "exo")
+        }
+        for first, second, columns in (("augmented", "exo", models["exo"]), ("exo", WHOLE, whole)):
+            found = compare_columns(models[first], columns, alpha)
+            parts.append(found.assign(length_s=length, first=first, second=second))
+    return pd.concat(parts, ignore_index=True)[list(LENGTH_COLUMNS)]
+
+
+def why_no_lengths(quantities: Sequence[DataQuantity]) -> str:
+    """Why the lengths are not tested; empty where they are."""
+    return too_few(len(quantities)) if len(quantities) < FEWEST else ""
+
+
+def _r2(table: pd.DataFrame, model: str, length: float) -> pd.Series:
+    chosen = table[(table["model"] == model) & (table["length_s"] == length)]
+    return chosen.groupby("variable", sort=False)["r2"].first().astype(float)
+
+
+MEASURES = ("peak_to_peak", "rms")
+
+
+def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
+    """Size of the stride-averaged residual of every participant, variable and model, and its reduction.
+
+    The residual is measured minus predicted second derivative, averaged over the held-out strides of the device walk;
+    its size is the peak-to-peak value and the root mean square over the stride. The reduction is
+    1 - size / size of the Nominal model's: 0 for the Nominal model itself, negative where a model makes it larger.
+
+    responses: the participants; one with fewer than five strides has no numbers
+    returns: columns `REDUCTION_COLUMNS`
+    Source: Ebers 2023, section 4.3: "the magnitude of this pattern was reduced by 52.8%", for the hip of one
+        participant. How the magnitude is measured is not said; both usual readings are given. An average over n
+        strides keeps 1/n of the variance between strides, so the reduction stays below 1 even where nothing is missed.
+    """
+    tables = [_of_one(response) for response in responses]
+    if not tables:
+        return no_rows("reductions")
+    return pd.concat(tables, ignore_index=True)[list(REDUCTION_COLUMNS)]
+
+
+def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
+    """Test the reductions against zero over participants, for each measure and model over the variables.
+
+    reductions: of `residual_reductions`
+    alpha: of each family: the variables of one measure and model
+    returns: columns `REDUCTION_TEST_COLUMNS`; shift, low and high are the Hodges-Lehmann reduction and its interval of
+        95 %. Empty for fewer than six participants
+    """
+    if reductions["participant"].nunique() < FEWEST:
+        return no_rows("reduction_tests")
+    parts = []
+    for measure in MEASURES:
+        for model in MODELS[1:]:
+            own = reductions[reductions["model"] == model]
+            found = own.pivot_table(
+                index="participant", columns="variable", values=f"{measure}_reduction", sort=False, dropna=False
+            )
+            parts.append(
+                compare_columns(found * 0.0, found, alpha).assign(measure=measure, first="nominal", second=model)
+            )
+    return pd.concat(parts, ignore_index=True)[list(REDUCTION_TEST_COLUMNS)]
+
+
+def representative(reductions: pd.DataFrame, model: str = "augmented", measure: str = "rms") -> str:
+    """Participant whose reduction, median over variables, is nearest to the median participant's.
+
+    reductions: of `residual_reductions`
+    returns: pseudonym; the first of several as near, empty where nobody has a number
+    """
+    own = reductions[reductions["model"] == model]
+    middle = own.groupby("participant", sort=False)[f"{measure}_reduction"].median().dropna()
+    return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
+
+
+def _of_one(response: ParticipantResponse) -> pd.DataFrame:
+    residuals = response.residuals
+    sizes = {model: _sizes(curves) for model, curves in residuals.items()}
+    parts = []
+    for model, size in sizes.items():
+        table = size.assign(
+            participant=response.participant,
+            variable=response.outputs,
+            unit=response.units,
+            model=model,
+            strides=len(residuals[model]),
+        )
+        for measure in MEASURES:
+            nominal = sizes["nominal"][measure].where(sizes["nominal"][measure] > 0)
+            table[f"{measure}_reduction"] = 1 - size[measure] / nominal
+        parts.append(table)
+    return pd.concat(parts, ignore_index=True)
+
+
+def _sizes(residuals: NDArray[np.float64]) -> pd.DataFrame:
+    if len(residuals) < LEAST_STRIDES:
+        return pd.DataFrame(np.full((residuals.shape[2], len(MEASURES)), np.nan), columns=pd.Index(MEASURES))
+    mean = mean_over_strides(residuals)
+    return pd.DataFrame({measure: getattr(mean, measure) for measure in MEASURES})
+
+
+def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:
+    """Sub-group of each participant, and the verdict in a sentence that says who was looked at.
+
+    responses: the participants. Who lacks a point of the stride in an output is left out by name
+    returns table: columns `RESPONDER_COLUMNS`; empty where there were too few, or outputs differ
+    """
+    whole = [bool(np.isfinite(each.residuals["nominal"]).any(axis=0).all()) for each in responses]
+    complete = [each for each, has_all in zip(responses, whole, strict=True) if has_all]
+    absent = [each.participant for each, has_all in zip(responses, whole, strict=True) if not has_all]
+    left_out = f"; left out, for strides with missing points: {', '.join(absent)}" if absent else ""
+    who = f"n = {len(complete)} participants{left_out}"
+    if len(complete) < FEWEST_GROUPED:
+        return no_rows(
+            "responders"
+        ), f"Sub-groups were not looked for, which takes {FEWEST_GROUPED} participants ({who})"
+    try:
+        groups = find_responders(complete, seed)
+    except ComparisonError as error:
+        return no_rows("responders"), f"Sub-groups were not looked for: {error}"
+    numbers = (groups.count, groups.silhouette, groups.p, groups.stability)
+    rows = [
+        (response.participant, int(group), *numbers) for response, group in zip(complete, groups.labels, strict=True)
+    ]
+    return pd.DataFrame(rows, columns=pd.Index(RESPONDER_COLUMNS)), f"{groups.why} ({who})"
+
+
+def find_responders(responses: Sequence[ParticipantResponse], seed: int = 0) -> Groups:
+    """Look for sub-groups of participants whose discrepancies have one shape over the stride."""
+    return find_groups(discrepancy_curves(responses), seed=seed)
+
+
+def discrepancy_curves(responses: Sequence[ParticipantResponse]) -> NDArray[np.float64]:
+    """Mean over strides of what the Nominal model leaves of device walking, one row a participant.
+
+    returns (participant, output and phase) [1]: every output over its root mean square of all participants, so that
+        angles and EMG weigh alike
+    """
+    outputs = {response.outputs for response in responses}
+    if len(outputs) != 1:
+        raise ComparisonError(
+            "discrepancies are compared over the same outputs of all participants",
+            f"found {len(outputs)} sets of outputs in {len(responses)} participants",
+            "Leave out whoever lacks an output.",
+        )
+    means = np.stack([np.nanmean(response.residuals["nominal"], axis=0) for response in responses])
+    size = np.sqrt(np.mean(means**2, axis=(0, 1)))
+    return (means / np.where(size > 0, size, 1.0)).transpose(0, 2, 1).reshape(len(responses), -1)
 
 
 def compare_participants(

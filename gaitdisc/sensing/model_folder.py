@@ -80,16 +80,14 @@ class SensingModel:
 @written_together()
 def save_model(model: SensingModel, folder: Path) -> None:
     """Save a model: `weights.npz`, and `model.json` with the hashes of both."""
-    from gaitdisc.regression.fourier_ridge import FourierRidge
-    from gaitdisc.regression.ridge_file import save_ridge
+    from gaitdisc.regression.fourier_ridge import FourierRidge, save_ridge
 
     done = model.reconstructor
     places = [folder / WEIGHTS]
     if isinstance(done.model, FourierRidge):
         save_ridge(done.model, folder / WEIGHTS)
     else:
-        from gaitdisc.networks.ensemble import Ensemble, member_path, save_ensemble
-        from gaitdisc.networks.trained_network import TrainedNetwork, save_network
+        from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork, member_path, save_ensemble, save_network
 
         if isinstance(done.model, Ensemble):
             save_ensemble(done.model, folder / WEIGHTS)
@@ -123,7 +121,12 @@ def load_model(folder: Path) -> SensingModel:
         channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
         half, kind = np.array(data["half_widths"], float), data["kind"]
         numbers = data["n_fitted"], data["seconds"], data["device"]
-        _refuse_parts(kind, what, channels, half)
+        if kind not in (*KINDS, *ON_REQUEST):
+            raise ValueError(f"it is a {kind!r}, which this version does not know")
+        if tuple(channel.name for channel in channels) != (*what.sensors, *what.states):
+            raise ValueError("its channels are others than its sensors and states")
+        if half.shape != (len(what.states),):
+            raise ValueError(f"it has {half.size} half widths for {len(what.states)} states")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise SchemaError(
             f"{folder.name}/{NAME} is to be read as a model of gaitdisc",
@@ -139,15 +142,6 @@ def _said(error: Exception) -> str:
     return error.found if isinstance(error, DamagedError) else str(error)
 
 
-def _refuse_parts(kind: str, what: Sensing, channels: Sequence[Channel], half: NDArray[np.float64]) -> None:
-    if kind not in (*KINDS, *ON_REQUEST):
-        raise ValueError(f"it is a {kind!r}, which this version does not know")
-    if tuple(channel.name for channel in channels) != (*what.sensors, *what.states):
-        raise ValueError("its channels are others than its sensors and states")
-    if half.shape != (len(what.states),):
-        raise ValueError(f"it has {half.size} half widths for {len(what.states)} states")
-
-
 def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path) -> None:
     readings = 1 if kind in STATIC else what.lags.count
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
@@ -161,11 +155,10 @@ def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path)
 
 def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
     if "ridge" in kind or kind == "linear":
-        from gaitdisc.regression.ridge_file import load_ridge
+        from gaitdisc.regression.fourier_ridge import load_ridge
 
         return load_ridge(folder / WEIGHTS)
-    from gaitdisc.networks.ensemble import Ensemble, member_path
-    from gaitdisc.networks.trained_network import load_network
+    from gaitdisc.networks.trained_network import Ensemble, load_network, member_path
 
     build = network_of(kind, len(what.sensors))
     if kind == ENSEMBLE:

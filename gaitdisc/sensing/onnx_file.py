@@ -36,7 +36,7 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     path: of an `.onnx` file; written whole or not at all
     """
     helper, checker = _onnx()
-    from gaitdisc.networks.ensemble import Ensemble
+    from gaitdisc.networks.trained_network import Ensemble
 
     fitted = model.reconstructor.model
     graph = _Graph(helper, np.float64 if isinstance(fitted, FourierRidge) else np.float32)

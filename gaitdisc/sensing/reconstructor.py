@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.errors import ChannelError, SchemaError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.recording import Recording, Samples, Scale
 from gaitdisc.sensing.missing import hidden
@@ -172,7 +172,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
         return fit_fourier_ridge
     if kind == "fourier ridge":
         return partial(fit_fourier_ridge, features=FEATURES, seed=seed)
-    from gaitdisc.networks.ensemble import Ensemble
+    from gaitdisc.networks.trained_network import Ensemble
     from gaitdisc.networks.trainer import train
     from gaitdisc.networks.training_settings import TrainingSettings
 
@@ -191,8 +191,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
 
 def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     """Return what makes the network of a kind, from its numbers of inputs and outputs."""
-    from gaitdisc.networks.shallow_decoder import ShallowDecoder
-    from gaitdisc.networks.shred import Shred
+    from gaitdisc.networks.shred import ShallowDecoder, Shred
 
     if kind == "shallow decoder":
         return ShallowDecoder
@@ -205,3 +204,34 @@ def _as_long(settings: TrainingSettings, windows: int) -> TrainingSettings:
     """As many epochs as the steps of the dissertation's code make of so many windows."""
     each = math.ceil(windows / settings.batch)
     return replace(settings, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))
+
+
+def latent_states(done: Reconstructor, windows: Samples) -> NDArray[np.float64]:
+    """Latent state of a fitted SHRED at the last reading of each window, (window, node) [1]."""
+    from gaitdisc.networks.shred import Shred
+    from gaitdisc.networks.trained_network import TrainedNetwork
+
+    model = done.model
+    if not isinstance(model, TrainedNetwork) or not isinstance(model.network, Shred):
+        raise TrainingError(
+            "a latent state is that of one recurrent network",
+            f"the model is {done.kind!r}, which has none",
+            "Fit 'shred', 'masked shred' or 'shred-text'.",
+        )
+    return model.latent(windows.x)
+
+
+def leading(values: NDArray[np.float64], count: int = 3) -> NDArray[np.float64]:
+    """Return the first principal components in time, each of standard deviation 1, (time, component) [1].
+
+    The largest entry of each component's direction is positive, so that its sign does not rest on the decomposition.
+
+    >>> t = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+    >>> found = leading(np.column_stack([3 * np.sin(t), np.cos(t)]), 2)
+    >>> bool(np.allclose(found, np.sqrt(2) * np.column_stack([np.sin(t), np.cos(t)])))
+    True
+    """
+    about = values - values.mean(axis=0)
+    u, _, v = np.linalg.svd(about, full_matrices=False)
+    signs = np.sign(v[np.arange(len(v)), np.argmax(np.abs(v), axis=1)])
+    return (u * signs)[:, :count] * np.sqrt(len(values))

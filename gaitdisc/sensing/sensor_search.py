@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -49,7 +49,11 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
     products = [_products(parts, kept, bool(angles)) for parts in people]
     rows, best = [], ()
     for size in range(1, min(most, len(kept) - 1) + 1):
-        losses = {chosen: _loss(products, chosen) for chosen in _sets(size, kept, best)}
+        more = (tuple(sorted((*best, k))) for k in kept if k not in best)
+        losses = {
+            chosen: float(np.mean([_errors(each, chosen)[0].sum() / len(each.kept) for each in products]))
+            for chosen in (combinations(kept, size) if size <= WHOLE_SEARCH else more)
+        }
         best = min(losses, key=lambda chosen: losses[chosen])
         names = ", ".join(channels[k].name for k in best)
         now = time.process_time()
@@ -93,17 +97,6 @@ def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
 
     weights = y_scale.sd**2 if in_deg else np.ones(len(y_scale.sd))
     return _Products(of(training), of(parts.checked()), of(parts.tested()), weights, kept)
-
-
-def _sets(size: int, kept: Chosen, best: Chosen) -> Iterator[Chosen]:
-    if size <= WHOLE_SEARCH:
-        yield from combinations(kept, size)
-        return
-    yield from (tuple(sorted((*best, k))) for k in kept if k not in best)
-
-
-def _loss(products: Sequence[_Products], chosen: Chosen) -> float:
-    return float(np.mean([_errors(each, chosen)[0].sum() / len(each.kept) for each in products]))
 
 
 def _rmse(products: Sequence[_Products], chosen: Chosen) -> float:

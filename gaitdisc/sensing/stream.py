@@ -87,8 +87,7 @@ def _stepwise(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWi
     if reconstructor.kind not in ("shred", MASKED, ENSEMBLE, OF_TEXT):
         return _LastReadings(reconstructor)
     from gaitdisc.networks.carried_windows import CarriedWindows
-    from gaitdisc.networks.ensemble import Ensemble
-    from gaitdisc.networks.trained_network import TrainedNetwork
+    from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
 
     lags, model = reconstructor.sensing.lags, reconstructor.model
     if isinstance(model, Ensemble):

@@ -11,12 +11,51 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from gaitdisc.errors import ComparisonError, ShapeError
-from gaitdisc.statistics.permutation import USUAL, PermutationPlan, sign_flips
 
 FEWEST_IN_ONE = 6  # 2^5 sign flips, of which the smallest p is 1/32
 FEWEST_IN_EACH = 6  # fewer departures hold the level no longer
 AT_ONCE = 2**23  # numbers held at once while permuting
 ROUNDING = 1e-6  # of a channel's spread: a standard error below it is rounding
+
+
+@dataclass(frozen=True)
+class PermutationPlan:
+    """How a permutation test is run."""
+
+    alpha: float = 0.05  # chance of a false alarm anywhere in the stride and in any channel
+    permutations: int = 2000  # most of them; where there are no more, all are taken
+    seed: int = 0
+
+
+USUAL = PermutationPlan()
+
+
+def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool]:
+    """Signs of every permutation but that of the units as they are.
+
+    returns signs (permutation, unit): 1 or -1; with all signs turned |t| is the same, so the first unit keeps its own
+
+    >>> signs, exact = sign_flips(6, PermutationPlan())
+    >>> signs.shape, exact
+    ((31, 6), True)
+    """
+    exact = 2 ** (n - 1) <= plan.permutations
+    if exact:
+        turned = (np.arange(1, 2 ** (n - 1))[:, None] >> np.arange(n - 1)) & 1
+    else:
+        turned = np.random.default_rng(plan.seed).integers(0, 2, (plan.permutations - 1, n - 1))
+    count = len(turned) + 1
+    if plan.alpha * count < 1:
+        raise ComparisonError(
+            f"a permutation test at level {plan.alpha:g} needs {int(np.ceil(1 / plan.alpha))} permutations or more",
+            f"there are {count}",
+            "Raise the number of permutations, or the level.",
+        )
+    signs = np.ones((len(turned), n))
+    signs[:, 1:] -= 2.0 * turned
+    return signs, exact
+
+
 Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
+from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study, search_study
 from gaitdisc.errors import SamplingError, SchemaError, TrainingError
 from gaitdisc.report.reconstruction_page import reconstruction_sentences
 
@@ -84,3 +84,24 @@ def test_states_ahead_of_the_last_reading(study):
     assert done.history.endswith("each model gives the states 0.10 s after the last of them")
     assert people[0].fitted[0].reconstructor.sensing.lags.ahead == 10
     assert "future states are reconstructed" in reconstruction_sentences(done)[0]
+
+
+def test_sensors_are_searched_for_all_participants_together(study):
+    found = search_study(study, 2, ReconstructionSettings(spacing_s=0.1))
+    assert found["sensors"].tolist() == [1, 2]
+    assert found["fits"].tolist() == [5 * 2, 10 * 2]
+    assert set(found["names"][1].split(", ")) <= {"hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l",
+                                                  "knee_angle_l"}  # fmt: skip
+    assert found["loss"][1] < found["loss"][0]
+
+
+@pytest.mark.parametrize(
+    ("settings", "found"),
+    [
+        (ReconstructionSettings(targets="emg"), "emg are to be reconstructed 0 s ahead"),
+        (ReconstructionSettings(ahead_s=0.1), "states are to be reconstructed 0.1 s ahead"),
+    ],
+)
+def test_no_search_for_what_is_not_a_present_state(study, settings, found):
+    with pytest.raises(SchemaError, match=rf"searched for the states.*{found}.*name the sensors with --sensors"):
+        search_study(study, 2, settings)

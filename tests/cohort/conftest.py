@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.device import Spring
+from gaitdisc.cohort.person import Spring
 from gaitdisc.cohort.walk import walked
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.cohort.cohort import CALIBRATION_SEED, CHANGES, HIDDEN, REPORTED_SEED, the_twelve, walked_cohort, walks_of
-from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.person import Spring
 from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study

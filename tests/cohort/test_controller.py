@@ -10,10 +10,9 @@ import pytest
 from gaitdisc.cohort.body import cycle_rate
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.controller import COLUMNS, engaged_moment, learnt_table
-from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.leg_path import PHASES
 from gaitdisc.cohort.muscles import capacities, cycle_activation, strength_of
-from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.person import Spring, drawn
 
 
 def test_the_table_is_whole_and_closes():

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.marker_trial import marker_trial, standing
-from gaitdisc.cohort.overground import STANDS_N, overground
+from gaitdisc.cohort.marker_trial import STANDS_N, marker_trial, overground, standing
 from gaitdisc.cohort.walk import walked
 from gaitdisc.kinematics.motion import moved_body
 from gaitdisc.kinetics.body_inertia import Person

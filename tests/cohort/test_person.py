@@ -3,9 +3,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.device import Spring
-from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.person import Spring, drawn
 from gaitdisc.recording.body_measures import LEG_OF_STATURE
+
+
+def test_the_spring_acts_on_one_side_only():
+    moment = Spring(5.0).moment(np.array([-10.0, -1.0, 0.0, 9.0]), engaged_deg=-1.0)
+    assert moment == pytest.approx([0.0, 0.0, -5.0, -50.0])
+
+
+def test_slack_moves_the_engagement():
+    assert Spring(5.0, slack_deg=3.0).moment(np.array([1.0, 3.0]), engaged_deg=-1.0) == pytest.approx([0.0, -5.0])
 
 
 def test_a_seed_is_a_person():

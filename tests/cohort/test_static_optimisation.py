@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from gaitdisc.cohort.controller import shared
 from gaitdisc.cohort.muscles import capacities, strength_of
-from gaitdisc.cohort.static_optimisation import shared
 
 PHASES = 40
 

@@ -9,8 +9,7 @@ import pytest
 
 from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.device import Spring
-from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.person import Spring, drawn
 from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import StrideError
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import torch
 
+from gaitdisc.networks.descent import TorchSteps
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.fused_steps import FusedSteps, can_be_fused
-from gaitdisc.networks.schedule import schedule_of
-from gaitdisc.networks.torch_steps import TorchSteps
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
 
 
 def both(samples=1000, decay=0.3):

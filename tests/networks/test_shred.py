@@ -6,7 +6,7 @@ import torch
 
 from gaitdisc.errors import ShapeError, TrainingError
 from gaitdisc.networks import shred
-from gaitdisc.networks.shred import Shred
+from gaitdisc.networks.shred import ShallowDecoder, Shred
 from gaitdisc.networks.trained_network import load_network, save_network
 from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
@@ -89,3 +89,10 @@ def test_missing_readings_in_training(echo):
     assert np.mean(error[there]) < 0.3 < np.mean(error[~there])
     with pytest.raises(TrainingError, match="needs finite numbers"):
         train(holes.rows(slice(0, 500)), build, TrainingSettings(epochs=1))
+
+
+def test_it_has_two_hidden_layers_and_its_readout_is_linear():
+    network = ShallowDecoder(3, 18, 350, 400)
+    assert sum(w.numel() for w in network.parameters()) == 4 * 350 + 351 * 400 + 401 * 18
+    x = torch.rand(5, 3)
+    torch.testing.assert_close(network(x), network.readout(network.features(x)))

@@ -11,7 +11,7 @@ from gaitdisc.report.data_quantity import (
     quantity_sentences,
 )
 from gaitdisc.report.response_page import write_report
-from gaitdisc.response.length_comparison import compare_lengths
+from gaitdisc.response.over_participants import compare_lengths
 from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
 
 ONE = ("hip_flexion_r",)  # what else the page shows is drawn of one variable

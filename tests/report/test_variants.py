@@ -20,8 +20,7 @@ from gaitdisc.report.variants import (
     variant_tables,
     write_variants,
 )
-from gaitdisc.response.modalities import compare_modalities
-from gaitdisc.response.sensitivity import AS_STUDIED, compare_settings
+from gaitdisc.response.modalities import AS_STUDIED, compare_modalities, compare_settings
 from gaitdisc.results import Refusal
 from gaitdisc.results.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
 

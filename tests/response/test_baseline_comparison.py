@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from gaitdisc.response.baseline_comparison import compare_baselines
+from gaitdisc.response.over_participants import compare_baselines
 from gaitdisc.results.over_participants import BASELINE_COLUMNS
 
 R2 = {"network": 0.9, "ridge": 0.9, "linear": 0.7, "null": 0.5}

@@ -2,7 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gaitdisc.response.length_comparison import compare_lengths, why_no_lengths
+from gaitdisc.response.over_participants import compare_lengths, why_no_lengths
 from gaitdisc.results.over_participants import LENGTH_COLUMNS, WHOLE
 from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
 

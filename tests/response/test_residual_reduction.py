@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gaitdisc.response.residual_reduction import compare_reductions, representative, residual_reductions
+from gaitdisc.response.over_participants import compare_reductions, representative, residual_reductions
 from gaitdisc.results.over_participants import REDUCTION_COLUMNS
 
 PHASE = np.linspace(0, 2 * np.pi, 101)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.response.subgroups import discrepancy_curves, find_responders, responder_table
+from gaitdisc.response.over_participants import discrepancy_curves, find_responders, responder_table
 
 PHASE = np.linspace(0, 2 * np.pi, 101)
 

@@ -10,8 +10,7 @@ import torch
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
-from gaitdisc.networks.ensemble import Ensemble
-from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
 from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Reconstructor, network_of, sensing
 from gaitdisc.sensing.splits import split_within

@@ -2,8 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from gaitdisc.sensing.disturbance import NOISES, SHARES, against_missing, against_noise, noisy
+from ch5_disturbance import NOISES, SHARES, against_missing, against_noise, noisy
 
 KINDS = ("linear", "delay ridge")
 

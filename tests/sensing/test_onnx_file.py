@@ -6,8 +6,7 @@ import pytest
 import torch
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.networks.shallow_decoder import ShallowDecoder
-from gaitdisc.networks.shred import Shred
+from gaitdisc.networks.shred import ShallowDecoder, Shred
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import scale_of
 from gaitdisc.sensing.model_folder import SensingModel

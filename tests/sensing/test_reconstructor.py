@@ -4,7 +4,7 @@ import pytest
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
 from gaitdisc.networks.descent import descend
 from gaitdisc.sensing import reconstructor
-from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor, fitting_device, network_of, sensing
+from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor, fitting_device, latent_states, network_of, sensing
 from gaitdisc.sensing.windows import Lags, present
 
 
@@ -52,7 +52,7 @@ def test_the_networks_of_the_dissertations_code_have_its_weights():
 def test_a_network_is_fitted_for_as_many_steps_as_the_dissertations_code_makes(pair, monkeypatch):
     monkeypatch.setattr(reconstructor, "TEXT_STEPS", 40)
     seen = {}
-    monkeypatch.setattr("gaitdisc.networks.schedule.LEAST_STEPS", 1)
+    monkeypatch.setattr("gaitdisc.networks.training_settings.LEAST_STEPS", 1)
     monkeypatch.setattr("gaitdisc.networks.trainer.descend", lambda *a: seen.update(settings=a[4]) or descend(*a))
     done = fit_reconstructor("shred-text", pair.what, pair.parts.fitted().rows(slice(0, 640)), pair.parts.checked())
     kept = seen["settings"]
@@ -74,3 +74,17 @@ def test_a_network_takes_the_gpu_where_there_is_one():
     assert fitting_device(tuple(KINDS), "auto") == ("cuda" if torch.cuda.is_available() else "cpu")
     with pytest.raises(TrainingError, match=r"training is to run on 'gpu'; torch sees .*Use device 'auto'"):
         fitting_device(("linear",), "gpu")
+
+
+@pytest.mark.parametrize("kind", ["shred", "shred-text"])
+def test_the_latent_state_decoded_is_what_the_model_estimates(pair, untrained, kind):
+    done, windows = untrained(kind), pair.parts.tested()
+    latent = latent_states(done, windows)
+    assert latent.shape == (len(windows), 64)
+    np.testing.assert_allclose(done.model.decoded(latent), done(windows), rtol=1e-5, atol=1e-5)
+
+
+def test_a_model_without_a_recurrent_network_has_no_latent_state(pair):
+    ridge = fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
+    with pytest.raises(TrainingError, match="the model is 'delay ridge', which has none"):
+        latent_states(ridge, pair.parts.tested())

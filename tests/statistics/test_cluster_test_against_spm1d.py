@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
-from gaitdisc.statistics.permutation import PermutationPlan
+from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
 
 spm1d = pytest.importorskip("spm1d")
 EDGE = (

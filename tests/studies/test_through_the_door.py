@@ -23,7 +23,8 @@ INSIDE = {
         "plug_in_gait_bones", "pooled_cycles", "real_strides",
     },
     "what a command does with a whole study, beside its inner numbers": {
-        "ch4_ankle_exo", "ch4_ours", "ch5_gait", "ch5_gait_individual", "ch5_gait_population", "clinic_rules",
+        "ch4_ankle_exo", "ch4_ours", "ch5_disturbance", "ch5_gait", "ch5_gait_individual", "ch5_gait_population",
+        "ch5_set_figures", "ch5_set_table", "clinic_rules",
         "compare_exo_emg", "engine_cases", "said_of_files", "tracked_walks",
     },
     "fits and windows of one kind set beside others of the literature": {

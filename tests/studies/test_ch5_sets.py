@@ -1,15 +1,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+from ch5_set_figures import disturbance_figure, sensor_sets_figure
+from ch5_set_table import MEASURES, sensor_sets_table
 
-from gaitdisc.report.sensor_sets import (
-    MEASURES,
-    disturbance_figure,
-    search_sentences,
-    search_table,
-    sensor_sets_figure,
-    sensor_sets_table,
-)
+from gaitdisc.report.reconstruction_page import search_sentences, search_table
 
 
 def test_a_box_a_model_and_set_angles_and_translations_apart():

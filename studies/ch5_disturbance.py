@@ -8,8 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel
-from gaitdisc.recording import Recording, Samples
+from gaitdisc import Channel, Recording, Samples
 from gaitdisc.sensing.missing import filled, with_missing
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import Parts, split_within
@@ -17,8 +16,7 @@ from gaitdisc.sensing.state_errors import angle_columns
 
 NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
-COLUMNS = ("disturbance", "level", "model", "rmse_deg")
-
+DISTURBED = ("disturbance", "level", "model", "rmse_deg")
 Walks = Sequence[tuple[Recording, NDArray[np.float64]]]
 
 
@@ -56,7 +54,7 @@ def against_noise(
         for kind in kinds:
             done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), seed)
             rows.append(("noise", level, kind, _rmse(done, parts.tested(), channels)))
-    return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
 
 
 def against_missing(
@@ -86,7 +84,7 @@ def against_missing(
 
             test = _parts(walks, what, lost).tested()
             rows.append(("missing", level, kind, _rmse(done, test, channels)))
-    return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
 
 
 def _parts(walks: Walks, what: Sensing, disturbed: Callable[[Recording, int], Recording]) -> Parts:
