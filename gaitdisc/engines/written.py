@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Engine, Motion
+from gaitdisc.engines.engine import ByHand, Engine, Motion, read_model
 from gaitdisc.engines.mapping import REPLACED, read_mapping
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Term

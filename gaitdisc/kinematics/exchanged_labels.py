@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.landmark_order import landmark_order
+from gaitdisc.kinematics.calibration import Calibration, landmark_order
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.kinematics.segment_poses import free_fits, placed_markers

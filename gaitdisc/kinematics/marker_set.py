@@ -30,7 +30,6 @@ METHODS = {
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
 JOINTS = ("free", "held", "planar")
 PARTS = ("pelvis", "thigh", "shank", "foot")
-FEWEST_POINTS = 3
 PLACEHOLDER = re.compile(r"\{(S|s|side)\}")
 
 

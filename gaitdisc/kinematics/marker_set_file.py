@@ -12,7 +12,6 @@ from gaitdisc.channel import nearest_word, schema_folder
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.marker_set import (
     AXES,
-    FEWEST_POINTS,
     JOINTS,
     LANDMARKS,
     METHODS,
@@ -24,7 +23,7 @@ from gaitdisc.kinematics.marker_set import (
     choices,
     on_sides,
 )
-from gaitdisc.kinematics.pose import SEGMENTS
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS
 from gaitdisc.regular_file import check_regular
 from gaitdisc.toml_text import parsed_toml
 

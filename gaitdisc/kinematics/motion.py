@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.cardan import clinical_angles
 from gaitdisc.kinematics.exchanged_labels import (
     UNFIT,
     exchange_findings,
@@ -25,8 +24,7 @@ from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_
 from gaitdisc.kinematics.marker_set import MarkerSet
 from gaitdisc.kinematics.marker_set_file import marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import marker_labels
-from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import fitted_pose, residual_m
+from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose, clinical_angles, fitted_pose, residual_m
 from gaitdisc.kinematics.segment_poses import (
     PlacedMarkers,
     carried_joint,
