@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
