@@ -6,7 +6,7 @@ Labels that contradict where the landmarks of a standing person lie to each othe
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -24,6 +24,7 @@ from gaitdisc.recording.body_measures import BodyMeasures
 
 STANDS_M = 0.03  # who stands sways less than this in half a second
 USUAL_DIAMETER_M = 0.014
+RIGHTWARD = {"l": -1.0, "r": 1.0}  # sign of what points outward
 
 Points = Mapping[str, NDArray[np.float64]]
 MARKS = {
@@ -77,8 +78,9 @@ def calibrated(
     file = static.source.file or "the static trial"
     names = marker_set.names(marker_labels(static))
     _check_complete(marker_set, names, file)
-    needed = _needed_markers(marker_set, names)
-    places, moved, start = still_places(static, names, needed)
+    needed = [(key, side) for key in marker_set.needed_landmarks(names) for side in "lr"]
+    seen = dict.fromkeys(marker for key, side in needed for marker in marker_set.landmark(key, side, names))
+    places, moved, start = still_places(static, names, [*seen])
     _check_complete(marker_set, places, file)
     if moved > STANDS_M:
         raise SamplingError(
@@ -86,8 +88,7 @@ def calibrated(
             f"in {file} they move by {moved * 1000:.0f} mm in the stillest half second, at {start:.2f} s",
             "Give the trial in which the person stands.",
         )
-    builder = _Builder(marker_set, places, measures or BodyMeasures(), file, hips or {})
-    return builder.calibration()
+    return _Builder(marker_set, places, measures or BodyMeasures(), file, hips or {}).calibration()
 
 
 def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
@@ -99,16 +100,6 @@ def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
             f"{file} has no {lacking[0]}{several}",
             "Name the marker in the set's [aliases], or give the marker set of these labels.",
         )
-
-
-def _needed_markers(marker_set: MarkerSet, names: Mapping[str, str]) -> list[str]:
-    needed = [
-        marker
-        for key in marker_set.needed_landmarks(names)
-        for side in "lr"
-        for marker in marker_set.landmark(key, side, names)
-    ]
-    return list(dict.fromkeys(needed))
 
 
 class _Builder:
@@ -125,11 +116,11 @@ class _Builder:
 
     def calibration(self) -> Calibration:
         """Frames of all segments, and what lies where in them."""
-        asis = {side: self._place("asis", side) for side in "lr"}
+        middle = (self._place("asis", "l") + self._place("asis", "r")) / 2
         feet = np.mean([self._place(key, side) for key in ("heel", "toe") for side in "lr"], axis=0)
-        self.up = up_axis(((asis["l"] + asis["r"]) / 2)[None], feet[None], self.file)
+        self.up = up_axis(middle[None], feet[None], self.file)
         self._mend_labels()
-        self._pelvis({side: self._place("asis", side) for side in "lr"})
+        self._pelvis()
         check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
         for side in "lr":
             self._knee(side)
@@ -159,10 +150,11 @@ class _Builder:
     def _note(self, kind: str, what: str, spoils: str = "", severity: str = "note") -> None:
         self.findings.append(Finding(severity, kind, self.file, what, spoils))
 
-    def _pelvis(self, asis: Points) -> None:
-        middle = (asis["l"] + asis["r"]) / 2
+    def _pelvis(self) -> None:
+        left, right = self._place("asis", "l"), self._place("asis", "r")
+        middle = (left + right) / 2
         sacrum: NDArray[np.float64] = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
-        across, ahead = asis["r"] - asis["l"], middle - sacrum
+        across, ahead = right - left, middle - sacrum
         self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
         if self.measures.inter_asis_m is not None:
@@ -199,14 +191,10 @@ class _Builder:
                 self._note("marker diameter", what, "joint centres by some mm if they are of another size")
         return diameter / 2
 
-    def _method(self, joint: str) -> str:
-        methods = self.marker_set.joint_centres[joint]
-        return "midpoint" if "midpoint" in methods and self._has(f"{joint}_medial") else "chord"
-
     def _centre(self, joint: str, side: str, above: str, wand: str) -> NDArray[np.float64]:
         """Joint centre by midpoint or chord."""
         lateral = self._place(f"{joint}_lateral", side)
-        if self._method(joint) == "midpoint":
+        if "midpoint" in self.marker_set.joint_centres[joint] and self._has(f"{joint}_medial"):
             return (lateral + self._place(f"{joint}_medial", side)) / 2
         distance = self._width(joint, side) / 2 + self._radius()
         return chord_centre(self.centres[f"{above}_{side}"], self._place(wand, side), lateral, distance)
@@ -229,9 +217,9 @@ class _Builder:
     def _knee(self, side: str) -> None:
         centre = self._centre("knee", side, "hip", "thigh_wand")
         self.centres[f"knee_{side}"] = centre
-        outward = self._place("knee_lateral", side) - centre
+        to_right = (self._place("knee_lateral", side) - centre) * RIGHTWARD[side]
         hip = self.centres[f"hip_{side}"]
-        axes = _axes(_to_right(outward, side), hip - centre, self.file, f"thigh_{side}", "y")
+        axes = _axes(to_right, hip - centre, self.file, f"thigh_{side}", "y")
         self.static[f"thigh_{side}"] = Pose(hip[None], axes)
 
     def _ankle(self, side: str) -> None:
@@ -239,8 +227,8 @@ class _Builder:
         self.centres[f"ankle_{side}"] = centre
         knee = self.centres[f"knee_{side}"]
         of = self.marker_set.axes["shank"]
-        outward = self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]
-        axes = _axes(_to_right(outward, side), knee - centre, self.file, f"shank_{side}", "y")
+        to_right = (self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]) * RIGHTWARD[side]
+        axes = _axes(to_right, knee - centre, self.file, f"shank_{side}", "y")
         self.static[f"shank_{side}"] = Pose(knee[None], axes)
 
     def _foot(self, side: str) -> None:
@@ -284,14 +272,14 @@ class _Builder:
             return
         pair = exchanged_in_static(self.marker_set, self.places, self.up)
         if pair is None:
-            self._pelvis({side: self._place("asis", side) for side in "lr"})
+            self._pelvis()
             check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
             raise ShapeError(
                 "in a static trial each landmark lies where it does in every person who stands",
                 f"in {self.file} {wrong[1]} ({-wrong[0] * 1000:.0f} mm)",
                 "Correct the labels, or record the person with the legs side by side.",
             )
-        self.places = {**self.places, pair[0]: self.places[pair[1]], pair[1]: self.places[pair[0]]}
+        self.places = swapped(self.places, pair)
         self.exchanged = pair
         what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial makes it fit"
         self._note(
@@ -309,10 +297,6 @@ class _Builder:
             if above or set(self.exchanged) & {*self.marker_set.followers(segment), *marks, *wands}:
                 found.append(segment)
         return tuple(found)
-
-
-def _to_right(outward: NDArray[np.float64], side: str) -> NDArray[np.float64]:
-    return outward if side == "r" else -outward
 
 
 def _axes(
@@ -345,52 +329,48 @@ def landmark_order(marker_set: MarkerSet, places: Points, up: NDArray[np.float64
     returns: how far on the right side, and what is said where it is not
     """
     labels = {(key, side): marker_set.landmark(key, side, places) for key in (*SIDED, "sacrum") for side in "lr"}
-    at = {who: np.mean([places[one] for one in names], axis=0) for who, names in labels.items() if names}
-    apart = {pair: places[pair[1]] - places[pair[0]] for pair in marker_set.sided_pairs(places)}
-    across = np.sum([*apart.values()], axis=0)
+    at = {(name,): np.asarray(place) for name, place in places.items()}
+    at |= {names: np.mean([places[one] for one in names], axis=0) for names in labels.values() if names}
+    pairs = marker_set.sided_pairs(places)
+    across = np.sum([places[right] - places[left] for left, right in pairs], axis=0)
     across -= (across @ up) * up
     across = across / np.linalg.norm(across)
     forward = np.cross(up, across)
-    found = [
-        (one @ across + SIDE_BY_SIDE_M, f"{right} is not to the right of {left}")
-        for (left, right), one in apart.items()
+    order = [((right,), "to the right of", (left,), across) for left, right in pairs]
+    for side, outward in (("l", -across), ("r", across)):
+        knee, ankle, heel, toe = (labels[key, side] for key in ("knee_lateral", "ankle_lateral", "heel", "toe"))
+        along = (at[toe] - at[heel]) / np.linalg.norm(at[toe] - at[heel])
+        leg = [labels[key, side] for key in DOWN_THE_LEG if labels[key, side]]
+        order += [(one, "above", other, up) for one, other in itertools.pairwise(leg)]
+        order += [(toe, "ahead of", heel, forward), (ankle, "ahead of", heel, along), (toe, "ahead of", ankle, along)]
+        order += [(knee, "outside of", labels["knee_medial", side], outward)]
+        order += [(ankle, "outside of", labels["ankle_medial", side], outward)]
+        segments = {part: marker_set.followers(f"{part}_{side}" if part != "pelvis" else part) for part in PARTS}
+        on = {part: [(name,) for name in names if name in places] for part, names in segments.items()}
+        on["shank"] = [name for name in on["shank"] if name[0] not in ankle]
+        order += [(a, "above", b, up) for above, below in ABOVE for a, b in itertools.product(on[above], on[below])]
+        front = itertools.product(labels["asis", side], labels["sacrum", side])
+        order += [((spine,), "ahead of", (back,), forward) for spine, back in front]
+    slack = {"to the right of": SIDE_BY_SIDE_M}
+    return [
+        (float((at[a] - at[b]) @ way) + slack.get(words, 0.0), f"{' + '.join(a)} is not {words} {' + '.join(b)}")
+        for a, words, b, way in order
+        if b
     ]
-    for side, sign in (("l", -1.0), ("r", 1.0)):
-        knee, ankle, heel, toe = ((key, side) for key in ("knee_lateral", "ankle_lateral", "heel", "toe"))
-        leg = [(key, side) for key in DOWN_THE_LEG if (key, side) in at]
-        along = at[toe] - at[heel]
-        ordered = [(one, "above", other, up) for one, other in itertools.pairwise(leg)]
-        ordered += [(toe, "ahead of", heel, forward)]
-        along = along / np.linalg.norm(along)
-        ordered += [(ankle, "ahead of", heel, along), (toe, "ahead of", ankle, along)]
-        ordered += [(knee, "outside of", ("knee_medial", side), sign * across)]
-        ordered += [(ankle, "outside of", ("ankle_medial", side), sign * across)]
-        found += [
-            ((at[one] - at[other]) @ way, f"{' + '.join(labels[one])} is not {words} {' + '.join(labels[other])}")
-            for one, words, other, way in ordered
-            if other in at
-        ]
-        on = {part: [one for one in marker_set.followers(f"{part}_{side}") if one in places] for part in PARTS[1:]}
-        on |= {"pelvis": [one for one in marker_set.followers("pelvis") if one in places]}
-        on["shank"] = [one for one in on["shank"] if one not in labels[ankle]]
-        found += [
-            ((places[one] - places[other]) @ up, f"{one} is not above {other}")
-            for upper, lower in ABOVE
-            for one, other in itertools.product(on[upper], on[lower])
-        ]
-        found += [
-            ((places[one] - places[other]) @ forward, f"{one} is not ahead of {other}")
-            for one, other in itertools.product(labels["asis", side], labels["sacrum", side])
-        ]
-    return [(float(value), what) for value, what in found]
 
 
 def exchanged_in_static(marker_set: MarkerSet, places: Points, up: NDArray[np.float64]) -> tuple[str, str] | None:
     """Pair of markers whose exchange puts all landmarks right, by the most; None where no pair does."""
     names = [name for name in marker_set.markers() if name in places]
     ranked = [
-        (min(landmark_order(marker_set, {**places, a: places[b], b: places[a]}, up))[0], (a, b))
-        for a, b in itertools.combinations(names, 2)
+        (min(landmark_order(marker_set, swapped(places, pair), up))[0], pair)
+        for pair in itertools.combinations(names, 2)
     ]
     margin, pair = max(ranked)
     return pair if margin > 0 else None
+
+
+def swapped(places: Points, pair: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+    """Same places, those of two markers exchanged."""
+    first, second = pair
+    return {**places, first: places[second], second: places[first]}
