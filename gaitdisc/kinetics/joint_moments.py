@@ -20,7 +20,7 @@ from gaitdisc.kinetics.wrench import LEAST_LOAD_N
 from gaitdisc.recording import Recording
 
 FRAMES = ("joint", "distal")
-_ALONG_BONE = {0: 2, 1: 0, 2: 1}  # the segment's own axis that takes the place of each axis of the joint
+ALONG_BONE = [2, 0, 1]  # the segment's own axes that take the places of those of the joint
 SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
 
 
@@ -95,8 +95,6 @@ class KineticsSettings:
     # [Hz], of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
     # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     marker_cutoff_hz: float = 6.0
-    # [Hz], of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
-    # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     force_cutoff_hz: float = 20.0
     # [N], force at which a foot counts as off a platform, and below which there is no centre of pressure
     least_load_n: float = LEAST_LOAD_N
@@ -190,7 +188,9 @@ def joint_moments(
             nearer, farther = leg.moving[above], leg.moving[segment]
             moment = carried[segment].about(farther.pose.origin) / person.kg
             moment[unknown] = np.nan
-            axes = _axes(nearer.pose, farther.pose, settings.frame)
+            axes = joint_axes(nearer.pose, farther.pose)
+            if settings.frame == "distal":
+                axes = np.swapaxes(farther.pose.rotation, 1, 2)[:, ALONG_BONE]
             for part in (one for one in PARTS if one.joint == joint):
                 columns.append(along(moment, axes, part, side))
                 channels.append(Channel(f"{part.angle}_{side}_moment", "moment", "N m/kg", side))
@@ -198,9 +198,3 @@ def joint_moments(
             columns.append(np.einsum("fx,fx->f", moment, turning))
             channels.append(Channel(f"{joint}_power_{side}", "power", "W/kg", side))
     return Recording(time, np.column_stack(columns) if columns else np.empty((len(time), 0)), tuple(channels))
-
-
-def _axes(nearer: Pose, farther: Pose, frame: str) -> NDArray[np.float64]:
-    if frame == "joint":
-        return joint_axes(nearer, farther)
-    return np.stack([farther.rotation[:, :, _ALONG_BONE[axis]] for axis in range(3)], axis=1)

@@ -206,7 +206,11 @@ class Trial:
                 "Check that the files belong to the same trial and clock.",
             )
         time = start + np.arange(count) / rate_hz
-        values = [_at(r, time) for r in streams]
+        values = []
+        for r in streams:  # a heading that comes round between two samples is read on the short way
+            between = interpolated(r.time, unwrapped(r).values, time)
+            unmarked = np.zeros(between.shape, bool)
+            values.append(wrapped(replace(r, time=time, values=between, suspect=unmarked), r).values)
         marks = [interpolated(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,
@@ -217,10 +221,3 @@ class Trial:
             streams[0].source,
             np.hstack(marks),
         )
-
-
-def _at(recording: Recording, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values at other times; a heading that comes round between two samples is read on the short way."""
-    values = interpolated(recording.time, unwrapped(recording).values, time)
-    marks = np.zeros(values.shape, bool)
-    return wrapped(replace(recording, time=time, values=values, suspect=marks), recording).values
