@@ -63,15 +63,12 @@ class OpensimModel:
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
         """Accelerations (point, coordinate), with other values of some parameters."""
-        return self._rates(at, values, forces)[:, : len(self.coordinates)]
+        return self.rates(at, values, forces)[:, : len(self.coordinates)]
 
-    def rates(self, at: Motion, values: Mapping[str, float]) -> NDArray[np.float64]:
-        """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
-        return self._rates(at, values, None)
-
-    def _rates(
-        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None
+    def rates(
+        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
+        """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
         own = {one.name: one.value for one in self.parameters}
         changed = {self._called[name]: value for name, value in values.items() if value != own[name]}
         push = np.zeros_like(at.q) if forces is None else forces
@@ -221,12 +218,11 @@ def with_value(text: str, name: str, value: float) -> str | None:
     changed = f"{found[0][: own.start(2)]}{value!r}{found[0][own.end(2) :]}"
     if word == "mass":
         share = value / float(own[2])
-        changed = re.sub(r"(<inertia>)([^<]*)(</inertia>)", lambda inertia: _scaled(inertia, share), changed, count=1)
+        inertia = re.search(r"(?<=<inertia>)[^<]*(?=</inertia>)", changed)
+        if inertia:
+            scaled = _words(np.array([float(word) for word in inertia[0].split()]) * share)
+            changed = changed[: inertia.start()] + scaled + changed[inertia.end() :]
     return text[: found.start()] + changed + text[found.end() :]
-
-
-def _scaled(found: re.Match[str], share: float) -> str:
-    return found[1] + _words(np.array([float(word) for word in found[2].split()]) * share) + found[3]
 
 
 def _words(vector: np.ndarray) -> str:
@@ -242,10 +238,7 @@ def _translated(tree: Tree, names: dict[str, str]) -> str | None:
     parts = [_translated(one, names) for one in tree.arguments]
     if None in parts:
         return None
-    return _operation(tree.symbol, [f"({part})" for part in parts])
-
-
-def _operation(symbol: str, given: list[str]) -> str | None:
+    symbol, given = tree.symbol, [f"({part})" for part in parts]
     if symbol in BINARY:
         return BINARY[symbol].join(given)
     written = {
