@@ -123,8 +123,7 @@ class _Builder:
         self._pelvis()
         check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
         for side in "lr":
-            self._knee(side)
-            self._ankle(side)
+            self._leg(side)
             self._foot(side)
         body = {segment: self._followers(segment) for segment in SEGMENTS}
         points = {segment: self._points(segment) for segment in SEGMENTS}
@@ -214,22 +213,16 @@ class _Builder:
             f"Give {joint}_width_m, or put on a medial marker in the static trial.",
         )
 
-    def _knee(self, side: str) -> None:
-        centre = self._centre("knee", side, "hip", "thigh_wand")
-        self.centres[f"knee_{side}"] = centre
-        to_right = (self._place("knee_lateral", side) - centre) * RIGHTWARD[side]
-        hip = self.centres[f"hip_{side}"]
-        axes = _axes(to_right, hip - centre, self.file, f"thigh_{side}", "y")
-        self.static[f"thigh_{side}"] = Pose(hip[None], axes)
-
-    def _ankle(self, side: str) -> None:
-        centre = self._centre("ankle", side, "knee", "shank_wand")
-        self.centres[f"ankle_{side}"] = centre
-        knee = self.centres[f"knee_{side}"]
-        of = self.marker_set.axes["shank"]
-        to_right = (self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]) * RIGHTWARD[side]
-        axes = _axes(to_right, knee - centre, self.file, f"shank_{side}", "y")
-        self.static[f"shank_{side}"] = Pose(knee[None], axes)
+    def _leg(self, side: str) -> None:
+        """Frames of thigh and shank, whose y points up to the joint above."""
+        for segment, above, joint in (("thigh", "hip", "knee"), ("shank", "knee", "ankle")):
+            centre = self._centre(joint, side, above, f"{segment}_wand")
+            self.centres[f"{joint}_{side}"] = centre
+            of = self.marker_set.axes.get(segment, joint)  # a thigh's is always its knee
+            to_right = (self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]) * RIGHTWARD[side]
+            origin = self.centres[f"{above}_{side}"]
+            axes = _axes(to_right, origin - centre, self.file, f"{segment}_{side}", "y")
+            self.static[f"{segment}_{side}"] = Pose(origin[None], axes)
 
     def _foot(self, side: str) -> None:
         along = self._place("toe", side) - self._place("heel", side)
