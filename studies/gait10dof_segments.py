@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.newton_euler import joint_wrenches
+from gaitdisc.kinetics.newton_euler import joint_wrenches, segment_motion
 from gaitdisc.kinetics.plate_steps import foot_paths
 from gaitdisc.kinetics.platform import platforms
-from gaitdisc.kinetics.segment_motion import segment_motion
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.kinetics.wrench import Wrench
 

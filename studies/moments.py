@@ -26,7 +26,7 @@ from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 import gaitdisc as gd
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings

@@ -11,8 +11,7 @@ from plug_in_gait_angles import people
 
 import gaitdisc as gd
 from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.marker_set import METHODS
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import METHODS, marker_set
 from gaitdisc.kinematics.motion import motion
 
 PART_OF_SKIN = {"pelvis": 0.5, "thigh": 1.0, "shank": 0.5, "foot": 0.25}

@@ -10,8 +10,7 @@ import numpy as np
 import gaitdisc as gd
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set import MarkerSet
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.recording.body_measures import BodyMeasures
 

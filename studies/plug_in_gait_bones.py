@@ -8,8 +8,8 @@ import numpy as np
 
 import gaitdisc as gd
 from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinetics.newton_euler import nearest_rotations
 from gaitdisc.kinetics.plate_steps import FootPath, foot_paths
-from gaitdisc.kinetics.segment_motion import nearest_rotations
 from gaitdisc.signals.direction import marker_position
 
 WALKERS = ("HC002D", "HC030A", "HC031A", "HC032A", "HC033A", "HC036A")

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gaitdisc.channel import Channel
-from gaitdisc.kinematics.cardan import rotation_of
 from gaitdisc.kinematics.joint_centres import harrington_hip
+from gaitdisc.kinematics.pose import rotation_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.body_measures import BodyMeasures
 

@@ -6,8 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.newton_euler import GRAVITY, RigidBody
-from gaitdisc.kinetics.segment_motion import SegmentMotion
+from gaitdisc.kinetics.newton_euler import GRAVITY, RigidBody, SegmentMotion
 
 LENGTH, CENTRES, MASSES, INERTIAS = 0.42, (0.19, 0.24), (3.4, 1.9), (0.061, 0.035)
 Z = np.array([0.0, 0.0, 1.0])

@@ -13,7 +13,7 @@ from gaitdisc.batch.chapter_parts import PARTS
 from gaitdisc.batch.chapter_run import NAME as CHAPTER
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError
-from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
+from gaitdisc.kinematics.marker_set import shipped_marker_sets
 from gaitdisc.recording import Finding
 from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.discovery import Discovery

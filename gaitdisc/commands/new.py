@@ -27,7 +27,7 @@ def new(
     actuators: Annotated[Path | None, typer.Option(help="Reserves and residuals of these forces (.xml).")] = None,
 ) -> None:
     """Write a study file from the recordings found in a folder, or a model's mapping file."""
-    from gaitdisc.engines.model_file import is_model
+    from gaitdisc.engines.engine import is_model
 
     if external_loads or forces or actuators:
         _write_tracked(out, recordings, (external_loads, forces, actuators))
@@ -60,8 +60,8 @@ def _claim_mapping(file: Path, model: Path) -> None:
 
 
 def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
+    from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import write_mapping
-    from gaitdisc.engines.model_file import read_model
 
     _claim_mapping(file, model)
     mapping = write_mapping(read_model(model), file, degrees)

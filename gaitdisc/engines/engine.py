@@ -1,8 +1,10 @@
-"""What an engine's model offers, whichever engine it is."""
+"""What an engine's model offers, whichever engine it is; which files are models, and how their parts are called."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import keyword
+import re
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -11,10 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.simulation.expression import RESERVED
 from gaitdisc.simulation.parts import Input, Parameter, Term
 
 SPEED = "_speed"
+LONGEST = 40  # characters, which leaves room for what a kind of number is called behind it
+ENGINES = {".xml": "mujoco", ".mjcf": "mujoco", ".osim": "opensim"}
 
 
 @dataclass(frozen=True)
@@ -135,3 +140,51 @@ def refuse_unknown(kind: str, name: str, known: tuple[str, ...], file: str) -> S
         f"{file} has none called {name!r}",
         f"{hint}Known: {', '.join(known) or 'none'}.",
     )
+
+
+def part_name(called: str, kind: str, taken: Collection[str] = ()) -> str:
+    """Name for a part of a model: letters, digits and _; of one whose name is taken, its kind stands behind it.
+
+    >>> part_name("knee-angle r", "joint"), part_name("lambda", "joint"), part_name("1st", "motor")
+    ('knee_angle_r', 'lambda_joint', 'motor_1st')
+    >>> part_name("elbow", "control", {"elbow"}), part_name("elbow", "control", {"elbow", "elbow_control"})
+    ('elbow_control', 'elbow_control_2')
+    """
+    name = re.sub(r"[^A-Za-z0-9_]", "_", called)[:LONGEST]
+    if not re.match("[A-Za-z]", name):
+        name = f"{kind}_{name.lstrip('_')}"
+    if keyword.iskeyword(name) or name in RESERVED or name in taken:
+        name = f"{name}_{kind}"
+    free, number = name, 1
+    while free in taken:
+        number += 1
+        free = f"{name}_{number}"
+    return free
+
+
+def new_name(called: str, kind: str, taken: set[str]) -> str:
+    """Name of a part, which is taken from then on."""
+    name = part_name(called, kind, taken)
+    taken.add(name)
+    return name
+
+
+def is_model(path: Path) -> bool:
+    """Whether a file is one that an engine reads."""
+    return path.suffix.lower() in ENGINES
+
+
+def read_model(path: Path | str) -> Engine:
+    """Model of an engine's file; the engine is imported here."""
+    path = Path(path)
+    if not path.is_file():
+        raise ReadError("a model is read from its file", f"there is none at {path}", "Check the path.")
+    if ENGINES.get(path.suffix.lower()) == "mujoco":
+        from gaitdisc.engines.mujoco_model import MujocoModel
+
+        return MujocoModel(path)
+    if ENGINES.get(path.suffix.lower()) == "opensim":
+        from gaitdisc.engines.opensim_model import OpensimModel
+
+        return OpensimModel(path)
+    raise ReadError("a model is a file of MuJoCo (.xml) or OpenSim (.osim)", f"found {path.name}", "Name such a file.")

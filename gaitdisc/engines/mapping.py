@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.engines.engine import Engine, refuse_unknown
-from gaitdisc.engines.model_file import is_model, read_model
+from gaitdisc.engines.engine import Engine, is_model, read_model, refuse_unknown
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding

@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, new_name, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_value
-from gaitdisc.engines.part_names import new_name
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 

@@ -53,7 +53,8 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
         found = _with_attribute(text, tag, "stiffness", f"0 0 {at_one!r}")
     elif name in MORE_OF:
         attribute = MORE_OF[name]
-        found = _with_more(text, tag, attribute, (own[attribute], at_speed_one))
+        first, *rest = (_attribute(text, tag, attribute) or repr(own[attribute])).split()
+        found = _with_attribute(text, tag, attribute, " ".join([repr(float(first) + at_speed_one), *rest]))
     elif name == "quadratic_drag":
         first = (_attribute(text, tag, "damping") or repr(own["damping"])).split()
         found = _with_attribute(text, tag, "damping", f"{first[0]} {at_speed_one!r}") if len(first) == 1 else None
@@ -78,9 +79,15 @@ def _with_mass(text: str, body: _Tag, value: float) -> str | None:
     own = [one for one in inner if one[0] == "inertial"] or inner
     if len(own) != 1 or _attribute(text, own[0], "mass") is None:
         return None
-    if own[0][0] == "inertial":
-        return _with_inertia(text, own[0], value)
-    return _with_attribute(text, own[0], "mass", repr(value))
+    tag = own[0]
+    for name in ("diaginertia", "fullinertia") if tag[0] == "inertial" else ():
+        given = _attribute(text, tag, name)
+        if given:  # of the same shape: the inertia goes with the mass
+            share = value / float(_attribute(text, tag, "mass") or 1.0)
+            words = " ".join(repr(float(word) * share) for word in given.split())
+            text = _with_attribute(text, tag, name, words)
+            tag = next(one for one in _tags(text) if one[1] == tag[1])
+    return _with_attribute(text, tag, "mass", repr(value))
 
 
 def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
@@ -114,24 +121,6 @@ def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str |
         text = _with_attribute(text, tag, "springref", repr(float(own[0]) * rest / both))
         tag = next(one for one in _tags(text) if one[1] == tag[1])
     return _with_attribute(text, tag, "stiffness", repr(both))
-
-
-def _with_more(text: str, tag: _Tag, attribute: str, numbers: tuple[float, float]) -> str:
-    """An attribute with more in it than it has, or had before."""
-    first, *rest = (_attribute(text, tag, attribute) or repr(numbers[0])).split()
-    return _with_attribute(text, tag, attribute, " ".join([repr(float(first) + numbers[1]), *rest]))
-
-
-def _with_inertia(text: str, tag: _Tag, mass: float) -> str:
-    """Another mass of the same shape: the inertia goes with it."""
-    share = mass / float(_attribute(text, tag, "mass") or 1.0)
-    for name in ("diaginertia", "fullinertia"):
-        given = _attribute(text, tag, name)
-        if given:
-            words = " ".join(repr(float(word) * share) for word in given.split())
-            text = _with_attribute(text, tag, name, words)
-            tag = next(one for one in _tags(text) if one[1] == tag[1])
-    return _with_attribute(text, tag, "mass", repr(mass))
 
 
 _Tag = tuple[str, int, int, int]  # name, where it begins and ends, where its parent begins

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import re
 import subprocess
 import sys
 import weakref
@@ -11,17 +12,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
-from gaitdisc.engines.opensim_text import with_effect, with_value
-from gaitdisc.engines.part_names import new_name
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, new_name, refuse_absent
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.simulation.parts import Input, Parameter
+from gaitdisc.simulation.expression import Name, Number, Tree, parsed
+from gaitdisc.simulation.parts import Input, Parameter, Term
 
 WORKER = Path(__file__).with_name("opensim_worker.py")
+ALLOWED = ("sin", "cos", "tan", "tanh", "exp", "sqrt", "min", "max")
+BINARY = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "^"}
 
 
 class OpensimModel:
@@ -60,15 +63,12 @@ class OpensimModel:
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
         """Accelerations (point, coordinate), with other values of some parameters."""
-        return self._rates(at, values, forces)[:, : len(self.coordinates)]
+        return self.rates(at, values, forces)[:, : len(self.coordinates)]
 
-    def rates(self, at: Motion, values: Mapping[str, float]) -> NDArray[np.float64]:
-        """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
-        return self._rates(at, values, None)
-
-    def _rates(
-        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None
+    def rates(
+        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
+        """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
         own = {one.name: one.value for one in self.parameters}
         changed = {self._called[name]: value for name, value in values.items() if value != own[name]}
         push = np.zeros_like(at.q) if forces is None else forces
@@ -169,3 +169,81 @@ def _ended(process: subprocess.Popen[bytes]) -> None:
     """End a process when nobody needs it any more."""
     process.kill()
     process.wait()
+
+
+def with_effect(text: str, term: Term, names: tuple[str, str], coordinate: str) -> str | None:
+    """Text with a force of an expression on a coordinate; None where the expression knows more than that coordinate.
+
+    names: coordinate and speed as the term calls them
+    coordinate: as the file calls it
+    """
+    expression = _translated(parsed(term.term), {names[0]: "q", names[1]: "qdot"})
+    found = re.search(r"<ForceSet\b.*?</ForceSet>", text, re.DOTALL)
+    if expression is None or found is None:
+        return None
+    own = (
+        f"<ExpressionBasedCoordinateForce name={quoteattr(f'{term.name}_{coordinate}')}>"
+        f"<coordinate>{escape(coordinate)}</coordinate><expression>{escape(expression)}</expression>"
+        "</ExpressionBasedCoordinateForce>\n"
+    )
+    whole = found[0]
+    empty = re.search(r"<objects\s*/>", whole)
+    at = whole.rfind("</objects>")
+    if at >= 0:  # the last: the first ones are those of muscles' paths
+        whole = f"{whole[:at]}{own}{whole[at:]}"
+    elif empty:
+        whole = f"{whole[: empty.start()]}<objects>\n{own}</objects>{whole[empty.end() :]}"
+    else:
+        return None
+    return text[: found.start()] + whole + text[found.end() :]
+
+
+def with_value(text: str, name: str, value: float) -> str | None:
+    """Text with a mass, an optimal force or gravity changed; None where the file does not say it."""
+    if name == "gravity":
+        found = re.search(r"(<gravity>)([^<]*)(</gravity>)", text)
+        if not found:
+            return None
+        vector = np.array([float(word) for word in found[2].split()])
+        return text[: found.start(2)] + _words(vector * (value / np.linalg.norm(vector))) + text[found.end(2) :]
+    kind, part, word = ("Body", name.removesuffix("_mass"), "mass")
+    if name.endswith("_optimal_force"):
+        kind, part, word = "CoordinateActuator", name.removesuffix("_optimal_force"), "optimal_force"
+    if name.endswith("_max_isometric_force"):  # of a muscle of any kind
+        kind, part, word = r"\w*Muscle", name.removesuffix("_max_isometric_force"), "max_isometric_force"
+    found = re.search(rf"<({kind}) name={re.escape(quoteattr(part))}>.*?</\1>", text, re.DOTALL)
+    own = re.search(rf"(<{word}>)([^<]*)(</{word}>)", found[0]) if found else None
+    if found is None or own is None:
+        return None
+    changed = f"{found[0][: own.start(2)]}{value!r}{found[0][own.end(2) :]}"
+    if word == "mass":
+        share = value / float(own[2])
+        inertia = re.search(r"(?<=<inertia>)[^<]*(?=</inertia>)", changed)
+        if inertia:
+            scaled = _words(np.array([float(word) for word in inertia[0].split()]) * share)
+            changed = changed[: inertia.start()] + scaled + changed[inertia.end() :]
+    return text[: found.start()] + changed + text[found.end() :]
+
+
+def _words(vector: np.ndarray) -> str:
+    return " ".join(repr(float(each)) for each in vector)
+
+
+def _translated(tree: Tree, names: dict[str, str]) -> str | None:
+    """Expression as OpenSim writes it; None where it has a name or a function that OpenSim does not know there."""
+    if isinstance(tree, Number):
+        return repr(tree.value)
+    if isinstance(tree, Name):
+        return names.get(tree.name)
+    parts = [_translated(one, names) for one in tree.arguments]
+    if None in parts:
+        return None
+    symbol, given = tree.symbol, [f"({part})" for part in parts]
+    if symbol in BINARY:
+        return BINARY[symbol].join(given)
+    written = {
+        "neg": f"(-1)*{given[0]}",
+        "abs": f"sqrt({given[0]}*{given[0]})",
+        "sign": f"tanh({given[0]}/0.02)",  # as this package rounds its corner
+    }
+    return written.get(symbol) or (f"{symbol}({','.join(given)})" if symbol in ALLOWED else None)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Coordinate, Motion
+from gaitdisc.engines.engine import Coordinate, Motion, new_name
 from gaitdisc.engines.opensim_model import OpensimModel
 from gaitdisc.engines.opensim_worker import (
     PORT,
@@ -20,7 +20,6 @@ from gaitdisc.engines.opensim_worker import (
     couplers,
     switch_off_controllers,
 )
-from gaitdisc.engines.part_names import new_name
 from gaitdisc.errors import SchemaError
 
 Values = NDArray[np.float64]

@@ -129,8 +129,7 @@ def tracked_motion(
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
         spans[tracked.forces] = forces[:, 0]
-    inside = _shared(spans, time) & (time >= tracked.start_s) & (time <= tracked.end_s)
-    _refuse_short(time[inside], tracked)
+    inside = _shared(spans, time, tracked)
     if rates:
         (_, v), (_, a) = [(at, _at(time, at, values)) for at, values in rates]
     else:
@@ -158,7 +157,7 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
             name, unit = channel.name.removesuffix(word), channel.unit
             if name in turning and not unit.startswith("deg"):  # a name that only this model has
                 unit = "deg" if _in_degrees(path) else "rad"
-            columns[name] = stream.values[:, k] * _radians(unit)
+            columns[name] = stream.values[:, k] * (np.pi / 180 if unit.startswith("deg") else 1.0)
     for one in coordinates:
         if one.called not in columns:
             near = nearest_word(one.called, tuple(columns))
@@ -181,10 +180,6 @@ def _in_degrees(path: Path) -> bool:
             "Write inDegrees=yes or inDegrees=no there, before endheader.",
         )
     return degrees
-
-
-def _radians(unit: str) -> float:
-    return float(np.pi / 180) if unit.startswith("deg") else 1.0
 
 
 def _refuse_degrees(path: Path, coordinates: tuple[Coordinate, ...], q: Values) -> None:
@@ -259,8 +254,8 @@ def _other_forces(tracked: Tracked) -> tuple[str, ...]:
     return tuple(name for name in (*recorded, *passive) if name)
 
 
-def _shared(spans: dict[Path, Values], time: Values) -> NDArray[np.bool_]:
-    """Samples of a time base that all files cover."""
+def _shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArray[np.bool_]:
+    """Samples of a time base that all files cover and that are to be tracked."""
     first = max(spans, key=lambda one: spans[one][0])
     last = min(spans, key=lambda one: spans[one][-1])
     begin, end = float(spans[first][0]), float(spans[last][-1])
@@ -270,17 +265,15 @@ def _shared(spans: dict[Path, Values], time: Values) -> NDArray[np.bool_]:
             f"{first.name} begins at {begin:.4g} s, {last.name} ends at {end:.4g} s",
             "Put both on one clock, or export the same part of the trial.",
         )
-    return (time >= begin - 1e-9) & (time <= end + 1e-9)
-
-
-def _refuse_short(time: Values, tracked: Tracked) -> None:
-    if len(time) < 2 or time[-1] - time[0] < SHORTEST_S:
+    inside = (time >= max(begin - 1e-9, tracked.start_s)) & (time <= min(end + 1e-9, tracked.end_s))
+    if not inside.any() or np.ptp(time[inside]) < SHORTEST_S:
         raise SamplingError(
             f"a walk lasts {SHORTEST_S:g} s or more",
             f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, where "
-            f"{len(time)} samples are",
+            f"{inside.sum()} samples are",
             "Correct start_s and end_s in [tracked].",
         )
+    return inside
 
 
 def _at(time: Values, own: Values, values: Values) -> Values:

@@ -6,14 +6,14 @@ import tempfile
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Engine, Motion
+from gaitdisc.engines.engine import ByHand, Engine, Motion, read_model
 from gaitdisc.engines.mapping import REPLACED, read_mapping
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Term
@@ -44,7 +44,8 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
     changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = []
     for name, value in augmented.values().items():
         if abs(value - before[name]) > SAME * abs(before[name]):
-            changes.append((f"{name} = {value:.6g}", _setting(engine, name, value), (), {name: value}))
+            change = partial(engine.text_with_value, name=name, value=value)
+            changes.append((f"{name} = {value:.6g}", change, (), {name: value}))
     for term in augmented.effects:
         changes.append((f"{term.name} at {term.place}", _adding(engine, augmented, term), (term,), {}))
     for what, change, more_forces, more_values in changes:
@@ -52,7 +53,11 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
         wanted = (augmented, (*forces, *more_forces), values | more_values)
         deviation, read = _compared(engine, tried, *wanted) if tried is not None else (np.inf, None)
         if tried is None or read is None or deviation > SAME:
-            said = "has no form in the model's own file" if tried is None else _said(deviation)
+            said = "is refused by the engine in the model's own form"
+            if tried is None:
+                said = "has no form in the model's own file"
+            elif np.isfinite(deviation):
+                said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
             notes.append(f"{what} {said}: it stands in augmented.toml alone")
             absent.append(what)
             continue
@@ -78,16 +83,6 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
             "Take it out of the mapping, or write it into the model by hand.",
         )
     return mapping, written.engine
-
-
-def _said(deviation: float) -> str:
-    if np.isfinite(deviation):
-        return f"would differ by {deviation:.1g} of the accelerations in the model's own form"
-    return "is refused by the engine in the model's own form"
-
-
-def _setting(engine: Engine, name: str, value: float) -> Callable[[str], str | None]:
-    return lambda text: engine.text_with_value(text, name, value)
 
 
 def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str], str | None]:

@@ -1,8 +1,12 @@
-"""A person's segments as the static trial shows them: frames, joint centres, and where the markers lie in them."""
+"""A person's segments as the static trial shows them: frames, joint centres, and where the markers lie in them.
+
+Labels that contradict where the landmarks of a standing person lie to each other, whoever it is, are found first.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -12,16 +16,15 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip
 from gaitdisc.kinematics.laboratory import check_right_handed, up_axis
-from gaitdisc.kinematics.landmark_order import exchanged_in_static, landmark_order
-from gaitdisc.kinematics.marker_set import METHODS, MarkerSet
+from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
 from gaitdisc.kinematics.markers import marker_labels, still_places
-from gaitdisc.kinematics.pose import SEGMENTS, Pose
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 
 STANDS_M = 0.03  # who stands sways less than this in half a second
 USUAL_DIAMETER_M = 0.014
-FEWEST_POINTS = 3
+RIGHTWARD = {"l": -1.0, "r": 1.0}  # sign of what points outward
 
 Points = Mapping[str, NDArray[np.float64]]
 MARKS = {
@@ -30,6 +33,9 @@ MARKS = {
     "shank": ("ankle_lateral", "ankle_medial"),
     "foot": ("heel", "toe"),
 }
+SIDE_BY_SIDE_M = 0.01  # a right marker this far to the left of its left one is exchanged
+DOWN_THE_LEG = ("thigh_wand", "knee_lateral", "shank_wand", "ankle_lateral")
+ABOVE = (("pelvis", "thigh"), ("pelvis", "shank"), ("pelvis", "foot"), ("thigh", "foot"), ("shank", "foot"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +78,9 @@ def calibrated(
     file = static.source.file or "the static trial"
     names = marker_set.names(marker_labels(static))
     _check_complete(marker_set, names, file)
-    needed = _needed_markers(marker_set, names)
-    places, moved, start = still_places(static, names, needed)
+    needed = [(key, side) for key in marker_set.needed_landmarks(names) for side in "lr"]
+    seen = dict.fromkeys(marker for key, side in needed for marker in marker_set.landmark(key, side, names))
+    places, moved, start = still_places(static, names, [*seen])
     _check_complete(marker_set, places, file)
     if moved > STANDS_M:
         raise SamplingError(
@@ -81,8 +88,7 @@ def calibrated(
             f"in {file} they move by {moved * 1000:.0f} mm in the stillest half second, at {start:.2f} s",
             "Give the trial in which the person stands.",
         )
-    builder = _Builder(marker_set, places, measures or BodyMeasures(), file, hips or {})
-    return builder.calibration()
+    return _Builder(marker_set, places, measures or BodyMeasures(), file, hips or {}).calibration()
 
 
 def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
@@ -94,16 +100,6 @@ def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
             f"{file} has no {lacking[0]}{several}",
             "Name the marker in the set's [aliases], or give the marker set of these labels.",
         )
-
-
-def _needed_markers(marker_set: MarkerSet, names: Mapping[str, str]) -> list[str]:
-    needed = [
-        marker
-        for key in marker_set.needed_landmarks(names)
-        for side in "lr"
-        for marker in marker_set.landmark(key, side, names)
-    ]
-    return list(dict.fromkeys(needed))
 
 
 class _Builder:
@@ -120,15 +116,14 @@ class _Builder:
 
     def calibration(self) -> Calibration:
         """Frames of all segments, and what lies where in them."""
-        asis = {side: self._place("asis", side) for side in "lr"}
+        middle = (self._place("asis", "l") + self._place("asis", "r")) / 2
         feet = np.mean([self._place(key, side) for key in ("heel", "toe") for side in "lr"], axis=0)
-        self.up = up_axis(((asis["l"] + asis["r"]) / 2)[None], feet[None], self.file)
+        self.up = up_axis(middle[None], feet[None], self.file)
         self._mend_labels()
-        self._pelvis({side: self._place("asis", side) for side in "lr"})
+        self._pelvis()
         check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
         for side in "lr":
-            self._knee(side)
-            self._ankle(side)
+            self._leg(side)
             self._foot(side)
         body = {segment: self._followers(segment) for segment in SEGMENTS}
         points = {segment: self._points(segment) for segment in SEGMENTS}
@@ -154,10 +149,11 @@ class _Builder:
     def _note(self, kind: str, what: str, spoils: str = "", severity: str = "note") -> None:
         self.findings.append(Finding(severity, kind, self.file, what, spoils))
 
-    def _pelvis(self, asis: Points) -> None:
-        middle = (asis["l"] + asis["r"]) / 2
+    def _pelvis(self) -> None:
+        left, right = self._place("asis", "l"), self._place("asis", "r")
+        middle = (left + right) / 2
         sacrum: NDArray[np.float64] = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
-        across, ahead = asis["r"] - asis["l"], middle - sacrum
+        across, ahead = right - left, middle - sacrum
         self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
         if self.measures.inter_asis_m is not None:
@@ -194,14 +190,10 @@ class _Builder:
                 self._note("marker diameter", what, "joint centres by some mm if they are of another size")
         return diameter / 2
 
-    def _method(self, joint: str) -> str:
-        methods = self.marker_set.joint_centres[joint]
-        return "midpoint" if "midpoint" in methods and self._has(f"{joint}_medial") else "chord"
-
     def _centre(self, joint: str, side: str, above: str, wand: str) -> NDArray[np.float64]:
         """Joint centre by midpoint or chord."""
         lateral = self._place(f"{joint}_lateral", side)
-        if self._method(joint) == "midpoint":
+        if "midpoint" in self.marker_set.joint_centres[joint] and self._has(f"{joint}_medial"):
             return (lateral + self._place(f"{joint}_medial", side)) / 2
         distance = self._width(joint, side) / 2 + self._radius()
         return chord_centre(self.centres[f"{above}_{side}"], self._place(wand, side), lateral, distance)
@@ -221,22 +213,16 @@ class _Builder:
             f"Give {joint}_width_m, or put on a medial marker in the static trial.",
         )
 
-    def _knee(self, side: str) -> None:
-        centre = self._centre("knee", side, "hip", "thigh_wand")
-        self.centres[f"knee_{side}"] = centre
-        outward = self._place("knee_lateral", side) - centre
-        hip = self.centres[f"hip_{side}"]
-        axes = _axes(_to_right(outward, side), hip - centre, self.file, f"thigh_{side}", "y")
-        self.static[f"thigh_{side}"] = Pose(hip[None], axes)
-
-    def _ankle(self, side: str) -> None:
-        centre = self._centre("ankle", side, "knee", "shank_wand")
-        self.centres[f"ankle_{side}"] = centre
-        knee = self.centres[f"knee_{side}"]
-        of = self.marker_set.axes["shank"]
-        outward = self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]
-        axes = _axes(_to_right(outward, side), knee - centre, self.file, f"shank_{side}", "y")
-        self.static[f"shank_{side}"] = Pose(knee[None], axes)
+    def _leg(self, side: str) -> None:
+        """Frames of thigh and shank, whose y points up to the joint above."""
+        for segment, above, joint in (("thigh", "hip", "knee"), ("shank", "knee", "ankle")):
+            centre = self._centre(joint, side, above, f"{segment}_wand")
+            self.centres[f"{joint}_{side}"] = centre
+            of = self.marker_set.axes.get(segment, joint)  # a thigh's is always its knee
+            to_right = (self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]) * RIGHTWARD[side]
+            origin = self.centres[f"{above}_{side}"]
+            axes = _axes(to_right, origin - centre, self.file, f"{segment}_{side}", "y")
+            self.static[f"{segment}_{side}"] = Pose(origin[None], axes)
 
     def _foot(self, side: str) -> None:
         along = self._place("toe", side) - self._place("heel", side)
@@ -279,14 +265,14 @@ class _Builder:
             return
         pair = exchanged_in_static(self.marker_set, self.places, self.up)
         if pair is None:
-            self._pelvis({side: self._place("asis", side) for side in "lr"})
+            self._pelvis()
             check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
             raise ShapeError(
                 "in a static trial each landmark lies where it does in every person who stands",
                 f"in {self.file} {wrong[1]} ({-wrong[0] * 1000:.0f} mm)",
                 "Correct the labels, or record the person with the legs side by side.",
             )
-        self.places = {**self.places, pair[0]: self.places[pair[1]], pair[1]: self.places[pair[0]]}
+        self.places = swapped(self.places, pair)
         self.exchanged = pair
         what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial makes it fit"
         self._note(
@@ -304,10 +290,6 @@ class _Builder:
             if above or set(self.exchanged) & {*self.marker_set.followers(segment), *marks, *wands}:
                 found.append(segment)
         return tuple(found)
-
-
-def _to_right(outward: NDArray[np.float64], side: str) -> NDArray[np.float64]:
-    return outward if side == "r" else -outward
 
 
 def _axes(
@@ -328,3 +310,60 @@ def _axes(
         return np.stack([x, y, np.cross(x, y)], axis=1)[None]
     z = right / np.linalg.norm(right)
     return np.stack([x, np.cross(z, x), z], axis=1)[None]
+
+
+def landmark_order(marker_set: MarkerSet, places: Points, up: NDArray[np.float64]) -> list[tuple[float, str]]:
+    """By how much each landmark of a standing person is on its side of another [m]; below 0 a label is wrong.
+
+    Right is right of left, the leg's landmarks come down in their order, ankle between heel and toe, and pelvis and
+    toes point to the same side. Joints that are bent and feet that turn by less than 90 deg do not change that.
+
+    places each (3,) [m]: markers, by the names of the set, in the static trial
+    returns: how far on the right side, and what is said where it is not
+    """
+    labels = {(key, side): marker_set.landmark(key, side, places) for key in (*SIDED, "sacrum") for side in "lr"}
+    at = {(name,): np.asarray(place) for name, place in places.items()}
+    at |= {names: np.mean([places[one] for one in names], axis=0) for names in labels.values() if names}
+    pairs = marker_set.sided_pairs(places)
+    across = np.sum([places[right] - places[left] for left, right in pairs], axis=0)
+    across -= (across @ up) * up
+    across = across / np.linalg.norm(across)
+    forward = np.cross(up, across)
+    order = [((right,), "to the right of", (left,), across) for left, right in pairs]
+    for side, outward in (("l", -across), ("r", across)):
+        knee, ankle, heel, toe = (labels[key, side] for key in ("knee_lateral", "ankle_lateral", "heel", "toe"))
+        along = (at[toe] - at[heel]) / np.linalg.norm(at[toe] - at[heel])
+        leg = [labels[key, side] for key in DOWN_THE_LEG if labels[key, side]]
+        order += [(one, "above", other, up) for one, other in itertools.pairwise(leg)]
+        order += [(toe, "ahead of", heel, forward), (ankle, "ahead of", heel, along), (toe, "ahead of", ankle, along)]
+        order += [(knee, "outside of", labels["knee_medial", side], outward)]
+        order += [(ankle, "outside of", labels["ankle_medial", side], outward)]
+        segments = {part: marker_set.followers(f"{part}_{side}" if part != "pelvis" else part) for part in PARTS}
+        on = {part: [(name,) for name in names if name in places] for part, names in segments.items()}
+        on["shank"] = [name for name in on["shank"] if name[0] not in ankle]
+        order += [(a, "above", b, up) for above, below in ABOVE for a, b in itertools.product(on[above], on[below])]
+        front = itertools.product(labels["asis", side], labels["sacrum", side])
+        order += [((spine,), "ahead of", (back,), forward) for spine, back in front]
+    slack = {"to the right of": SIDE_BY_SIDE_M}
+    return [
+        (float((at[a] - at[b]) @ way) + slack.get(words, 0.0), f"{' + '.join(a)} is not {words} {' + '.join(b)}")
+        for a, words, b, way in order
+        if b
+    ]
+
+
+def exchanged_in_static(marker_set: MarkerSet, places: Points, up: NDArray[np.float64]) -> tuple[str, str] | None:
+    """Pair of markers whose exchange puts all landmarks right, by the most; None where no pair does."""
+    names = [name for name in marker_set.markers() if name in places]
+    ranked = [
+        (min(landmark_order(marker_set, swapped(places, pair), up))[0], pair)
+        for pair in itertools.combinations(names, 2)
+    ]
+    margin, pair = max(ranked)
+    return pair if margin > 0 else None
+
+
+def swapped(places: Points, pair: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+    """Same places, those of two markers exchanged."""
+    first, second = pair
+    return {**places, first: places[second], second: places[first]}

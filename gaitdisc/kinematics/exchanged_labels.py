@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.landmark_order import landmark_order
+from gaitdisc.kinematics.calibration import Calibration, Points, landmark_order, swapped
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.kinematics.segment_poses import free_fits, placed_markers
@@ -28,8 +27,6 @@ FRAMES = 12  # in which each pair is tried
 SPOILS = "angles of these segments there, and cycles with them; correct the labels, or give this session's static trial"
 FEWEST_FRAMES = 3  # that a pair has to explain: fewer are single frames in which a marker jumped
 
-Places = Mapping[str, NDArray[np.float64]]
-
 
 class Exchange(NamedTuple):
     """Two markers whose exchange makes their segments fit."""
@@ -42,7 +39,7 @@ class Exchange(NamedTuple):
 
 
 def exchanged_pairs(
-    places: Places, calibration: Calibration, up: NDArray[np.float64]
+    places: Points, calibration: Calibration, up: NDArray[np.float64]
 ) -> tuple[list[Exchange], dict[str, NDArray[np.bool_]]]:
     """Pairs of markers whose labels are exchanged in a trial, and where segments have lost their shape without one.
 
@@ -73,7 +70,7 @@ def exchanged_pairs(
     return found, {segment: unexplained & (now[segment] > BROKEN_M) for segment in SEGMENTS}
 
 
-def misfits(places: Places, calibration: Calibration, up: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def misfits(places: Points, calibration: Calibration, up: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """How far the points of each segment lie from where the static trial has them, each (frame,) [m].
 
     A pelvis that is upside down or turned against both feet is infinitely far: three markers exchanged may keep their
@@ -90,18 +87,12 @@ def misfits(places: Places, calibration: Calibration, up: NDArray[np.float64]) -
     }
 
 
-def swapped(places: Places, pair: Sequence[str]) -> dict[str, NDArray[np.float64]]:
-    """Same places, those of two markers exchanged."""
-    first, second = pair
-    return {**places, first: places[second], second: places[first]}
-
-
 def holders(pair: Iterable[str], calibration: Calibration) -> tuple[str, ...]:
     """Segments that hold one of the markers."""
     return tuple(segment for segment in SEGMENTS if set(pair) & set(calibration.body[segment]))
 
 
-def _best_pair(places: Places, calibration: Calibration, up: NDArray[np.float64]) -> tuple[str, str] | None:
+def _best_pair(places: Points, calibration: Calibration, up: NDArray[np.float64]) -> tuple[str, str] | None:
     """Pair of which one marker is in a segment that does not fit, and which explains most frames; None if none does."""
     now = misfits(places, calibration, up)
     off = {segment for segment in SEGMENTS if (now[segment] > LOOKED_AT_M).any()}

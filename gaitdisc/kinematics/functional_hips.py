@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinematics.rigid_fit import fitted_pose
+from gaitdisc.kinematics.pose import Pose, fitted_pose
 from gaitdisc.kinematics.segment_poses import named_places, placed_markers
 from gaitdisc.recording import Finding, Recording
 

@@ -114,7 +114,7 @@ def walking_frame(
     backwards = bool(np.median(np.einsum("fi,fi->f", paths[known], facing[known])) < 0)
     words = "forward along the path of the pelvis" + ", against it since the person walks backwards" * backwards
     paths = -paths if backwards else paths
-    turned = _turned_deg(paths, faced, up)
+    turned = float(np.degrees(np.ptp(np.unwrap(np.arctan2(paths @ np.cross(up, faced), paths @ faced)))))
     if turned < STRAIGHT_DEG:
         straight = _level(mean, up)
         paths = np.tile(-straight if backwards else straight, (len(origin), 1))
@@ -164,14 +164,5 @@ def _headings(
     moving = speed >= TRAVELS_M_PER_S
     if moving.mean() < 0.5:
         return None
-    return (velocity[moving] / speed[moving, None])[_nearest(samples, whole[moving])]
-
-
-def _nearest(samples: NDArray[np.intp], places: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Index of the place nearest to each sample."""
-    return np.rint(np.interp(samples, places, np.arange(len(places)))).astype(int)
-
-
-def _turned_deg(headings: NDArray[np.float64], forward: NDArray[np.float64], up: NDArray[np.float64]) -> float:
-    angle = np.unwrap(np.arctan2(headings @ np.cross(up, forward), headings @ forward))
-    return float(np.degrees(angle.max() - angle.min()))
+    nearest = np.rint(np.interp(samples, whole[moving], np.arange(moving.sum()))).astype(int)
+    return (velocity[moving] / speed[moving, None])[nearest]

@@ -1,13 +1,23 @@
-"""A marker set: which marker lies on which landmark, and which markers follow which segment."""
+"""A marker set: which marker lies on which landmark, and which markers follow which segment.
+
+Those that come along and a laboratory's own are TOML files; a trial's set is given, or recognised by its labels.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
 
-from gaitdisc.channel import folded_label, nearest_word
-from gaitdisc.errors import SchemaError
+from gaitdisc.channel import folded_label, nearest_word, schema_folder
+from gaitdisc.errors import ChannelError, ReadError, SchemaError
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS
+from gaitdisc.regular_file import check_regular
+from gaitdisc.toml_text import parsed_toml
 
 SIDED = (
     "asis",
@@ -30,15 +40,22 @@ METHODS = {
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
 JOINTS = ("free", "held", "planar")
 PARTS = ("pelvis", "thigh", "shank", "foot")
-FEWEST_POINTS = 3
 PLACEHOLDER = re.compile(r"\{(S|s|side)\}")
+LARGEST_BYTES = 2**20
+TABLES = {  # of the file: what each of its keys holds
+    "aliases": "list of names",
+    "landmarks": "text",
+    "joint_centres": "text",
+    "axes": "text",
+    "tracked": "list of names",
+}
+EXAMPLE = "See docs/kinematics.md for an example."
 
 
 @dataclass(frozen=True)
 class MarkerSet:
     """Markers of one laboratory's convention.
 
-    >>> from gaitdisc.kinematics.marker_set_file import marker_set
     >>> marker_set("plug_in_gait").tracked["thigh"]
     ('hip', '{S}THI', '{S}KNE')
     """
@@ -64,17 +81,14 @@ class MarkerSet:
     def with_joints(self, joints: str) -> MarkerSet:
         """Return the same set with its joints free, held, or moving in a plane."""
         if joints not in JOINTS:
-            near = nearest_word(joints, JOINTS)
-            found = f"found {joints!r}" + (f", the nearest is {near!r}" if near else "")
-            raise SchemaError(f"joints are {', '.join(JOINTS)}", found, "Correct the word.")
+            raise SchemaError(f"joints are {', '.join(JOINTS)}", _found(joints, JOINTS), "Correct the word.")
         return replace(self, joints=joints)
 
     def with_hip(self, method: str) -> MarkerSet:
         """Return the same set with another hip joint centre."""
         if method not in METHODS["hip"]:
-            near = nearest_word(method, METHODS["hip"])
-            found = f"found {method!r}" + (f", the nearest is {near!r}" if near else "")
-            raise SchemaError(f"hip joint centres are {', '.join(METHODS['hip'])}", found, "Correct the word.")
+            known = METHODS["hip"]
+            raise SchemaError(f"hip joint centres are {', '.join(known)}", _found(method, known), "Correct the word.")
         return replace(self, joint_centres={**self.joint_centres, "hip": (method,)})
 
     def names(self, labels: Iterable[str]) -> dict[str, str]:
@@ -83,7 +97,6 @@ class MarkerSet:
         labels: markers as the file has them. Case, blanks and punctuation do not count; a label that is the set's own
             name comes before one that is an alias
 
-        >>> from gaitdisc.kinematics.marker_set_file import marker_set
         >>> marker_set("helen_hayes").names(["R.ASIS", "RKNEE"])
         {'RASI': 'R.ASIS', 'RKNE': 'RKNEE'}
         """
@@ -91,8 +104,9 @@ class MarkerSet:
         for label in labels:
             by_fold.setdefault(folded_label(label), label)
         others: dict[str, list[str]] = {}
-        for key, side, alias in self._alias_list():
-            others.setdefault(sided(key, side), []).append(sided(alias, side))
+        for key, several in self.aliases.items():
+            for side in "lr":
+                others.setdefault(sided(key, side), []).extend(sided(alias, side) for alias in several)
         found = {}
         for name in self.markers():
             own = (name, *others.get(name, ()))
@@ -101,27 +115,23 @@ class MarkerSet:
                 found[name] = label
         return found
 
-    def _alias_list(self) -> list[tuple[str, str, str]]:
-        return [(key, side, alias) for key, several in self.aliases.items() for alias in several for side in "lr"]
-
     def markers(self) -> tuple[str, ...]:
         """Every marker that landmarks or segments name, both sides, in order."""
+        return tuple(dict.fromkeys(marker for pair in self._pairs() for marker in pair))
+
+    def _pairs(self) -> list[tuple[str, str]]:
         named = [marker for text in self.landmarks.values() for choice in choices(text) for marker in choice]
         named += [marker for several in self.tracked.values() for marker in several if marker not in METHODS]
-        return tuple(dict.fromkeys(sided(marker, side) for marker in named for side in "lr"))
+        return list(dict.fromkeys((sided(marker, "l"), sided(marker, "r")) for marker in named))
 
     def sided_pairs(self, names: Iterable[str]) -> list[tuple[str, str]]:
         """Left marker and right marker of each pair that is there, in the names of this set."""
         there = set(names)
-        named = [marker for text in self.landmarks.values() for choice in choices(text) for marker in choice]
-        named += [marker for several in self.tracked.values() for marker in several]
-        pairs = dict.fromkeys((sided(marker, "l"), sided(marker, "r")) for marker in named)
-        return [(left, right) for left, right in pairs if left != right and there.issuperset((left, right))]
+        return [pair for pair in self._pairs() if pair[0] != pair[1] and there.issuperset(pair)]
 
     def followers(self, segment: str) -> tuple[str, ...]:
         """Points that follow a segment: markers by the names of this set, `hip`, `knee`, `ankle` for a joint centre.
 
-        >>> from gaitdisc.kinematics.marker_set_file import marker_set
         >>> marker_set("plug_in_gait").followers("shank_r")
         ('knee', 'RTIB', 'RANK')
         """
@@ -133,7 +143,6 @@ class MarkerSet:
 
         names: markers that are there, in the names of this set
 
-        >>> from gaitdisc.kinematics.marker_set_file import marker_set
         >>> marker_set("plug_in_gait").landmark("sacrum", "l", ["LPSI", "RPSI"])
         ('LPSI', 'RPSI')
         """
@@ -201,3 +210,170 @@ def choices(text: str) -> list[tuple[str, ...]]:
     [('SACR',), ('LPSI', 'RPSI')]
     """
     return [tuple(part.strip() for part in choice.split("+")) for choice in text.split("|")] if text.strip() else []
+
+
+def marker_set(name: str | Path) -> MarkerSet:
+    """Marker set that comes along, by its name, or a laboratory's own, by the path of its file."""
+    shipped = shipped_marker_sets()
+    if isinstance(name, str) and name in shipped:
+        return shipped[name]
+    if str(name).endswith(".toml"):
+        return read_marker_set(Path(name))
+    raise SchemaError(
+        f"a marker set is one of {', '.join(shipped)}, or a file that ends in .toml",
+        _found(str(name), tuple(shipped)),
+        "Correct the name, or write the file as docs/kinematics.md shows.",
+    )
+
+
+@cache
+def shipped_marker_sets() -> dict[str, MarkerSet]:
+    """Marker sets that come along, by name."""
+    paths = sorted((schema_folder() / "marker_sets").glob("*.toml"))
+    return {path.stem: read_marker_set(path) for path in paths}
+
+
+def read_marker_set(path: Path) -> MarkerSet:
+    """Marker set of a TOML file.
+
+    path: file with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]` and `joints` may be
+        left out
+    """
+    try:
+        check_regular(path, LARGEST_BYTES)
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = "it is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
+        raise ReadError("a marker set is read from a file", f"{path.name}: {reason}", "Check the path.") from error
+    try:
+        table = parsed_toml(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SchemaError("a marker set is a TOML file", f"{path.name}: {error}", EXAMPLE) from error
+    return _checked(table, path)
+
+
+def _checked(table: dict[str, Any], path: Path) -> MarkerSet:
+    file, usual = path.name, {"title": path.stem, "citation": "", "joints": JOINTS[0]}
+    known = ("title", "citation", "aliases", "landmarks", "joint_centres", "axes", "joints", "tracked")
+    _check_words(table, known, "", file)
+    words = {key: _of_kind("text", table.get(key, text), key, file) for key, text in usual.items()}
+    _check_words([words["joints"]], JOINTS, "joints = ", file)
+    parts: dict[str, dict[str, Any]] = {}
+    for part, kind in TABLES.items():
+        rows = _of_kind("table", table.get(part, {}), part, file)
+        parts[part] = {key: _of_kind(kind, value, f"{part}.{key}", file) for key, value in rows.items()}
+    for part, keys in (("landmarks", LANDMARKS), ("joint_centres", METHODS), ("axes", AXES), ("tracked", PARTS)):
+        _check_words(parts[part], tuple(keys), f"{part}.", file)
+    for key, value in parts["axes"].items():
+        _check_words([value], AXES[key], f"axes.{key} = ", file)
+    methods = {key: tuple(one.strip() for one in text.split("|")) for key, text in parts["joint_centres"].items()}
+    _check_landmarks(parts["landmarks"], file)
+    _check_methods(methods, parts["landmarks"], file)
+    _check_tracked(parts["tracked"], file)
+    axes = {"shank": "ankle", "foot": "flat", **parts["axes"]}
+    aliases, tracked = ({key: tuple(names) for key, names in parts[part].items()} for part in ("aliases", "tracked"))
+    return MarkerSet(
+        path.stem,
+        aliases=aliases,
+        landmarks=parts["landmarks"],
+        joint_centres=methods,
+        axes=axes,
+        tracked=tracked,
+        **words,
+    )
+
+
+def _of_kind(kind: str, value: Any, where: str, file: str) -> Any:
+    """Value of the file, if it is a table, a text or a list of names."""
+    sound = isinstance(value, {"table": dict, "text": str, "list of names": list}[kind])
+    if not sound or (isinstance(value, list) and not all(isinstance(item, str) and item for item in value)):
+        raise SchemaError(f"{where} of a marker set is a {kind}", f"{file}: found {value!r}", EXAMPLE)
+    return value
+
+
+def _found(word: str, known: Sequence[str]) -> str:
+    near = nearest_word(word, known)
+    return f"found {word!r}" + (f", the nearest is {near!r}" if near else "")
+
+
+def _check_words(words: Iterable[str], known: Sequence[str], where: str, file: str) -> None:
+    for word in words:
+        if word not in known:
+            needed = f"{where or 'a marker set '}takes {', '.join(known)}"
+            raise SchemaError(needed, f"{file}: {_found(word, known)}", EXAMPLE)
+
+
+def _check_landmarks(landmarks: Mapping[str, str], file: str) -> None:
+    absent = [key for key in NEEDED if not choices(landmarks.get(key, ""))]
+    if absent:
+        needed = f"[landmarks] of a marker set needs {', '.join(NEEDED)}"
+        raise SchemaError(needed, f"{file} has no {absent[0]}", EXAMPLE)
+    for key, text in landmarks.items():
+        empty = not all(all(choice) for choice in choices(text))
+        if empty or (key in SIDED and not PLACEHOLDER.search(text)):
+            needed = f"landmarks.{key} names markers" + (" of both sides with {S}, {s} or {side}" * (key in SIDED))
+            mend = f'Write it as {key} = "{{S}}NAME", for RNAME and LNAME.'
+            raise SchemaError(needed, f"{file}: found {text!r}", mend)
+
+
+def _check_methods(methods: Mapping[str, tuple[str, ...]], landmarks: Mapping[str, str], file: str) -> None:
+    for joint, known in METHODS.items():
+        if joint not in methods:
+            raise SchemaError(f"[joint_centres] needs {', '.join(METHODS)}", f"{file} has no {joint}", EXAMPLE)
+        _check_words(methods[joint], known, f"joint_centres.{joint} = ", file)
+    for joint, wand in (("knee", "thigh_wand"), ("ankle", "shank_wand")):
+        for method, landmark in (("midpoint", f"{joint}_medial"), ("chord", wand)):
+            if method in methods[joint] and landmark not in landmarks:
+                needed = f"joint_centres.{joint} = {method!r} needs landmarks.{landmark}"
+                raise SchemaError(needed, f"{file} does not name it", EXAMPLE)
+
+
+def _check_tracked(tracked: Mapping[str, Iterable[str]], file: str) -> None:
+    for part, above in zip(PARTS, ((), ("hip",), ("knee",), ("ankle",)), strict=True):
+        points = on_sides(tracked.get(part, ()), "lr" if part == "pelvis" else "r")
+        if len(points) < FEWEST_POINTS:
+            needed = f"tracked.{part} needs {FEWEST_POINTS} points or more"
+            raise SchemaError(needed, f"{file} has {len(points)}: {', '.join(points)}", EXAMPLE)
+        wrong = [point for point in points if point in METHODS and point not in above]
+        if wrong:
+            needed = f"tracked.{part} may name the joint centre above it ({', '.join(above) or 'none'})"
+            raise SchemaError(needed, f"{file} names {wrong[0]!r}", EXAMPLE)
+
+
+def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str = "") -> MarkerSet:
+    """Marker set that comes along and that the labels are of.
+
+    returns: of those for which the static trial has all landmarks and the trial three points a segment: the one of
+        which most markers are there
+
+    >>> legs = [f"{side}{name}" for side in "LR" for name in ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")]
+    >>> recognised_marker_set(["SACR", *legs], ["SACR", *legs]).name
+    'plug_in_gait'
+    """
+    static, trial = list(static), list(trial)
+    fitting, nearest = [], []
+    for one in shipped_marker_sets().values():
+        there, followed = one.names(static), one.names(trial)
+        lacking, both = one.lacking(there), set(there) & set(followed)
+        for followers in map(one.followers, SEGMENTS):
+            absent = [name for name in followers if name not in both and name not in METHODS]
+            lacking += absent if len(followers) - len(absent) < FEWEST_POINTS else []
+        lacking = list(dict.fromkeys(lacking))
+        if lacking:
+            nearest.append((len(lacking), len(one.markers()), one.name, lacking))
+        else:
+            found = len(set(there) | set(followed))
+            fitting.append(((found, found - len(one.markers())), one))
+    if fitting:
+        return max(fitting, key=lambda pair: pair[0])[1]
+    *_, name, lacking = min(nearest)
+    raise ChannelError(
+        f"the markers need to be of one of the sets {', '.join(shipped_marker_sets())}",
+        f"{file or 'the static trial'} has {_some(static)}; the nearest set is {name}, which lacks {_some(lacking)}",
+        "Give the marker set, rename the markers, or write a set of your own as docs/kinematics.md shows.",
+    )
+
+
+def _some(names: Sequence[str], most: int = 6) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return (", ".join(names[:most]) or "no markers") + more

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.cardan import clinical_angles
 from gaitdisc.kinematics.exchanged_labels import (
     UNFIT,
     exchange_findings,
@@ -22,11 +21,9 @@ from gaitdisc.kinematics.exchanged_labels import (
     without_exchanged,
 )
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
-from gaitdisc.kinematics.marker_set import MarkerSet
-from gaitdisc.kinematics.marker_set_file import marker_set, recognised_marker_set
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import marker_labels
-from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import fitted_pose, residual_m
+from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose, clinical_angles, fitted_pose, residual_m
 from gaitdisc.kinematics.segment_poses import (
     PlacedMarkers,
     carried_joint,
@@ -157,7 +154,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
-    bridged = {segment: _bridged(poses[segment], placed[segment][1]) for segment in SEGMENTS}
+    bridged = {s: poses[s].known & ~np.isfinite(placed[s][1]).all(axis=(1, 2)) for s in SEGMENTS}
     chosen = calibration.marker_set
     findings = [
         *calibration.findings,
@@ -166,11 +163,13 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         *said,
     ]
     for segment in SEGMENTS:
-        findings += _gaps(segment, ~poses[segment].known, bridged[segment], markers)
-        findings += _other_shape(segment, residuals[segment], file)
+        findings += _gaps_and_shape(segment, ~poses[segment].known, bridged[segment], residuals[segment], markers)
     angles = angles_of_poses(markers, poses, bridged, walking)
+    if chosen.joints == "planar":  # only what a planar body has
+        flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
+        angles = angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
     return Motion(
-        _of_the_plane(angles) if chosen.joints == "planar" else angles,
+        angles,
         MappingProxyType(poses),
         MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
         walking,
@@ -200,12 +199,14 @@ def _middle(placed: PlacedMarkers, segments: Sequence[str]) -> NDArray[np.float6
     return np.where(count > 0, np.where(seen, places, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
 
 
-def _bridged(pose: Pose, places: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Frames in which a segment is known although a marker of it is missing."""
-    return np.asarray(pose.known & ~np.isfinite(places).all(axis=(1, 2)))
-
-
-def _gaps(segment: str, unknown: NDArray[np.bool_], bridged: NDArray[np.bool_], markers: Recording) -> list[Finding]:
+def _gaps_and_shape(
+    segment: str,
+    unknown: NDArray[np.bool_],
+    bridged: NDArray[np.bool_],
+    residual: NDArray[np.float64],
+    markers: Recording,
+) -> list[Finding]:
+    """Say where a segment is carried although a marker is missing, where it is unknown, or has another shape."""
     file, frames = markers.source.file or "the trial", len(markers.time)
     findings = []
     if bridged.any():
@@ -215,16 +216,12 @@ def _gaps(segment: str, unknown: NDArray[np.bool_], bridged: NDArray[np.bool_], 
         what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: too few markers"
         spoils = "its joints there; fill the gaps, or use more markers"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
-    return findings
-
-
-def _other_shape(segment: str, residual: NDArray[np.float64], file: str) -> list[Finding]:
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
-    if typical <= ANOTHER_SHAPE_M:
-        return []
-    what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
-    spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
-    return [Finding("warning", "another shape", file, what, spoils)]
+    if typical > ANOTHER_SHAPE_M:
+        what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
+        spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
+        findings.append(Finding("warning", "another shape", file, what, spoils))
+    return findings
 
 
 def angles_of_poses(
@@ -262,12 +259,6 @@ def angles_of_poses(
         channels=tuple(channel for channel, _, _ in columns),
         suspect=np.stack([doubt for _, _, doubt in columns], axis=1),
     )
-
-
-def _of_the_plane(angles: Recording) -> Recording:
-    """Only what a planar body has."""
-    flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
-    return angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
 
 
 SEGMENTS_OF = {"hip": ("pelvis", "thigh_{}"), "knee": ("thigh_{}", "shank_{}"), "ankle": ("shank_{}", "foot_{}")}

@@ -1,4 +1,4 @@
-"""Where a segment is and how it is turned, frame by frame: what angles, moments and powers are computed from."""
+"""Where a segment is and how it is turned, frame by frame: laid over its markers, and as angles to another one."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from gaitdisc.recording.arrays import read_only
 SEGMENTS = ("pelvis", "thigh_l", "thigh_r", "shank_l", "shank_r", "foot_l", "foot_r")
 JOINTS = ("hip_l", "hip_r", "knee_l", "knee_r", "ankle_l", "ankle_r")
 NOT_A_ROTATION = 1e-6  # largest difference of R^T R from the identity, and of det R from 1
+FEWEST_POINTS = 3
+LEAST_BREADTH_M = 0.01  # second largest extent of the points that are seen: on a line no turn about it is known
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,3 +96,108 @@ class Pose:
         if points.ndim == 2:
             return np.einsum("fji,fj->fi", self.rotation, points - self.origin)
         return np.einsum("fji,fpj->fpi", self.rotation, points - self.origin[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class RigidFit:
+    """Pose of a body and how well its markers keep their shape."""
+
+    pose: Pose  # NaN in frames with fewer than three points, or points on a line
+    seen: NDArray[np.bool_]  # (frame, point), points that were there
+    # (frame,) [m], root of the mean square distance between the points and those of the body
+    residual_m: NDArray[np.float64]
+
+
+def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> RigidFit:
+    """Pose that brings a rigid body nearest to the observed points.
+
+    body (point, 3) [m]: points in the frame of the segment
+    observed (frame, point, 3) [m]: the same points in the laboratory; NaN where they are not seen
+    Source: Söderkvist & Wedin 1993, J Biomech 26:1473 (singular values; a mirrored solution is never taken).
+
+    >>> body = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.1]])
+    >>> fitted_pose(body, body[None] + 1.0).pose.origin.round(9)
+    array([[1., 1., 1.]])
+    """
+    seen = np.asarray(np.isfinite(observed).all(axis=2))
+    weight = seen / np.maximum(seen.sum(axis=1, keepdims=True), 1)
+    places = np.where(seen[..., None], observed, 0.0)
+    middle_body = weight @ body
+    middle = np.einsum("fp,fpi->fi", weight, places)
+    from_body = (body - middle_body[:, None]) * seen[..., None]
+    from_places = (places - middle[:, None]) * seen[..., None]
+    left, _, right = np.linalg.svd(np.einsum("fpi,fpj->fij", from_places, from_body))
+    turn = np.ones((len(observed), 3))
+    turn[:, 2] = np.sign(np.linalg.det(left @ right))
+    rotation = (left * turn[:, None]) @ right
+    origin = middle - np.einsum("fij,fj->fi", rotation, middle_body)
+    apart = from_places - np.einsum("fij,fpj->fpi", rotation, from_body)
+    residual = np.sqrt((apart**2).sum(axis=(1, 2)) / np.maximum(seen.sum(axis=1), 1))
+    unknown = ~_determined(body, seen)
+    rotation[unknown], origin[unknown], residual[unknown] = np.nan, np.nan, np.nan
+    return RigidFit(Pose(origin, rotation), seen, residual)
+
+
+def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Root mean square distance of observed points from those of a body in a pose, frame by frame [m].
+
+    body (point, 3) [m]: points in the frame of the segment
+    observed (frame, point, 3) [m]: the same points in the laboratory; NaN where they are not seen
+    """
+    apart = ((observed - pose.to_laboratory(body)) ** 2).sum(axis=2)
+    seen = np.isfinite(apart)
+    mean = np.where(seen, apart, 0.0).sum(axis=1) / np.maximum(seen.sum(axis=1), 1)
+    return np.where(seen.any(axis=1), np.sqrt(mean), np.nan)
+
+
+def _determined(body: NDArray[np.float64], seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Frames whose points that are seen show a turn about every axis; each pattern of missing points once."""
+    patterns, which = np.unique(seen, axis=0, return_inverse=True)
+    enough = [
+        pattern.sum() >= FEWEST_POINTS
+        and np.linalg.svd(body[pattern] - body[pattern].mean(axis=0), compute_uv=False)[1] >= LEAST_BREADTH_M
+        for pattern in patterns
+    ]
+    return np.asarray(enough, bool)[which.ravel()]
+
+
+def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y, in degrees.
+
+    Signs are those of a right limb that turns to the front (positive about z), to the body's midline (about x) and
+    inwards (about y). The floating axis is at right angles to both others, so that no order is chosen; the numbers are
+    those of the Cardan sequence z, x, y, and OpenSim's.
+
+    proximal, distal (frame, 3, 3): axes of the segments in the laboratory's frame, as columns: x forward, y up, z to
+        the right
+    returns (frame, 3) [deg]: each in [-180, 180], adduction in [-90, 90]; NaN where a segment is unknown
+    Source: Grood & Suntay 1983, J Biomech Eng 105:136; Wu 2002, J Biomech 35:543.
+
+    >>> quarter = np.array([[[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]])
+    >>> clinical_angles(np.eye(3)[None], quarter).tolist()
+    [[90.0, 0.0, 0.0]]
+    """
+    turned = np.swapaxes(proximal, 1, 2) @ distal
+    flexion = np.arctan2(-turned[:, 0, 1], turned[:, 1, 1])
+    adduction = np.arctan2(turned[:, 2, 1], np.hypot(turned[:, 0, 1], turned[:, 1, 1]))
+    rotation = np.arctan2(-turned[:, 2, 0], turned[:, 2, 2])
+    return np.degrees(np.stack([flexion, adduction, rotation], axis=1)) + 0.0
+
+
+def rotation_of(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotation of the distal segment in the proximal one; what `clinical_angles` takes apart.
+
+    angles_deg (frame, 3) [deg]: flexion, adduction, rotation, with the signs of a right limb
+    returns (frame, 3, 3)
+
+    >>> angles = np.array([[30.0, -5.0, 8.0]])
+    >>> clinical_angles(np.eye(3)[None], rotation_of(angles)).round(9).tolist()
+    [[30.0, -5.0, 8.0]]
+    """
+    (cz, cx, cy), (sz, sx, sy) = np.cos(np.radians(angles_deg)).T, np.sin(np.radians(angles_deg)).T
+    rows = [
+        [cz * cy - sz * sx * sy, -sz * cx, cz * sy + sz * sx * cy],
+        [sz * cy + cz * sx * sy, cz * cx, sz * sy - cz * sx * cy],
+        [-cx * sy, sx, cx * cy],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)

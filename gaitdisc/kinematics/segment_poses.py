@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.carried_over import carried_over, held_in_gaps
-from gaitdisc.kinematics.held_joints import held_together
+from gaitdisc.kinematics.held_joints import carried_over, held_in_gaps, held_together
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
-from gaitdisc.kinematics.pose import SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import FEWEST_POINTS, RigidFit, fitted_pose
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose, RigidFit, fitted_pose
 from gaitdisc.recording import Recording
 
 PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]

@@ -16,7 +16,7 @@ from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import RigidBody
 
 TABLES = ("dumas2007", "deleva1996")
-LEG = ("foot", "shank", "thigh")
+LEG: tuple[str, ...] = ("foot", "shank", "thigh")
 LIGHTEST_KG, HEAVIEST_KG = 5.0, 300.0
 # de Leva (1996), Table 4, mean lengths of foot over mean statures of the people measured
 _FOOT_OF_STATURE = {"f": 0.2283 / 1.735, "m": 0.2581 / 1.741}

@@ -49,7 +49,10 @@ def foot_loads(
         for platform in found:
             spans = [(s.start, s.end) for s in steps if s.clean and (s.platform, s.side) == (platform.name, side)]
             if spans:
-                total += _at(platform.smoothed(cutoff_hz, spans), platform, time)
+                smooth = platform.smoothed(cutoff_hz, spans)
+                columns = np.hstack([smooth.force, smooth.moment]).T
+                values = np.stack([np.interp(time, platform.time, column, 0.0, 0.0) for column in columns], axis=1)
+                total += Wrench(values[:, :3], values[:, 3:])
         named = any(platform.side == side for platform in found)
         spans = [(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
         loads[side] = FootLoad(total, _known(steps, side, time, spans))
@@ -65,12 +68,6 @@ def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[tuple[f
             if (one.label, after.label) == ("foot off", "initial contact"):
                 spans.append((one.time, after.time))
     return found
-
-
-def _at(wrench: Wrench, platform: Platform, time: NDArray[np.float64]) -> Wrench:
-    both = np.hstack([wrench.force, wrench.moment])
-    values = np.stack([np.interp(time, platform.time, column, 0.0, 0.0) for column in both.T], axis=1)
-    return Wrench(values[:, :3], values[:, 3:])
 
 
 def _known(

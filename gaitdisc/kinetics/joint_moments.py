@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +14,72 @@ from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import LEG, TABLES, FootPoints, Person, leg_inertia, segment_lengths
 from gaitdisc.kinetics.foot_loads import FootLoad
-from gaitdisc.kinetics.joint_axes import PARTS, SEGMENTS_OF, along, joint_axes
-from gaitdisc.kinetics.newton_euler import RigidBody, joint_wrenches
+from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenches, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath
-from gaitdisc.kinetics.segment_motion import SegmentMotion, segment_motions
 from gaitdisc.kinetics.wrench import LEAST_LOAD_N
 from gaitdisc.recording import Recording
 
 FRAMES = ("joint", "distal")
-_JOINT_OF = {"foot": "ankle", "shank": "knee", "thigh": "hip"}
-_ALONG_BONE = {0: 2, 1: 0, 2: 1}  # the segment's own axis that takes the place of each axis of the joint
+ALONG_BONE = [2, 0, 1]  # the segment's own axes that take the places of those of the joint
+SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
+
+
+class JointPart(NamedTuple):
+    """One of the three parts of a joint moment: its projection on an axis, towards a positive angle."""
+
+    joint: str
+    angle: str  # angle that a positive part drives, without its side: `knee_angle`
+    axis: int  # 0 nearer segment's z, 1 floating, 2 farther segment's y
+    right: int  # sign of the positive angle about the axis, for each leg
+    left: int  # sign of the positive angle about the axis, for each leg
+
+    def sign(self, side: str) -> int:
+        """Sign of the positive angle about the axis."""
+        return self.right if side == "r" else self.left
+
+
+PARTS = (
+    JointPart("hip", "hip_flexion", 0, 1, 1),
+    JointPart("hip", "hip_adduction", 1, 1, -1),
+    JointPart("hip", "hip_rotation", 2, 1, -1),
+    JointPart("knee", "knee_angle", 0, -1, -1),
+    JointPart("knee", "knee_adduction", 1, 1, -1),
+    JointPart("knee", "knee_rotation", 2, 1, -1),
+    JointPart("ankle", "ankle_angle", 0, 1, 1),
+    JointPart("ankle", "ankle_inversion", 1, 1, -1),
+    JointPart("ankle", "ankle_rotation", 2, 1, -1),
+)
+
+
+def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
+    """Unit axes of a joint in the laboratory's frame, (frame, axis, 3); NaN where the first and third lie on one line.
+
+    As the joint angles have them: the nearer segment's z (to the right), about which flexion turns; one at right angles
+    to both others, forwards; the farther segment's y (along the bone), about which rotation turns. Projections of a
+    moment on them times the rates of their angles are the joint's power, as with OpenSim's generalised forces.
+
+    nearer, farther: the segments on the trunk's side of the joint and beyond it
+    Source: Grood & Suntay (1983), J. Biomech. Eng. 105, 136-144. Schache & Baker (2007), Gait Posture 25, 440-452,
+        compare the frames in which joint moments are given, and recommend these axes.
+
+    >>> straight = Pose(np.zeros((1, 3)), np.eye(3)[None])
+    >>> joint_axes(straight, straight)[0].tolist()
+    [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    """
+    flexion, rotation = nearer.rotation[:, :, 2], farther.rotation[:, :, 1]
+    floating = np.cross(rotation, flexion)
+    size = np.linalg.norm(floating, axis=1, keepdims=True)
+    floating = floating / np.where(size > 1e-6, size, np.nan)
+    return np.stack([flexion, floating, rotation], axis=1)
+
+
+def along(vector: NDArray[np.float64], axes: NDArray[np.float64], part: JointPart, side: str) -> NDArray[np.float64]:
+    """Part of a vector towards the positive angle, (frame,).
+
+    vector (frame, 3): in the laboratory's frame, such as a moment [N m]
+    axes (frame, axis, 3): from `joint_axes`
+    """
+    return part.sign(side) * np.einsum("fx,fx->f", vector, axes[:, part.axis])
 
 
 @dataclass(frozen=True)
@@ -38,8 +95,6 @@ class KineticsSettings:
     # [Hz], of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
     # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     marker_cutoff_hz: float = 6.0
-    # [Hz], of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
-    # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     force_cutoff_hz: float = 20.0
     # [N], force at which a foot counts as off a platform, and below which there is no centre of pressure
     least_load_n: float = LEAST_LOAD_N
@@ -129,12 +184,13 @@ def joint_moments(
         chain = [(leg.moving[segment], leg.bodies[segment]) for segment in LEG]
         carried = dict(zip(LEG, joint_wrenches(chain, loads[side].wrench, up), strict=True))
         unknown = ~loads[side].known
-        for segment in reversed(LEG):
-            joint = _JOINT_OF[segment]
-            nearer, farther = leg.moving[SEGMENTS_OF[joint][0]], leg.moving[segment]
+        for joint, (above, segment) in SEGMENTS_OF.items():
+            nearer, farther = leg.moving[above], leg.moving[segment]
             moment = carried[segment].about(farther.pose.origin) / person.kg
             moment[unknown] = np.nan
-            axes = _axes(nearer.pose, farther.pose, settings.frame)
+            axes = joint_axes(nearer.pose, farther.pose)
+            if settings.frame == "distal":
+                axes = np.swapaxes(farther.pose.rotation, 1, 2)[:, ALONG_BONE]
             for part in (one for one in PARTS if one.joint == joint):
                 columns.append(along(moment, axes, part, side))
                 channels.append(Channel(f"{part.angle}_{side}_moment", "moment", "N m/kg", side))
@@ -142,9 +198,3 @@ def joint_moments(
             columns.append(np.einsum("fx,fx->f", moment, turning))
             channels.append(Channel(f"{joint}_power_{side}", "power", "W/kg", side))
     return Recording(time, np.column_stack(columns) if columns else np.empty((len(time), 0)), tuple(channels))
-
-
-def _axes(nearer: Pose, farther: Pose, frame: str) -> NDArray[np.float64]:
-    if frame == "joint":
-        return joint_axes(nearer, farther)
-    return np.stack([farther.rotation[:, :, _ALONG_BONE[axis]] for axis in range(3)], axis=1)

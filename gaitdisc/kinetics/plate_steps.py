@@ -156,8 +156,7 @@ def plate_steps(
             cut = bool(start == 0 or end == len(platform.time))
             wrench = Wrench(platform.wrench.force[start:end], platform.wrench.moment[start:end])
             loaded = replace(platform, time=platform.time[start:end], wrench=wrench)
-            find = _named_foot if platform.side else _foot
-            side, reason, doubt = find(loaded, span, feet, least_load_n)
+            side, reason, doubt = _foot(loaded, span, feet, least_load_n)
             steps.append(PlateStep(platform.name, side, *span, reason, not cut, doubt))
     return sorted(steps, key=lambda step: step.start)
 
@@ -231,34 +230,29 @@ def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = L
 def _foot(
     platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
 ) -> tuple[str, str, str]:
-    """Side of the foot that loads a platform, why the step cannot be used, and whether that is a doubt."""
+    """Side of the foot that loads a platform, why the step cannot be used, and whether that is a doubt.
+
+    A side that the platform names stays, and cannot be where another foot, or none, stands where the force is.
+    """
+    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
+    known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
+    side = min(known, key=lambda key: known[key], default="")
+    if platform.side:
+        own = known.get(platform.side, 0.0)
+        whose = f"it is named the foot's of side {platform.side}, and its centre of pressure"
+        if own > BESIDE_FOOT_M and side != platform.side:
+            return platform.side, f"{whose} follows the other foot ({side}), {100 * own:.0f} cm away", "warning"
+        reason = f"{whose} is {100 * own:.0f} cm beside it" if own > BESIDE_FOOT_M else ""
+        return platform.side, reason, "warning" if reason else ""
     standing = {side: _stands_s(foot, platform, span) for side, foot in feet.items()}
     if len(standing) == 2 and min(standing.values()) >= STANDS_S:
         both = ", ".join(f"{side} for {seconds:.2f} s" for side, seconds in standing.items())
         return "", f"both feet stand on it, {both}", "note"
-    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
-    known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
     if not known:
         return "", "no foot has its markers then", ""
-    side = min(known, key=lambda key: known[key])
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})", "warning"
-    return side, _over_edge(feet[side], platform, span) or _near_edge(platform, least_load_n), ""
-
-
-def _named_foot(
-    platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
-) -> tuple[str, str, str]:
-    """Side that a platform names, and why that cannot be: another foot, or none, stands where the force is."""
-    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
-    own = beside.get(platform.side, np.nan)
-    if not own > BESIDE_FOOT_M:
-        return platform.side, "", ""
-    nearest = min((side for side in beside if np.isfinite(beside[side])), key=lambda side: beside[side])
-    whose = f"it is named the foot's of side {platform.side}, and its centre of pressure"
-    if nearest != platform.side:
-        return platform.side, f"{whose} follows the other foot ({nearest}), {100 * own:.0f} cm away", "warning"
-    return platform.side, f"{whose} is {100 * own:.0f} cm beside it", "warning"
+    return side, _edge(feet[side], platform, span, least_load_n), ""
 
 
 def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:
@@ -288,8 +282,8 @@ def _stands_s(foot: FootPath, platform: Platform, span: tuple[float, float]) -> 
     return longest * step
 
 
-def _over_edge(foot: FootPath, platform: Platform, span: tuple[float, float]) -> str:
-    """Say which part of a foot bears load beside the platform, and how far; empty where none does."""
+def _edge(foot: FootPath, platform: Platform, span: tuple[float, float], least_load_n: float) -> str:
+    """Say which part of a foot bears load beside the platform, or must, as the centre of pressure is near its edge."""
     if platform.surface is None:
         return ""
     for name, part in (("the heel stands", foot.heel), ("the toes stand", foot.toe)):
@@ -298,13 +292,6 @@ def _over_edge(foot: FootPath, platform: Platform, span: tuple[float, float]) ->
         outside = outside[np.isfinite(outside)]
         if len(outside) and np.median(outside) > BEYOND_EDGE_M:
             return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
-    return ""
-
-
-def _near_edge(platform: Platform, least_load_n: float) -> str:
-    """Say how near to the edge the centre of pressure comes where a part of the sole must reach over it."""
-    if platform.surface is None:
-        return ""
     pressure = platform.pressure_centre(least_load_n)[platform.load_n > CLEAR_LOAD * platform.load_n.max()]
     nearest = -float(np.nanmax(platform.surface.outside(pressure)))
     return f"its centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.kinematics.cardan import clinical_angles, rotation_of
 from gaitdisc.kinematics.laboratory import PATH_S, STRAIGHT_DEG
+from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.recording import Recording
 from gaitdisc.recording.wrapping import unwrapped
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents, trial_markers
 from gaitdisc.recording import Cycle, Recording, Trial
-from gaitdisc.recording.cycle import NAN
-from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.signals.contact_force import RISE_N, loaded
 from gaitdisc.signals.direction import Direction, marker_position
 from gaitdisc.signals.strides import gap_reasons

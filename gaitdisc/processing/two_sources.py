@@ -17,8 +17,7 @@ from scipy.stats import rankdata
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.joint_centres import hip_of_spines
-from gaitdisc.kinematics.marker_set import NEEDED
-from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
+from gaitdisc.kinematics.marker_set import NEEDED, shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.strides import interpolated

@@ -1,15 +1,12 @@
 """The nouns that everything else speaks of: recordings, trials, strides, trajectories, samples, findings."""
 
-from gaitdisc.recording.cycle import Cycle
 from gaitdisc.recording.field import Axis, Field
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
-from gaitdisc.recording.samples import Samples
-from gaitdisc.recording.scale import Scale, scale_of
-from gaitdisc.recording.strides import PERCENT, DroppedStride, Strides
-from gaitdisc.recording.surface import Surface
+from gaitdisc.recording.samples import Samples, Scale, scale_of
+from gaitdisc.recording.strides import PERCENT, Cycle, DroppedStride, Strides
 from gaitdisc.recording.trajectory import Trajectory
-from gaitdisc.recording.trial import Event, Trial
+from gaitdisc.recording.trial import Event, Surface, Trial
 
 __all__ = [
     "PERCENT",

@@ -8,17 +8,63 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ChannelError, SamplingError
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.notebook import html_of
-from gaitdisc.recording.arrays import frozen
+from gaitdisc.recording.arrays import frozen, read_only
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
-from gaitdisc.recording.surface import Surface
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 SHOWN = 6  # findings of a notebook's table
 STREAMS = ("kinematics", "markers", "segments", "emg", "forces", "moments", "signals")
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A force plate or a belt, a rectangle that a foot can step on, in the laboratory's frame.
+
+    >>> plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))
+    >>> plate.outside(np.array([[0.1, 0.1, 0.05], [0.5, 0.3, 0.0]])).round(9).tolist()
+    [-0.1, 0.1]
+    """
+
+    name: str  # first part of its channels' names: `plate_1`
+    corners: NDArray[np.float64]  # (4, 3) [m], in order around it
+
+    def __post_init__(self) -> None:
+        """Check the corners once."""
+        corners = read_only(self.corners)
+        sound = corners.shape == (4, 3) and np.isfinite(corners).all()
+        if not sound or np.linalg.norm(np.cross(corners[2] - corners[0], corners[3] - corners[1])) < 1e-6:
+            raise ShapeError(
+                "a surface needs four corners (4, 3) that span an area",
+                f"{self.name} has {np.array2string(corners, precision=3)}",
+                "Correct FORCE_PLATFORM:CORNERS.",
+            )
+        object.__setattr__(self, "corners", corners)
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Its middle, (3,) [m]."""
+        return self.corners.mean(axis=0)
+
+    @property
+    def normal(self) -> NDArray[np.float64]:
+        """Unit vector at right angles to it, (3,), to one side or the other."""
+        across = np.cross(self.corners[2] - self.corners[0], self.corners[3] - self.corners[1])
+        return across / np.linalg.norm(across)
+
+    def outside(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far points lie beyond the nearest edge, seen along the normal, (point,) [m]; negative inside.
+
+        points (point, 3) [m]: in the laboratory's frame
+        """
+        towards = np.roll(self.corners, -1, axis=0) - self.corners
+        outwards = np.cross(towards, self.normal)
+        outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
+        outwards *= np.sign(np.einsum("ex,ex->e", outwards, self.corners - self.centre))[:, None]
+        return np.einsum("pex,ex->pe", points[:, None] - self.corners, outwards).max(axis=1)
 
 
 @dataclass(frozen=True)
@@ -160,7 +206,11 @@ class Trial:
                 "Check that the files belong to the same trial and clock.",
             )
         time = start + np.arange(count) / rate_hz
-        values = [_at(r, time) for r in streams]
+        values = []
+        for r in streams:  # a heading that comes round between two samples is read on the short way
+            between = interpolated(r.time, unwrapped(r).values, time)
+            unmarked = np.zeros(between.shape, bool)
+            values.append(wrapped(replace(r, time=time, values=between, suspect=unmarked), r).values)
         marks = [interpolated(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,
@@ -171,10 +221,3 @@ class Trial:
             streams[0].source,
             np.hstack(marks),
         )
-
-
-def _at(recording: Recording, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values at other times; a heading that comes round between two samples is read on the short way."""
-    values = interpolated(recording.time, unwrapped(recording).values, time)
-    marks = np.zeros(values.shape, bool)
-    return wrapped(replace(recording, time=time, values=values, suspect=marks), recording).values

@@ -103,12 +103,8 @@ class Form:
 
     def muscles(self, driven: Driven) -> Values:
         """Columns (sample, 2 a muscle): activation times force at speed, shared between the ends of the angle."""
-        active = driven.activation(self.delay_s, self.lag_s)[:, :, None] * self._ends(driven)
+        active = driven.activation(self.delay_s, self.lag_s)[:, :, None] * self.ends(driven)
         return active.reshape(len(active), -1)
-
-    def gain(self, driven: Driven, gains: Values) -> Values:
-        """Moment of each muscle for each unit of activation, with its sign (sample, muscle) [N m]."""
-        return np.einsum("sme,me->sm", self._ends(driven), gains)
 
     def firm(self, driven: Driven) -> Values:
         """Columns (sample, FIRMNESS): how far the angle is short of the usual one, in each part of the stride."""
@@ -120,7 +116,7 @@ class Form:
         constant = np.ones((len(driven.angle), 1))
         return np.hstack([self.muscles(driven), constant, self.firm(driven), cycle(driven.phase, HARMONICS)[:, 1:]])
 
-    def _ends(self, driven: Driven) -> Values:
+    def ends(self, driven: Driven) -> Values:
         """Signed share of the low and the high gain of each muscle (sample, muscle, 2)."""
         low, high = self.span
         share = np.clip((driven.angle - low) / max(high - low, 1e-9), 0.0, 1.0)
@@ -166,7 +162,7 @@ class MuscleMoment:
 
     def gain(self, driven: Driven) -> Values:
         """Return each muscle's moment for each unit of activation, with its sign (sample, muscle) [N m]."""
-        return self.form.gain(driven, self.gains)
+        return np.einsum("sme,me->sm", self.form.ends(driven), self.gains)
 
     def others(self, driven: Driven) -> Values:
         """Return what no electrode sees: firmness about the usual stride, and a curve over it (sample,) [N m]."""

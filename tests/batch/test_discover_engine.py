@@ -34,8 +34,7 @@ def lab(tmp_path_factory):
     """Return a folder with a model, the truth, and four trials of it in degrees."""
     if find_spec("mujoco") is None:
         pytest.skip("MuJoCo is not installed: gaitdisc[mujoco]")
-    from gaitdisc.engines.engine import Motion
-    from gaitdisc.engines.model_file import read_model
+    from gaitdisc.engines.engine import Motion, read_model
 
     folder = tmp_path_factory.mktemp("lab")
     (folder / "pendulum.xml").write_text(PENDULUM)
@@ -71,8 +70,8 @@ def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp
 
 def test_a_coordinate_that_no_column_shows_is_refused(lab):
     from gaitdisc.batch.discover_engine import measured_of_file, refuse_unmeasured
+    from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import drafted
-    from gaitdisc.engines.model_file import read_model
     from gaitdisc.errors import ChannelError
 
     model = read_model(lab / "pendulum.xml")
@@ -84,8 +83,8 @@ def test_a_coordinate_that_no_column_shows_is_refused(lab):
 
 def test_what_was_found_goes_into_the_mapping(lab):
     from gaitdisc.batch.discover_engine import in_mapping
+    from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import drafted
-    from gaitdisc.engines.model_file import read_model
     from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
     from gaitdisc.simulation.parts import Term
 
@@ -128,8 +127,7 @@ def test_what_mujoco_warns_of_is_a_finding_said_once():
 def test_half_a_step_of_a_coarse_integrator_is_no_late_sensor(tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
     from gaitdisc import discover
-    from gaitdisc.engines.engine import Motion
-    from gaitdisc.engines.model_file import read_model
+    from gaitdisc.engines.engine import Motion, read_model
 
     (tmp_path / "coarse.xml").write_text(PENDULUM.replace('timestep="0.001"', 'timestep="0.02"'))
     model, rng, t = read_model(tmp_path / "coarse.xml"), np.random.default_rng(5), np.arange(300) / 50

@@ -26,10 +26,9 @@ def found(tmp_path_factory):
     """What a search would hand over: the pendulum's fit, and its numbers off by as much as an expansion may be."""
     if find_spec("mujoco") is None:
         pytest.skip("MuJoCo is not installed: gaitdisc[mujoco]")
-    from gaitdisc.engines.engine import Motion
+    from gaitdisc.engines.engine import Motion, read_model
     from gaitdisc.engines.expansion import expanded
     from gaitdisc.engines.mapping import drafted
-    from gaitdisc.engines.model_file import read_model
 
     folder = tmp_path_factory.mktemp("pendulum")
     (folder / "plain.xml").write_text(PENDULUM)

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.engines.engine import Motion
+from gaitdisc.engines.engine import Motion, read_model
 from gaitdisc.engines.expansion import FASTEST, _slowed, expanded
 from gaitdisc.engines.mapping import drafted, with_input_changed
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term

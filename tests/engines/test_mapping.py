@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import (
     drafted,
     names_engine,
@@ -11,7 +12,6 @@ from gaitdisc.engines.mapping import (
     with_input_changed,
     write_mapping,
 )
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.running import compile_simulation

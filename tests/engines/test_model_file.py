@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from gaitdisc.engines.model_file import is_model, read_model
+from gaitdisc.engines.engine import is_model, read_model
 from gaitdisc.errors import GaitdiscError, ReadError
 
 

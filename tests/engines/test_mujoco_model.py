@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Motion
-from gaitdisc.engines.model_file import read_model
+from gaitdisc.engines.engine import Motion, read_model
 from gaitdisc.errors import GaitdiscError
 
 from .conftest import DAMPING, GEAR, GRAVITY, INERTIA, LENGTH, MASS, PENDULUM

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import ByHand, Motion
-from gaitdisc.engines.model_file import read_model
+from gaitdisc.engines.engine import ByHand, Motion, read_model
 from gaitdisc.engines.mujoco_text import with_effect, with_value
 from gaitdisc.simulation.parts import Term
 

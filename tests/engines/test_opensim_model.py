@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Motion
-from gaitdisc.engines.model_file import read_model
-from gaitdisc.engines.opensim_text import with_effect
+from gaitdisc.engines.engine import Motion, read_model
+from gaitdisc.engines.opensim_model import with_effect
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.parts import Term
 

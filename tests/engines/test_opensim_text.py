@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaitdisc.engines.opensim_text import with_effect, with_value
+from gaitdisc.engines.opensim_model import with_effect, with_value
 from gaitdisc.simulation.parts import Term
 
 TEXT = """<OpenSimDocument Version="40600"><Model name="arm"><gravity>0 -9.81 0</gravity>

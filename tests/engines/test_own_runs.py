@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Motion
+from gaitdisc.engines.engine import Motion, read_model
 from gaitdisc.engines.mapping import drafted
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.engines.own_runs import own_runs
 from gaitdisc.results.discovery import Runs
 from gaitdisc.simulation.drive import Drive

@@ -2,7 +2,7 @@
 
 import pytest
 
-from gaitdisc.engines.part_names import part_name
+from gaitdisc.engines.engine import part_name
 from gaitdisc.simulation.expression import names, parsed
 
 

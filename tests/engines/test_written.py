@@ -4,8 +4,8 @@ import re
 
 import pytest
 
+from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import drafted, with_input_changed
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.engines.written import loaded_beside, written_model
 from gaitdisc.simulation.parts import Term
 

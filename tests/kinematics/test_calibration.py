@@ -30,8 +30,7 @@ from manufactured_body import (
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.joint_centres import DavisHip, harrington_hip
-from gaitdisc.kinematics.marker_set import MarkerSet
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
 from gaitdisc.recording import Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.kinematics.cardan import clinical_angles, rotation_of
+from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 
 HERE = np.eye(3)[None]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.kinematics.carried_over import carried_over
+from gaitdisc.kinematics.held_joints import carried_over
 from gaitdisc.kinematics.pose import Pose
 
 FRAMES, GAP = 60, slice(20, 40)

@@ -18,7 +18,7 @@ from manufactured_body import (
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 
 KNOWN = known_angles(120)

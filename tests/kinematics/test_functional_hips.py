@@ -17,7 +17,7 @@ from manufactured_body import (
 
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.functional_hips import functional_hips, sphere_centre
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.recording import Recording
 

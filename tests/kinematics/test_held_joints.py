@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import Motion, joint_angles, motion
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.recording import Recording

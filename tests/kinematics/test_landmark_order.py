@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from manufactured_body import PLUG_IN_GAIT, static_of
 
-from gaitdisc.kinematics.landmark_order import exchanged_in_static, landmark_order
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.calibration import exchanged_in_static, landmark_order
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 
 UP = np.array([0.0, 1.0, 0.0])

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.kinematics.marker_set import choices, sided
-from gaitdisc.kinematics.marker_set_file import marker_set, shipped_marker_sets
+from gaitdisc.kinematics.marker_set import choices, marker_set, shipped_marker_sets, sided
 
 
 @pytest.mark.parametrize(("name", "right"), [("{S}ASI", "RASI"), ("knee_{s}", "knee_r"), ("{side} knee", "right knee")])

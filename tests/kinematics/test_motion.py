@@ -29,7 +29,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import chosen_marker_set, joint_angles, motion
 from gaitdisc.recording import Recording
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.kinematics.rigid_fit import fitted_pose
+from gaitdisc.kinematics.pose import fitted_pose
 
 BODY = np.array([[0, 0, 0], [0.1, 0.02, 0], [0.0, 0.2, 0.01], [0.03, 0.1, 0.08], [-0.05, 0.15, 0.02]])
 

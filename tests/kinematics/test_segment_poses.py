@@ -17,7 +17,7 @@ from manufactured_body import (
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.segment_poses import carried_joint, free_poses, joined_poses, named_places, placed_markers
 
 KNOWN = known_angles(40)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.kinetics.added_mass import moment_per_foot_kg
+from gaitdisc.kinetics.newton_euler import moment_per_foot_kg
 
 UP = np.array([0.0, 0.0, 1.0])
 

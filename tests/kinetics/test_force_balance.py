@@ -9,11 +9,10 @@ from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.foot_loads import FootLoad
-from gaitdisc.kinetics.force_balance import ForceBalance, force_balance
 from gaitdisc.kinetics.joint_moments import KineticsSettings, legs
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import FootPath
-from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+from gaitdisc.kinetics.trial_kinetics import ForceBalance, force_balance, trial_kinetics
 from gaitdisc.kinetics.wrench import Wrench
 
 TIME = np.arange(100) / 100

@@ -3,8 +3,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.joint_axes import PARTS, along, joint_axes
-from gaitdisc.kinetics.segment_motion import segment_motion
+from gaitdisc.kinetics.joint_moments import PARTS, along, joint_axes
+from gaitdisc.kinetics.newton_euler import segment_motion
 
 TIME = np.arange(200) / 100
 HIP = [part for part in PARTS if part.joint == "hip"]

@@ -4,8 +4,15 @@ import swinging_links as links
 from scipy.spatial.transform import Rotation
 
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.newton_euler import GRAVITY, RigidBody, joint_wrenches, needed_wrench
-from gaitdisc.kinetics.segment_motion import SegmentMotion, segment_motion, smoothed_pose
+from gaitdisc.kinetics.newton_euler import (
+    GRAVITY,
+    RigidBody,
+    SegmentMotion,
+    joint_wrenches,
+    needed_wrench,
+    segment_motion,
+    smoothed_pose,
+)
 from gaitdisc.kinetics.wrench import Wrench
 
 UP = np.array([0.0, 1.0, 0.0])

@@ -4,7 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from gaitdisc.errors import SamplingError, ShapeError
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.segment_motion import nearest_rotations, segment_motion, segment_motions, smoothed_pose
+from gaitdisc.kinetics.newton_euler import nearest_rotations, segment_motion, segment_motions, smoothed_pose
 
 TIME = np.arange(400) / 200
 AXIS = np.array([2.0, -1.0, 2.0]) / 3

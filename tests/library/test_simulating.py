@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 
 import gaitdisc as gd
 from gaitdisc.channel import Channel
+from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import write_mapping
-from gaitdisc.engines.model_file import read_model
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.writing import write_simulation

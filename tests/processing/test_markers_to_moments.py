@@ -6,7 +6,7 @@ import pytest
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.processing.markers_to_moments import computed_trial
 

@@ -12,7 +12,7 @@ from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTrial, Study
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.processing.markers_to_moments import computed_trial
 from gaitdisc.processing.pooled import pooled_cycles
