@@ -12,8 +12,8 @@ from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
 from gaitdisc.notebook import html_of
-from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings

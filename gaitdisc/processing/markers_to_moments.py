@@ -1,4 +1,4 @@
-"""From markers and forces of a trial to its joint angles, moments and powers, in the streams that all else reads."""
+"""From markers, segments and forces of a trial to its joint angles, moments and powers, in the streams others read."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.motion import JOINT_CHANNELS, SEGMENTS_OF, Motion, motion
+from gaitdisc.kinematics.segment_angles import segment_angles
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
@@ -77,6 +78,19 @@ def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
     said = tuple(one for one in moved.findings if one.kind == "exchanged markers")
     streams = {**trial.streams, "markers": moved.markers, "kinematics": own.with_values(values, own.suspect)}
     return replace(trial, streams=streams, findings=(*trial.findings, *said))
+
+
+def with_segment_angles(trial: Trial) -> Trial:
+    """Trial with joint angles where it has poses of segments and no angles; why there are none is a finding."""
+    if "segments" not in trial.streams or "kinematics" in trial.streams:
+        return trial
+    try:
+        angles, findings = segment_angles(trial.stream("segments"))
+    except GaitdiscError as error:
+        said = Finding("warning", "no angles", trial.name, str(error).rstrip("."), "angles from segments")
+        return replace(trial, findings=(*trial.findings, said))
+    named = replace(angles, subject=trial.subject, condition=trial.condition)
+    return replace(trial, streams={**trial.streams, "kinematics": named}, findings=(*trial.findings, *findings))
 
 
 def _residual(moved: Motion, file: str) -> Finding:

@@ -17,8 +17,12 @@ from gaitdisc.kinematics.motion import chosen_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.processing.angles_of_segments import with_segment_angles
-from gaitdisc.processing.markers_to_moments import ComputedTrial, computed_trial, without_exchanged_markers
+from gaitdisc.processing.markers_to_moments import (
+    ComputedTrial,
+    computed_trial,
+    with_segment_angles,
+    without_exchanged_markers,
+)
 from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial

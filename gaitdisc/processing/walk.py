@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,19 +39,27 @@ class Walk:
             self.state.rate_hz,
             self.strides[self.side].detector,
             self.state.channels,
-            self._curves(),
+            stride_curves([self.state], self.strides, self.side),
             pd.concat([stride_table(self.strides[side]) for side in sorted(self.strides)], ignore_index=True),
             self.findings,
             files,
         )
 
-    def _curves(self) -> NDArray[np.float64]:
-        own = [channel.side if channel.side in self.strides else self.side for channel in self.state.channels]
-        by_side = {side: self.strides[side].normalised(self.state) for side in set(own)}
-        curves = np.full((max(map(len, by_side.values())), len(PERCENT), len(own)), np.nan)
-        for column, side in enumerate(own):
-            curves[: len(by_side[side]), :, column] = by_side[side][:, :, column]
-        return curves
+
+def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:
+    """Strides of every channel, cut by the contacts of its own foot; without a side by those of the foot to follow.
+
+    returns (stride, phase, channel): NaN behind the strides of the foot that has fewer
+    """
+    columns: list[NDArray[np.float64]] = []
+    for state in states:
+        own = [channel.side if channel.side in strides else follow for channel in state.channels]
+        by_side = {side: strides[side].normalised(state) for side in set(own)}
+        columns += [by_side[side][:, :, column] for column, side in enumerate(own)]
+    curves = np.full((max(map(len, columns), default=0), len(PERCENT), len(columns)), np.nan)
+    for column, values in enumerate(columns):
+        curves[: len(values), :, column] = values
+    return curves
 
 
 def stride_table(strides: Strides) -> pd.DataFrame:
