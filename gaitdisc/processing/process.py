@@ -60,8 +60,8 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     findings = [*trial.findings, *quality_findings(trial, study.models.angles, study.models.emg), *choice.findings]
     if set(choice.contacts) == {"r", "l"}:
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
-    verify_walking(_knees_and_hips(trial), strides[side], study.quality.min_strides)
-    verify_sides(_knees_and_hips(trial), strides[side])
+    verify_walking(knees_and_hips(trial), strides[side], study.quality.min_strides)
+    verify_sides(knees_and_hips(trial), strides[side])
     state = _state(trial, raw, study)
     findings += short_run_findings(raw, study.filters.kinematics_hz, study.filters.order, study.filters.gap_s)
     findings += stride_findings(state, strides[side]) + side_findings(trial, strides)
@@ -116,7 +116,8 @@ def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     return recording.selected(names)
 
 
-def _knees_and_hips(trial: Trial) -> Recording:
+def knees_and_hips(trial: Trial) -> Recording:
+    """Sagittal angles of both knees and hips, those that there are."""
     wanted = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
     return trial.stream("kinematics").selected_by(lambda channel: channel.name in wanted)
 

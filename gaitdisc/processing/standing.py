@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.ingest.c3d_measures import read_body_measures
@@ -56,7 +55,9 @@ class Standing:
         source = self.study.kinematics.angles if self.study.kinematics else ""
         trial = without_contradicted(trial if source == "markers" else self._without_exchanged(trial))
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
-        if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
+        angles = trial.streams["kinematics"].names if "kinematics" in trial.streams else ()
+        of_legs = any(name[:-2] in LEGS for name in angles)
+        if source == "file" or "markers" not in trial.streams or (not source and of_legs):
             return ComputedTrial(self._with_own_kinetics(planned, trial))
         bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
         given_up = bare if source == "markers" else trial
@@ -157,7 +158,9 @@ class Standing:
     def _calibration(self, markers: Recording) -> Calibration:
         """Of the person, with the marker set that the study names or the labels are of."""
         wanted = self.study.kinematics
-        chosen = chosen_marker_set(markers, self.markers, marker_set_of(self.study))
+        named = wanted.marker_set if wanted else ""  # a file lies relative to the study's
+        own = self.study.path_of(named) if named.endswith(".toml") else named or None
+        chosen = chosen_marker_set(markers, self.markers, own)
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
             kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
@@ -225,19 +228,3 @@ def _circled(study: Study, participant: Participant, session: str, read: Read) -
         return read(planned).streams.get("markers")
     except GaitdiscError:
         return None
-
-
-def marker_set_of(study: Study) -> str | Path | None:
-    """Name or file of the marker set that a study names, files relative to the study file; None where it names none.
-
-    study: with or without `[kinematics]`
-    """
-    named = study.kinematics.marker_set if study.kinematics else ""
-    return study.path_of(named) if named.endswith(".toml") else named or None
-
-
-def has_leg_angles(trial: Trial) -> bool:
-    """Whether a trial's files hold a flexion angle of a leg."""
-    if "kinematics" not in trial.streams:
-        return False
-    return any(channel.name[:-2] in LEGS for channel in trial.stream("kinematics").channels)

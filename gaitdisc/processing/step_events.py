@@ -191,19 +191,15 @@ def over_ground(trial: Trial) -> bool:
 
     trial: with markers, or with `pelvis_tx` and `pelvis_tz`; without either a trial of up to 10 s is one over ground
     """
-    markers = trial.streams.get("markers")
-    if markers is not None:
-        try:
-            heels, pelvis = named_markers(markers)
-            return trial_direction(markers, heels, pelvis).headings is not None
-        except (ChannelError, StrideError):
-            pass
+    known = trial_markers(trial)
+    if known is not None:
+        return known[2].headings is not None
     kinematics = trial.streams.get("kinematics")
     path = [] if kinematics is None else [n for n in ("pelvis_tx", "pelvis_tz") if n in kinematics.names]
     if kinematics is not None and path:
-        known = kinematics.selected(path).values
-        known = known[np.isfinite(known).all(axis=1)]
-        away = float(np.linalg.norm(np.ptp(known, axis=0))) if len(known) else 0.0
+        places = kinematics.selected(path).values
+        places = places[np.isfinite(places).all(axis=1)]
+        away = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
         return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
     longest = max((recording.duration_s for recording in trial.streams.values()), default=0.0)
     return longest <= NO_WALKWAY_S
