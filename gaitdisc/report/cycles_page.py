@@ -64,6 +64,7 @@ MOST_FAINT = 25  # cycles that are drawn one by one
 
 def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
     """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
+    computed = any(finding.kind == "residual" for one in run.cycles for finding in one.findings)
     tables = {
         "refusals": refusals_table(run),
         "findings": findings_table(run),
@@ -75,14 +76,10 @@ def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
         "answer": cycles_sentences(run),
         "blocks": saved_cycle_blocks(run, folder),
         "tables": tables,
-        "method": (*METHOD, *([COMPUTED] if _computed(run) else [])),
+        "method": (*METHOD, *([COMPUTED] if computed else [])),
     }
     save_cycle_tables(run, folder)
     return write_page("cycles", shown, folder)
-
-
-def _computed(run: ResponseRun) -> bool:
-    return any(finding.kind == "residual" for one in run.cycles for finding in one.findings)
 
 
 def save_cycle_tables(run: ResponseRun, folder: Path) -> None:
@@ -123,7 +120,9 @@ def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
     if not run.cycles:
         return []
     unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
-    first = Block("cycles", "Cycles", (_windows(run), *unfitted), (), (overview_table(run.cycles),))
+    device = "" if run.exo else " The study compares no device, so no models are fitted."
+    windows = f"Every cycle lies in one trial; nothing is joined across trials.{device}"
+    first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.cycles),))
     people = list(dict.fromkeys(one.subject for one in run.cycles))
     names = file_names(people)
     each = [
@@ -149,11 +148,6 @@ def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) ->
     save_tables(block.tables, folder)
     figures = save_figures(block.figures, folder, largest_inline(count))
     return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
-
-
-def _windows(run: ResponseRun) -> str:
-    device = "" if run.exo else " The study compares no device, so no models are fitted."
-    return f"Every cycle lies in one trial; nothing is joined across trials.{device}"
 
 
 def _person(sets: Sequence[PooledCycles]) -> str:
@@ -208,11 +202,13 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
 
 
 def _draw(axes: Axes, pooled: PooledCycles, channel: str, side: str, curve: pd.DataFrame) -> None:
-    look = SIDES[side]
-    draw_cycles(axes, _every(pooled, channel, side), curve["mean"].to_numpy(), curve["sd"].to_numpy(), side)
+    column = [one.name for one in pooled.channels].index(channel)
+    own = pooled.curves[(pooled.kept["side"] == side).to_numpy(), :, column]
+    every = own[np.isfinite(own).any(axis=1)]
+    draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), side)
     off = pooled.kept.loc[pooled.kept["side"] == side, "stance_percent"].mean()
     if np.isfinite(off):
-        axes.axvline(float(off), color=look.colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
+        axes.axvline(float(off), color=SIDES[side].colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
 
 
 def draw_cycles(
@@ -229,12 +225,6 @@ def draw_cycles(
     if len(every) > 2:
         axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
     axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)
-
-
-def _every(pooled: PooledCycles, channel: str, side: str) -> NDArray[np.float64]:
-    column = [one.name for one in pooled.channels].index(channel)
-    own = pooled.curves[(pooled.kept["side"] == side).to_numpy(), :, column]
-    return own[np.isfinite(own).any(axis=1)]
 
 
 def _key() -> list[Artist]:
