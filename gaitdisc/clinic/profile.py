@@ -19,7 +19,6 @@ from gaitdisc.results.leg_curves import FEET, TURNED_DEG, LegCurves
 FEATURES = 15
 FEWEST_PEOPLE = 30  # twice the features; below it directions are those of single people
 FEWEST = 2  # people without whom the reference has no spread of its own
-Means = Mapping[str, NDArray[np.float64]]
 
 
 def variable_score(curves: NDArray[np.float64], mean: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -75,7 +74,8 @@ def profile_of(
         for name in PROFILE:
             value = float(variable_score(leg.mean(name), means[name]))
             variables[name, side] = _score(value, each[name], spread.get(name), people)
-        single = _of_cycles(each)
+        whole_cycles = len({len(scores) for scores in each.values()}) == 1  # else cycles would not be the same
+        single = np.sqrt(np.mean(np.array([*each.values()]) ** 2, axis=0)) if whole_cycles else np.array([])
         whole[side] = _score(
             profile_score([variables[n, side].value for n in PROFILE]), single, spread.get("leg"), people
         )
@@ -85,13 +85,6 @@ def profile_of(
         fifteen += [variables[n, "r"].value for n in PROFILE if n not in PELVIS]
         both = _score(profile_score(fifteen), np.array([]), spread.get("both"), people)
     return Profile(variables, whole, both), ""
-
-
-def _of_cycles(each: Means) -> NDArray[np.float64]:
-    """Score of each cycle; none where a variable is missing in some, for cycles would not be the same."""
-    if len({len(scores) for scores in each.values()}) > 1:
-        return np.array([])
-    return np.sqrt(np.mean(np.array(list(each.values())) ** 2, axis=0))
 
 
 def _score(value: float, cycles: NDArray[np.float64], spread: tuple[float, float] | None, people: int) -> Score:

@@ -108,30 +108,24 @@ def rule_words() -> list[str]:
 
 def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
     """Rules of a table, each checked."""
-    found = tuple(_rule(entry) for entry in data["rules"])
+    found = []
+    for entry in data["rules"]:
+        words = {key: str(entry.get(key, "")) for key in ("name", "variable", "value", "part", "take", "less", "more")}
+        least = entry.get("least")
+        known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
+        said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
+        if not said or not isinstance(least, float) or least <= 0:
+            raise SchemaError(
+                "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal "
+                "value",
+                f"found {dict(entry)}",
+                "Correct rules.toml.",
+            )
+        found.append(Rule(least=least, **words))
     names = [rule.name for rule in found]
     if len(set(names)) < len(names):
         raise SchemaError("each rule needs a name of its own", f"found {names}", "Rename one of them.")
-    return found
-
-
-def _rule(entry: Mapping[str, object]) -> Rule:
-    words = {key: str(entry.get(key, "")) for key in ("name", "variable", "value", "part", "take", "less", "more")}
-    least = entry.get("least")
-    known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
-    if not (
-        words["name"]
-        and (words["less"] or words["more"])
-        and isinstance(least, float)
-        and least > 0
-        and (known != (words["value"] in SPATIOTEMPORAL))
-    ):
-        raise SchemaError(
-            "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal value",
-            f"found {dict(entry)}",
-            "Correct rules.toml.",
-        )
-    return Rule(least=least, **words)
+    return tuple(found)
 
 
 def _of_value(value: str) -> tuple[str, int]:
@@ -155,13 +149,13 @@ def outstanding(
         return (), f"limits need a reference of {FEWEST} people or more; it has {count} who walked so"
     sets = [(rule, of_values or reference if rule.value else reference) for rule in table or rules()]
     known = [(rule, values) for rule, own in sets if (values := _of_reference(rule, own)) is not None]
-    numbers = [
-        (rule, values, leg, number)
-        for rule, values in known
-        for leg in legs.values()
-        if (number := _of_leg(rule, leg)) is not None
-    ]
-    found = []
+    numbers, found = [], []
+    for rule, values in known:
+        for leg in legs.values():
+            curves = {name: leg.mean(name) for name in leg.cycles if name == rule.variable}
+            own = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
+            if (number := rule.number(curves, own, leg.stance_percent)) is not None:
+                numbers.append((rule, values, leg, number))
     for rule, values, leg, number in numbers:
         limits = limits_of(*values, tests=len(numbers))
         beyond = rule.less if number < limits.low else rule.more if number > limits.high else ""
@@ -171,12 +165,6 @@ def outstanding(
         excess = abs(number - limits.mean) / reach if reach > 0 else float("inf")
         found.append(Noted(rule.name, words, leg.side, number, rule.unit, rule.digits, limits, count, excess))
     return tuple(sorted(found, key=lambda one: (not one.words, -one.excess))), ""
-
-
-def _of_leg(rule: Rule, leg: LegCurves) -> float | None:
-    curves = {name: leg.mean(name) for name in leg.cycles if name == rule.variable}
-    values = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
-    return rule.number(curves, values, leg.stance_percent)
 
 
 def _of_reference(rule: Rule, reference: Sequence[ReferenceLeg]) -> tuple[np.ndarray, int] | None:

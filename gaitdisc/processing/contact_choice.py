@@ -76,10 +76,11 @@ def chosen_contacts(
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     seen, late = events_on_plates(seen, trial.name)
     strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
-    if detector != "auto" and detector not in strides:
-        raise refused.get(detector) or _nothing_found(trial, {detector: None})
-    if not strides:
-        raise _nothing_found(trial, refused)
+    why = refused if detector == "auto" else {detector: refused.get(detector)}
+    if not strides or (detector != "auto" and detector not in strides):
+        reasons = [f"{name}: {error.found if error else 'no stride of both feet'}" for name, error in why.items()]
+        needed = "strides need initial contacts from force, events, markers or joint angles"
+        raise why.get(detector) or nothing_found(trial, needed, reasons)
     chosen = detector if detector != "auto" else best_detector(PREFERRED, strides, seen)
     reference, offset_s = _offset(chosen, seen)
     taken = seen[chosen] if offset_s is None else _moved(seen[chosen], offset_s)
@@ -309,10 +310,10 @@ def _compared(file: str, who: tuple[str, str, str], agreement: Agreement, correc
     return Finding("warning" if spoils else "note", "detectors compared", file, what, "; ".join(spoils))
 
 
-def _nothing_found(trial: Trial, refused: Mapping[str, GaitdiscError | None]) -> StrideError:
-    reasons = [f"{name}: {error.found if error else 'no stride of both feet'}" for name, error in refused.items()]
+def nothing_found(trial: Trial, needed: str, reasons: Sequence[str]) -> StrideError:
+    """That no detector serves, and why each does not."""
     return StrideError(
-        "strides need initial contacts from force, events, markers or joint angles",
+        needed,
         f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
         "Add the file that holds forces, markers or angles to the trial, or leave the trial out.",
     )

@@ -49,7 +49,11 @@ def computed_trial(
     streams["markers"] = moved.markers
     streams["kinematics"] = replace(moved.angles, **named)
     file = moved.angles.source.file or trial.name
-    findings = [*trial.findings, *moved.findings, _residual(moved, file)]
+    typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
+    worst = max(typical, key=lambda name: typical[name])
+    what = f"markers lie {1e3 * float(np.median([*typical.values()])):.1f} mm from where the static trial has them, "
+    what += f"the median of {len(typical)} segments; farthest {worst}, {1e3 * typical[worst]:.1f} mm"
+    findings = [*trial.findings, *moved.findings, Finding("note", "residual", file, what, "")]
     steps = None
     if own:
         what = f"{' and '.join(own)} that the file holds give way to those computed from its markers"
@@ -91,15 +95,6 @@ def with_segment_angles(trial: Trial) -> Trial:
         return replace(trial, findings=(*trial.findings, said))
     named = replace(angles, subject=trial.subject, condition=trial.condition)
     return replace(trial, streams={**trial.streams, "kinematics": named}, findings=(*trial.findings, *findings))
-
-
-def _residual(moved: Motion, file: str) -> Finding:
-    """How far markers lie from where the static trial has them, and in which segment farthest."""
-    typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
-    worst = max(typical, key=lambda name: typical[name])
-    what = f"markers lie {1e3 * float(np.median([*typical.values()])):.1f} mm from where the static trial has them, "
-    what += f"the median of {len(typical)} segments; farthest {worst}, {1e3 * typical[worst]:.1f} mm"
-    return Finding("note", "residual", file, what, "")
 
 
 def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:

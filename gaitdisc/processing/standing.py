@@ -214,17 +214,10 @@ def standing_of(study: Study, participant: Participant, session: str, read: Read
     except GaitdiscError as error:
         return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
     sizes = emg_sizes(trial.stream("emg")) if "emg" in trial.streams else {}
-    unread, circled = "the static trial has no markers", _circled(study, participant, session, read)
+    unread, circles = "the static trial has no markers", functional_trial(study, participant, session)
+    try:  # the trial in which the legs are circled about the hips; `check` says why it cannot be read
+        circled = read(circles).streams.get("markers") if circles else None
+    except GaitdiscError:
+        circled = None
     markers, weighed_n = trial.streams.get("markers"), standing_weight_n(trial) if "markers" in trial.streams else None
     return Standing(study, participant, planned, markers, unread, sizes, circled, weighed_n)
-
-
-def _circled(study: Study, participant: Participant, session: str, read: Read) -> Recording | None:
-    """Markers of the trial in which the legs are circled about the hips; `check` says why it cannot be read."""
-    planned = functional_trial(study, participant, session)
-    if planned is None:
-        return None
-    try:
-        return read(planned).streams.get("markers")
-    except GaitdiscError:
-        return None

@@ -32,7 +32,6 @@ from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.leg_curves import FEET
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 MOST_HERE = 2  # people whose figures are drawn one after the other
@@ -180,6 +179,9 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
+    from matplotlib.lines import Line2D
+
+    columns = [one.name for one in pooled.channels]
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
     shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
@@ -188,7 +190,14 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         own = by_joint[joint]
         for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
             curve = own[(own["channel"] == channel) & (own["side"] == side)]
-            _draw(axes, pooled, str(channel), str(side), curve)
+            of_side = (pooled.kept["side"] == side).to_numpy()
+            every = pooled.curves[of_side, :, columns.index(channel)]
+            every = every[np.isfinite(every).any(axis=1)]
+            draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), str(side))
+            off = pooled.kept.loc[of_side, "stance_percent"].mean()
+            if np.isfinite(off):
+                colour = SIDES[str(side)].colour
+                axes.axvline(float(off), color=colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
         first = str(own["channel"].iloc[0])
         axes.set_title(label(joint), fontsize=7.4)
         up, unit = upwards(first), unit_text(str(own["unit"].iloc[0]))
@@ -197,18 +206,11 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         axes.set_xticks([0, 50, 100])
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
-    legend(drawn, _key())
+    key = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
+    key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
+    key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
+    legend(drawn, key)
     return Figure(name, _caption(pooled), _alt(pooled, shown), shown, drawn)
-
-
-def _draw(axes: Axes, pooled: PooledCycles, channel: str, side: str, curve: pd.DataFrame) -> None:
-    column = [one.name for one in pooled.channels].index(channel)
-    own = pooled.curves[(pooled.kept["side"] == side).to_numpy(), :, column]
-    every = own[np.isfinite(own).any(axis=1)]
-    draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), side)
-    off = pooled.kept.loc[pooled.kept["side"] == side, "stance_percent"].mean()
-    if np.isfinite(off):
-        axes.axvline(float(off), color=SIDES[side].colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
 
 
 def draw_cycles(
@@ -225,14 +227,6 @@ def draw_cycles(
     if len(every) > 2:
         axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
     axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)
-
-
-def _key() -> list[Artist]:
-    from matplotlib.lines import Line2D
-
-    handles: list[Artist] = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
-    handles.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
-    return [*handles, Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off")]
 
 
 def _caption(pooled: PooledCycles) -> str:
