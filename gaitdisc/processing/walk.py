@@ -27,23 +27,36 @@ class Walk:
     side: str  # side whose strides the percent stride of the trajectory follows
 
     def summary(self) -> WalkSummary:
-        """What is kept of the walk: curves of every stride of the study's side, strides, findings, file hashes.
+        """What is kept of the walk: curves of every stride of the study's side, strides, findings, file hashes."""
+        return walk_summary(self.trial, [self.state], self.strides, self.side, self.findings)
 
-        Channels of the other side are cut by the strides of their own foot, so that left and right read alike.
-        """
-        files = {s.source.file: s.source.sha256 for s in self.trial.streams.values() if s.source.sha256}
-        return WalkSummary(
-            self.trial.subject,
-            self.trial.condition,
-            self.state.duration_s,
-            self.state.rate_hz,
-            self.strides[self.side].detector,
-            self.state.channels,
-            stride_curves([self.state], self.strides, self.side),
-            pd.concat([stride_table(self.strides[side]) for side in sorted(self.strides)], ignore_index=True),
-            self.findings,
-            files,
-        )
+
+def walk_summary(
+    trial: Trial,
+    states: Sequence[Recording],
+    strides: Mapping[str, Strides],
+    follow: str,
+    findings: Sequence[Finding],
+) -> WalkSummary:
+    """What is kept of a walk.
+
+    Channels of the other side are cut by the strides of their own foot, so that left and right read alike.
+
+    states: filtered, each at its own rate; where there is none, length and rate are those of the trial's first stream
+    """
+    lead = [*states, *trial.streams.values()][0]
+    return WalkSummary(
+        trial.subject,
+        trial.condition,
+        lead.duration_s,
+        lead.rate_hz,
+        strides[follow].detector,
+        tuple(channel for state in states for channel in state.channels),
+        stride_curves(states, strides, follow),
+        pd.concat([stride_table(strides[side]) for side in sorted(strides)], ignore_index=True),
+        tuple(findings),
+        {one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
+    )
 
 
 def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:

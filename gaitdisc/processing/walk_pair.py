@@ -9,13 +9,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from gaitdisc.errors import GaitdiscError, SamplingError, StrideError
 from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
-from gaitdisc.processing.process import is_raw, quality_findings, stride_findings
-from gaitdisc.processing.walk import stride_curves, stride_table
-from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings
+from gaitdisc.processing.walk import walk_summary
+from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.results import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_angles import angle_contacts
@@ -145,7 +144,8 @@ def _stride_count(contacts: Mapping[str, Contacts]) -> int:
 def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, repeated: bool) -> WalkSummary:
     strides = {side: cut_strides(found) for side, found in sorted(contacts.items())}
     if "kinematics" in trial.streams and not repeated:
-        legs = _legs(trial)
+        names = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"}
+        legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in names)
         strides = {side: without_outlying(legs, cut, SPOILED_CHANNELS) for side, cut in strides.items()}
     follow = "r" if "r" in strides else next(iter(strides))
     states = [state for key in COMPARED if (state := _state(trial, key, cutoff_hz)) is not None]
@@ -153,39 +153,18 @@ def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, r
     if not repeated:
         findings += quality_findings(replace(trial, streams={k: v for k, v in trial.streams.items() if k in COMPARED}))
     if "kinematics" in trial.streams:
-        findings += _looked_at(trial, strides[follow], repeated)
-    curves = stride_curves(states, strides, follow)
-    if repeated:
-        curves = curves[len(curves) // 2 :][:1]  # all are the same
-    lead = states[0] if states else next(iter(trial.streams.values()))
-    return WalkSummary(
-        trial.subject,
-        trial.condition or trial.name,
-        lead.duration_s / (TIMES if repeated else 1),
-        lead.rate_hz,
-        strides[follow].detector,
-        tuple(channel for state in states for channel in state.channels),
-        curves,
-        pd.concat([stride_table(one) for one in strides.values()], ignore_index=True),
-        tuple(findings),
-        {r.source.file: r.source.sha256 for r in trial.streams.values() if r.source.sha256},
-    )
-
-
-def _looked_at(trial: Trial, strides: Strides, repeated: bool) -> list[Finding]:
-    """Refuse what is no walking; say what the strides show."""
-    legs = _legs(trial)
-    joints = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
-    if set(joints) <= set(legs.names):
-        verify_walking(legs.selected(joints), strides, fewest=1, least_coverage=0.0)
-    if f"knee_angle_{strides.side}" in legs.names:
-        verify_sides(legs, strides)
-    return [] if repeated else stride_findings(trial.stream("kinematics"), strides)
-
-
-def _legs(trial: Trial) -> Recording:
-    joints = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"}
-    return trial.stream("kinematics").selected_by(lambda channel: channel.name in joints)
+        legs = knees_and_hips(trial)
+        if len(legs.names) == 4:
+            verify_walking(legs, strides[follow], fewest=1, least_coverage=0.0)
+        if f"knee_angle_{follow}" in legs.names:
+            verify_sides(legs, strides[follow])
+        findings += [] if repeated else stride_findings(trial.stream("kinematics"), strides[follow])
+    found = walk_summary(trial, states, strides, follow, findings)
+    found = replace(found, condition=trial.condition or trial.name)
+    if not repeated:
+        return found
+    # all strides are the same
+    return replace(found, duration_s=found.duration_s / TIMES, curves=found.curves[len(found.curves) // 2 :][:1])
 
 
 def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:

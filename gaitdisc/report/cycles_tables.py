@@ -85,17 +85,8 @@ def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
                 if not np.isfinite(values).any():
                     continue
                 words = (one.subject, one.group, one.session, one.condition, cycle.trial, cycle.side, cycle.start_s)
-                tables.append(
-                    pd.DataFrame(
-                        {
-                            **dict(zip(columns, words, strict=False)),
-                            "channel": channel.name,
-                            "unit": channel.unit,
-                            "percent": PERCENT,
-                            "value": values,
-                        }
-                    )
-                )
+                named = dict(zip(columns, (*words, channel.name, channel.unit), strict=False))
+                tables.append(pd.DataFrame({**named, "percent": PERCENT, "value": values}))
     return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
 
 
