@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
-from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
+from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.contact_choice import (
     MOST_OFFSET_S,
     SEEN_LATE,
@@ -22,7 +22,6 @@ from gaitdisc.processing.contact_choice import (
     trial_direction,
 )
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
 
@@ -110,7 +109,13 @@ def step_events(
         if (count := sum(max(0, len(one) - 1) for one in contacts.values()))
     }
     if not strides if detector == "auto" else detector not in strides:
-        raise _nothing_seen(trial, seen, refused, detector)
+        reasons = []
+        for name in dict.fromkeys([*seen, *refused]):
+            error = refused.get(name)
+            counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
+            reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
+        by = "events, force, markers or joint angles" if detector == "auto" else detector
+        raise nothing_found(trial, f"a cycle needs two initial contacts of one foot, from {by}", reasons)
     sure = {name: count for name, count in strides.items() if name != "angles"} or strides
     chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
     if chosen == "events":
@@ -246,18 +251,3 @@ def _seen_offs(trial: Trial, contacts: Mapping[str, Times], direction: str) -> t
     if kinematics is None or any(f"ankle_angle_{side}" not in kinematics.names for side in contacts):
         return "", {}
     return "angles", {s: angle_foot_off(kinematics, f"ankle_angle_{s}", windows[s]) for s in contacts}
-
-
-def _nothing_seen(
-    trial: Trial,
-    seen: Mapping[str, Mapping[str, Contacts]],
-    refused: Mapping[str, GaitdiscError | None],
-    detector: str,
-) -> StrideError:
-    reasons = []
-    for name in dict.fromkeys([*seen, *refused]):
-        error = refused.get(name)
-        counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
-        reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
-    by = "events, force, markers or joint angles" if detector == "auto" else detector
-    return nothing_found(trial, f"a cycle needs two initial contacts of one foot, from {by}", reasons)
