@@ -22,6 +22,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 from ch5_fields import fields
 from ch5_forecasts import ahead, turns
 from ch5_runner import SAGITTAL, parts_of, rmse, runner
@@ -31,8 +32,9 @@ from real_people import real_people
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field
 from gaitdisc.chapters.fields.routes import fixed_at_random
-from gaitdisc.report.curves import LATENT, MODES, course_numbers, latent_course_figure
-from gaitdisc.report.figure import save_figures
+from gaitdisc.report.curves import LATENT, course_numbers, draw_course
+from gaitdisc.report.figure import Figure, save_figures
+from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.sensing.reconstructor import (
     KINDS,
     OF_TEXT,
@@ -44,6 +46,8 @@ from gaitdisc.sensing.reconstructor import (
 )
 from gaitdisc.sensing.splits import RANDOM, split_by_subject
 from gaitdisc.sensing.windows import Lags
+
+MODES = "modes of the states"
 
 
 def text(quick: bool) -> Iterator[Number]:
@@ -73,12 +77,30 @@ def latent(quick: bool) -> Iterator[Number]:
     windows = parts.tested()
     states, modes = (leading(each, 5) for each in (latent_states(done, windows), windows.y / windows.y.std(axis=0)))
     courses = {word: course_numbers(windows.phi, each[:, :3]) for word, each in ((LATENT, states), (MODES, modes))}
-    save_figures([latent_course_figure(courses, "latent-course", "Running, test part, as Fig. 5.1")], GIVEN.folder)
+    save_figures([course_figure(courses, "latent-course", "Running, test part, as Fig. 5.1")], GIVEN.folder)
     for count in (1, 2, 3, 5):
         estimated = states[:, :count] @ np.linalg.lstsq(states[:, :count], modes, rcond=None)[0]
         for mode in range(3):
             held = 1 - np.mean((modes[:, mode] - estimated[:, mode]) ** 2)
             yield Number(f"{count} component{'s' * (count > 1)}", f"mode {mode + 1}: R2 [1]", "", float(held))
+
+
+@in_style
+def course_figure(courses: dict[str, pd.DataFrame], name: str, source: str) -> Figure:
+    """Draw the latent state and the modes side by side.
+
+    courses: title of each panel -> its `course_numbers`
+    """
+    drawn, (row,) = panels(1, len(courses), 2.1, Room(across=0.7, top=0.5))
+    for axes, (title, numbers) in zip(row, courses.items(), strict=True):
+        draw_course(axes, numbers)
+        axes.set_title(title)
+    legend(drawn, row[0].get_lines())
+    caption = (
+        f"{source}. Principal components in time, each of standard deviation 1; shaded: standard deviation of 2 %."
+    )
+    numbers = pd.concat([each.assign(panel=title) for title, each in courses.items()], ignore_index=True)
+    return Figure(name, caption, "Components of the latent state and of the states over the stride", numbers, drawn)
 
 
 def population(quick: bool) -> Iterator[Number]:

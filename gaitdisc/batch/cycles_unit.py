@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.batch.processed_walks import public_trial
-from gaitdisc.batch.public_words import PublicWords, words_of
+from gaitdisc.batch.public_words import words_of
 from gaitdisc.batch.unit_key import person_key, unit_key
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d import C3DReader
@@ -41,7 +41,14 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
                 unread.append(error)
                 raise
 
-        found = tuple(_public(pooled, words) for pooled in pooled_cycles(study, participant, read))
+        found = [
+            replace(  # no word of the recordings stands in a sentence
+                pooled,
+                findings=tuple(map(words.finding, pooled.findings)),
+                refusals=tuple(replace(refusal, reason=words.said(refusal.reason)) for refusal in pooled.refusals),
+            )
+            for pooled in pooled_cycles(study, participant, read)
+        ]
     if unread:  # they may be readable another time, so that this stands for no key
         key = ""
     for pooled, place in zip(found, places, strict=True):
@@ -57,12 +64,3 @@ def cycles_key(study: Study, participant: Participant) -> str:
         trials = (*one.trials, *(trial for trial in beside if trial))
         parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
-
-
-def _public(pooled: PooledCycles, words: PublicWords) -> PooledCycles:
-    """Same cycles, in whose sentences no word of the recordings stands."""
-    return replace(
-        pooled,
-        findings=tuple(map(words.finding, pooled.findings)),
-        refusals=tuple(replace(refusal, reason=words.said(refusal.reason)) for refusal in pooled.refusals),
-    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 
 from gaitdisc.clinic.contrast import contrast_of
@@ -50,12 +51,9 @@ def _by_session(run: ResponseRun) -> dict[tuple[str, str], list[PooledCycles]]:
 def _readings(
     own: Sequence[PooledCycles], run: ResponseRun, reference: ClinicalReference | None
 ) -> tuple[ClinicalReading, ...]:
-    return tuple(read_beside(one, reference) for one in sorted(own, key=lambda one: _place(one, run)))
-
-
-def _place(pooled: PooledCycles, run: ResponseRun) -> tuple[bool, bool]:
-    """Kept before refused, and then the study's first condition before all others."""
-    return not len(pooled.kept), pooled.condition != run.nominal
+    # kept before refused, and then the study's first condition before all others
+    ordered = sorted(own, key=lambda one: (not len(one.kept), one.condition != run.nominal))
+    return tuple(read_beside(one, reference) for one in ordered)
 
 
 def before_and_after(readings: Sessions, person: str, words: Sequence[str]) -> tuple[ClinicalReading, ClinicalReading]:
@@ -67,7 +65,11 @@ def before_and_after(readings: Sessions, person: str, words: Sequence[str]) -> t
             "a person of the run with kept cycles is needed", f"{person!r}; there are {people}", "Name one."
         )
     first, second = ([one for one in own if word in (one.pooled.session, one.pooled.condition)] for word in words)
-    pairs = [(a, b) for a in first for b in second if _comparable(a.pooled, b.pooled)]
+    pairs = [
+        (a, b)
+        for a, b in itertools.product(first, second)
+        if (a.pooled.condition == b.pooled.condition) != (a.pooled.session == b.pooled.session)
+    ]
     if not pairs:
         there = ", ".join(one.pooled.where for one in own)
         raise SchemaError(
@@ -76,11 +78,6 @@ def before_and_after(readings: Sessions, person: str, words: Sequence[str]) -> t
             "Name two sessions, or two conditions, of these.",
         )
     return pairs[0]
-
-
-def _comparable(first: PooledCycles, second: PooledCycles) -> bool:
-    same = (first.condition == second.condition, first.session == second.session)
-    return sum(same) == 1
 
 
 def contrasts_of(readings: Sequence[ClinicalReading]) -> tuple[Contrast, ...]:

@@ -45,10 +45,16 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
     of_age = _nearest(legs, AGES, age_years, _age)
     of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)
-    said = [f"Compared with {described(of_both)}{_which(of_both, of_age, legs)}."]
+    by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
+    why = "the person is of no known age or speed" if groups_of(legs) else f"a group needs {FEWEST} of an age or speed"
+    which = f", the group nearest in {' and '.join(by)}" if by else f": all there are, for {why}"
+    said = [f"Compared with {described(of_both)}{which}."]
     if of_both != of_age:
         said.append("Times and distances: with those of any speed.")
-    said += _of_another_age(of_age, age_years)
+    ages = [leg.age_years for leg in of_age if leg.age_years is not None]
+    if age_years is not None and ages and not min(ages) <= age_years <= max(ages):
+        whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
+        said.append(f"These controls are {whose}, the person is {age_years} years old: what stands out may be the age.")
     unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
     if leg_m is None or unknown:
         said.append(f"Not scaled by leg length, which is not known of {unknown}: size shows in speeds and lengths.")
@@ -145,20 +151,3 @@ def _nearest(legs: Legs, bounds: Sequence[float], value: float | None, number: N
         return other != place, max(min(numbers) - value, value - max(numbers))
 
     return found[min(found, key=away)]
-
-
-def _which(of_both: Legs, of_age: Legs, legs: Legs) -> str:
-    by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
-    if by:
-        return f", the group nearest in {' and '.join(by)}"
-    why = "the person is of no known age or speed" if groups_of(legs) else f"a group needs {FEWEST} of an age or speed"
-    return f": all there are, for {why}"
-
-
-def _of_another_age(legs: Legs, age_years: int | None) -> list[str]:
-    """Sentence that the controls are older or younger; none where they are of the age or it is not known."""
-    ages = [leg.age_years for leg in legs if leg.age_years is not None]
-    if age_years is None or not ages or min(ages) <= age_years <= max(ages):
-        return []
-    whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
-    return [f"These controls are {whose}, the person is {age_years} years old: what stands out may be the age."]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import numpy as np
+from numpy.typing import NDArray
 
-from gaitdisc.clinic.consistency import multiple_correlation
-from gaitdisc.clinic.deviation_index import deviation_index
 from gaitdisc.clinic.like_controls import like_controls, like_published
-from gaitdisc.clinic.outstanding import outstanding
-from gaitdisc.clinic.profile import profile_of
+from gaitdisc.clinic.profile import deviation_index, profile_of
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
-from gaitdisc.results import PooledCycles, Refusal
+from gaitdisc.clinic.rules import outstanding
+from gaitdisc.results import PooledCycles
 from gaitdisc.results.clinical_reading import ClinicalReading
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.leg_curves import FEET, LegCurves, legs_of
@@ -28,7 +27,10 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     if reference is not None and reference.published and legs:
         return _beside_published(pooled, legs, reference)
     controls = reference.of(pooled.condition) if reference else ()
-    why = "" if controls else NO_REFERENCE if reference is None else _not_so(reference, pooled.condition)
+    why = "" if controls else NO_REFERENCE
+    if reference is not None and not controls:
+        there = ", ".join(map(repr, reference.legs))
+        why = f"nobody of the reference walked {pooled.condition!r}; it has {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
     numbers, silent = ((), why) if why else outstanding(legs, like.curves, of_values=like.values)
@@ -71,6 +73,29 @@ def consistency_of(legs: dict[str, LegCurves]) -> dict[tuple[str, str], float]:
     }
 
 
+def multiple_correlation(curves: NDArray[np.float64]) -> float:
+    """Adjusted coefficient of multiple correlation of cycles of one session; NaN where it is not defined.
+
+    1 less the ratio of the variance about the mean curve to the variance about the grand mean, its root; not defined
+    for one cycle, nor where cycles differ more from their mean curve than the curve does from its own mean.
+
+    curves (cycle, phase): on even points
+    Source: Kadaba MP, Ramakrishnan HK, Wootten ME et al. 1989, Repeatability of kinematic, kinetic, and
+        electromyographic data.
+
+    >>> round(multiple_correlation(np.array([[0.0, 2.0, 4.0], [1.0, 3.0, 5.0]])), 4)
+    0.9258
+    """
+    cycles, points = curves.shape
+    if cycles < 2:
+        return float("nan")
+    within = float(((curves - curves.mean(axis=0)) ** 2).sum()) / (points * (cycles - 1))
+    whole = float(((curves - curves.mean()) ** 2).sum()) / (points * cycles - 1)
+    if whole == 0.0 or within > whole:
+        return float("nan")
+    return float(np.sqrt(1.0 - within / whole))
+
+
 def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tuple[str, ...]]:
     """Red where nothing is reported, amber where it rests on little or something is spoiled, else green."""
     if not legs:
@@ -80,7 +105,7 @@ def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tup
     if few:
         reasons.append(f"few cycles: {', '.join(few)}")
     if pooled.refusals:
-        reasons.append(f"trials left out: {len(_trials(pooled.refusals))}")
+        reasons.append(f"trials left out: {len({refusal.condition for refusal in pooled.refusals})}")
     lost = list(dict.fromkeys(one.channel for one in pooled.findings if one.severity == "refused" and one.channel))
     muscles = [name for name in lost if name.startswith("emg_")]
     others = [name for name in lost if name not in muscles]
@@ -92,11 +117,3 @@ def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tup
     if kinds:
         reasons.append(f"warnings: {', '.join(kinds)}")
     return ("amber" if reasons else "green"), tuple(reasons)
-
-
-def _trials(refusals: Sequence[Refusal]) -> list[str]:
-    return list(dict.fromkeys(refusal.condition for refusal in refusals))
-
-
-def _not_so(reference: ClinicalReference, condition: str) -> str:
-    return f"nobody of the reference walked {condition!r}; it has {', '.join(map(repr, reference.legs))}"

@@ -12,7 +12,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.results.clinical_reading import Band, Limits
 from gaitdisc.results.clinical_reference import ClinicalReference, ReferenceLeg
-from gaitdisc.results.leg_curves import LegCurves, legs_of
+from gaitdisc.results.leg_curves import legs_of
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Provenance
 
@@ -32,7 +32,11 @@ def reference_of(cycles: Sequence[PooledCycles], title: str, provenance: Provena
             continue
         seen.add((pooled.subject, pooled.condition))
         number = numbers.setdefault(pooled.subject, len(numbers) + 1)
-        legs.setdefault(pooled.condition, []).extend(_reference_leg(number, pooled, leg) for leg in found.values())
+        for leg in found.values():
+            curves = {name: leg.mean(name) for name in leg.cycles}
+            values = {name: float(each.mean()) for name, each in leg.values.items()}
+            own = (leg.count, leg.stance_percent, curves, values, pooled.leg_m, pooled.age_years)
+            legs.setdefault(pooled.condition, []).append(ReferenceLeg(number, leg.side, *own))
     if not legs:
         raise SchemaError(
             "a reference needs kept cycles of controls",
@@ -42,13 +46,6 @@ def reference_of(cycles: Sequence[PooledCycles], title: str, provenance: Provena
     kept = {word: tuple(own) for word, own in legs.items()}
     settings = {name: provenance.settings[name] for name in SETTINGS if name in provenance.settings}
     return ClinicalReference(title, kept, settings, provenance.versions, provenance.created)
-
-
-def _reference_leg(number: int, pooled: PooledCycles, leg: LegCurves) -> ReferenceLeg:
-    curves = {name: leg.mean(name) for name in leg.cycles}
-    values = {name: float(each.mean()) for name, each in leg.values.items()}
-    own = (leg.side, leg.count, leg.stance_percent, curves, values, pooled.leg_m, pooled.age_years)
-    return ReferenceLeg(number, *own)
 
 
 def bands(legs: Sequence[ReferenceLeg]) -> dict[str, Band]:

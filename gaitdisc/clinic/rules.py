@@ -1,9 +1,9 @@
-"""The rules of what stands out, read from `rules.toml`, and the number that each takes from a leg."""
+"""What of a person's legs lies beyond the limits of the reference, by the rules of `rules.toml`; the farthest first."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,8 +11,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.clinic.reference import FEWEST, limits_of
 from gaitdisc.errors import SchemaError
+from gaitdisc.results.clinical_reading import Noted
+from gaitdisc.results.clinical_reference import ReferenceLeg
 from gaitdisc.results.clinical_variables import BY_NAME
+from gaitdisc.results.leg_curves import LegCurves
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
 
 PARTS = ("contact", "loading", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
@@ -104,31 +108,68 @@ def rule_words() -> list[str]:
 
 def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
     """Rules of a table, each checked."""
-    found = tuple(_rule(entry) for entry in data["rules"])
+    found = []
+    for entry in data["rules"]:
+        words = {key: str(entry.get(key, "")) for key in ("name", "variable", "value", "part", "take", "less", "more")}
+        least = entry.get("least")
+        known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
+        said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
+        if not said or not isinstance(least, float) or least <= 0:
+            raise SchemaError(
+                "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal "
+                "value",
+                f"found {dict(entry)}",
+                "Correct rules.toml.",
+            )
+        found.append(Rule(least=least, **words))
     names = [rule.name for rule in found]
     if len(set(names)) < len(names):
         raise SchemaError("each rule needs a name of its own", f"found {names}", "Rename one of them.")
-    return found
-
-
-def _rule(entry: Mapping[str, object]) -> Rule:
-    words = {key: str(entry.get(key, "")) for key in ("name", "variable", "value", "part", "take", "less", "more")}
-    least = entry.get("least")
-    known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
-    if not (
-        words["name"]
-        and (words["less"] or words["more"])
-        and isinstance(least, float)
-        and least > 0
-        and (known != (words["value"] in SPATIOTEMPORAL))
-    ):
-        raise SchemaError(
-            "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal value",
-            f"found {dict(entry)}",
-            "Correct rules.toml.",
-        )
-    return Rule(least=least, **words)
+    return tuple(found)
 
 
 def _of_value(value: str) -> tuple[str, int]:
     return next(found for ending, found in SPATIOTEMPORAL_UNITS.items() if value.endswith(f"_{ending}"))
+
+
+def outstanding(
+    legs: Mapping[str, LegCurves],
+    reference: Sequence[ReferenceLeg],
+    table: Sequence[Rule] | None = None,
+    of_values: Sequence[ReferenceLeg] = (),
+) -> tuple[tuple[Noted, ...], str]:
+    """Every number that a rule takes of a person's legs, those that stand out first; and why there is none.
+
+    table: those of `rules.toml` where none are given
+    of_values: controls for spatiotemporal values, where they are others than those for curves
+    """
+    people = len({leg.person for leg in reference})
+    if people < FEWEST:
+        count = f"{people} people" if people != 1 else "1 person"
+        return (), f"limits need a reference of {FEWEST} people or more; it has {count} who walked so"
+    sets = [(rule, of_values or reference if rule.value else reference) for rule in table or rules()]
+    known = [(rule, values) for rule, own in sets if (values := _of_reference(rule, own)) is not None]
+    numbers, found = [], []
+    for rule, values in known:
+        for leg in legs.values():
+            curves = {name: leg.mean(name) for name in leg.cycles if name == rule.variable}
+            own = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
+            if (number := rule.number(curves, own, leg.stance_percent)) is not None:
+                numbers.append((rule, values, leg, number))
+    for rule, values, leg, number in numbers:
+        limits = limits_of(*values, tests=len(numbers))
+        beyond = rule.less if number < limits.low else rule.more if number > limits.high else ""
+        words = beyond if abs(number - limits.mean) >= rule.least else ""
+        count = len(leg.cycles[rule.variable]) if rule.variable else len(leg.values[rule.value])
+        reach = limits.high - limits.mean
+        excess = abs(number - limits.mean) / reach if reach > 0 else float("inf")
+        found.append(Noted(rule.name, words, leg.side, number, rule.unit, rule.digits, limits, count, excess))
+    return tuple(sorted(found, key=lambda one: (not one.words, -one.excess))), ""
+
+
+def _of_reference(rule: Rule, reference: Sequence[ReferenceLeg]) -> tuple[np.ndarray, int] | None:
+    """Numbers of the reference's legs and how many people these are; None below the fewest people."""
+    found = [(leg.person, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference]
+    known = [(person, number) for person, number in found if number is not None]
+    people = len({person for person, _ in known})
+    return (np.array([number for _, number in known]), people) if people >= FEWEST else None

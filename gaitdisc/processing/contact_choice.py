@@ -53,10 +53,6 @@ class ContactChoice:
         """Name of the detector that was taken."""
         return next(iter(self.contacts.values())).detector
 
-    def uncorrected(self) -> Mapping[str, Contacts]:
-        """Contacts as the detector itself places them."""
-        return self.contacts if self.offset_s is None else _moved(self.contacts, -self.offset_s)
-
 
 def chosen_contacts(
     trial: Trial, detector: str = "auto", direction: str = "", body_weight_n: float | None = None
@@ -80,15 +76,20 @@ def chosen_contacts(
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     seen, late = events_on_plates(seen, trial.name)
     strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
-    if detector != "auto" and detector not in strides:
-        raise refused.get(detector) or _nothing_found(trial, {detector: None})
-    if not strides:
-        raise _nothing_found(trial, refused)
+    why = refused if detector == "auto" else {detector: refused.get(detector)}
+    if not strides or (detector != "auto" and detector not in strides):
+        reasons = [f"{name}: {error.found if error else 'no stride of both feet'}" for name, error in why.items()]
+        needed = "strides need initial contacts from force, events, markers or joint angles"
+        raise why.get(detector) or nothing_found(trial, needed, reasons)
     chosen = detector if detector != "auto" else best_detector(PREFERRED, strides, seen)
     reference, offset_s = _offset(chosen, seen)
     taken = seen[chosen] if offset_s is None else _moved(seen[chosen], offset_s)
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
-    return ContactChoice(taken, (*findings, *_offset_findings(trial, chosen, reference, offset_s)), offset_s)
+    if chosen in SEEN_LATE:
+        by = "the median of the steps that " + ("a plate saw" if reference == "force" else "the file's events have")
+        spoils = "phase against a plate's by 3 to 5 % of the stride; not durations"
+        findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
+    return ContactChoice(taken, tuple(findings), offset_s)
 
 
 def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mapping[str, Mapping[str, Contacts]]) -> str:
@@ -201,20 +202,19 @@ def _moved(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Conta
     return {side: replace(one, time=one.time + offset_s) for side, one in contacts.items()}
 
 
-def _offset_findings(trial: Trial, chosen: str, reference: str, offset_s: float | None) -> list[Finding]:
-    if chosen not in SEEN_LATE:
-        return []
+def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
+    """By how much contacts of markers or angles were moved, or that nothing could show it.
+
+    by: the steps that showed it, in words
+    spoils: what is early where none did
+    """
     if offset_s is None:
-        what = (
-            f"contacts by {chosen}, and no plate saw a step: they lie early by some {EARLY_MS[chosen]:g} ms in walking "
-        )
-        what += f"({EARLY_RANGE[chosen]} with a plate)"
-        spoils = "phase against a plate's by 3 to 5 % of the stride; not durations"
-        return [Finding("note", "contact offset", trial.name, what, spoils)]
-    by = "a plate saw" if reference == "force" else "the file's events have"
+        what = f"contacts by {detector}, and no plate saw a step: they lie early by some {EARLY_MS[detector]:g} ms in "
+        what += f"walking ({EARLY_RANGE[detector]} with a plate)"
+        return Finding("note", "contact offset", file, what, spoils)
     way = "later" if offset_s >= 0 else "earlier"
-    what = f"contacts by {chosen} moved {1e3 * abs(offset_s):.0f} ms {way}, the median of the steps that {by} too"
-    return [Finding("note", "contact offset", trial.name, what, "")]
+    what = f"contacts by {detector} moved {1e3 * abs(offset_s):.0f} ms {way}, {by} too"
+    return Finding("note", "contact offset", file, what, "")
 
 
 def _force(trial: Trial, direction: str, body_weight_n: float | None) -> dict[str, Contacts]:
@@ -310,10 +310,10 @@ def _compared(file: str, who: tuple[str, str, str], agreement: Agreement, correc
     return Finding("warning" if spoils else "note", "detectors compared", file, what, "; ".join(spoils))
 
 
-def _nothing_found(trial: Trial, refused: Mapping[str, GaitdiscError | None]) -> StrideError:
-    reasons = [f"{name}: {error.found if error else 'no stride of both feet'}" for name, error in refused.items()]
+def nothing_found(trial: Trial, needed: str, reasons: Sequence[str]) -> StrideError:
+    """That no detector serves, and why each does not."""
     return StrideError(
-        "strides need initial contacts from force, events, markers or joint angles",
+        needed,
         f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
         "Add the file that holds forces, markers or angles to the trial, or leave the trial out.",
     )

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Filters
-from gaitdisc.processing.process import is_raw
+from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.processing.walk import Walk
 from gaitdisc.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.signals.envelope import enveloped
 from gaitdisc.statistics.band_limit_null import simulate_null
 
 Differentiated = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
@@ -63,11 +62,7 @@ def _angles(noise: NDArray[np.float64], filters: Filters, rate_hz: float) -> Dif
 
 
 def _emg(noise: NDArray[np.float64], filters: Filters, rate_hz: float, base_hz: float, raw: bool) -> Differentiated:
-    recording = _recording(noise, rate_hz, "V")
-    if raw:
-        smooth = enveloped(recording, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
-    else:
-        smooth = lowpassed(recording, filters.emg_lowpass_hz, filters.order)
+    smooth = envelope_of(_recording(noise, rate_hz, "V"), filters, raw)
     time = np.arange(round(len(noise) / rate_hz * base_hz)) / base_hz
     return _differentiated(interpolated(smooth.time, smooth.values, time[:-1]), base_hz)
 

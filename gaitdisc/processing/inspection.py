@@ -12,15 +12,14 @@ from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
 from gaitdisc.notebook import html_of
-from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
-from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
@@ -156,24 +155,21 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
             reason = reasons.pop(where, "")
             if reason:  # why may be what the reader saw: a unit, a side
                 own += [finding for finding in read_with.get(called, ()) if finding not in own]
+            rows = pooled.cycles[pooled.cycles["trial"] == number]
+            kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
+            counts = {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
             found[places[id(planned)]] = Inspection(
                 _named(planned),
                 participant.id,
                 where,
                 streams.get(called, {}),
-                _cycle_counts(pooled, number),
+                counts,
                 _sorted(own),
                 reason,
             )
         for reason in reasons.values():
             found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
     return found
-
-
-def _cycle_counts(pooled: PooledCycles, number: int) -> dict[str, tuple[int, int]]:
-    rows = pooled.cycles[pooled.cycles["trial"] == number]
-    kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
-    return {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
 
 
 def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:

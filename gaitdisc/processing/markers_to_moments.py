@@ -1,4 +1,4 @@
-"""From markers and forces of a trial to its joint angles, moments and powers, in the streams that all else reads."""
+"""From markers, segments and forces of a trial to its joint angles, moments and powers, in the streams others read."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.motion import JOINT_CHANNELS, SEGMENTS_OF, Motion, motion
+from gaitdisc.kinematics.segment_angles import segment_angles
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
@@ -48,7 +49,11 @@ def computed_trial(
     streams["markers"] = moved.markers
     streams["kinematics"] = replace(moved.angles, **named)
     file = moved.angles.source.file or trial.name
-    findings = [*trial.findings, *moved.findings, _residual(moved, file)]
+    typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
+    worst = max(typical, key=lambda name: typical[name])
+    what = f"markers lie {1e3 * float(np.median([*typical.values()])):.1f} mm from where the static trial has them, "
+    what += f"the median of {len(typical)} segments; farthest {worst}, {1e3 * typical[worst]:.1f} mm"
+    findings = [*trial.findings, *moved.findings, Finding("note", "residual", file, what, "")]
     steps = None
     if own:
         what = f"{' and '.join(own)} that the file holds give way to those computed from its markers"
@@ -79,13 +84,17 @@ def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
     return replace(trial, streams=streams, findings=(*trial.findings, *said))
 
 
-def _residual(moved: Motion, file: str) -> Finding:
-    """How far markers lie from where the static trial has them, and in which segment farthest."""
-    typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
-    worst = max(typical, key=lambda name: typical[name])
-    what = f"markers lie {1e3 * float(np.median([*typical.values()])):.1f} mm from where the static trial has them, "
-    what += f"the median of {len(typical)} segments; farthest {worst}, {1e3 * typical[worst]:.1f} mm"
-    return Finding("note", "residual", file, what, "")
+def with_segment_angles(trial: Trial) -> Trial:
+    """Trial with joint angles where it has poses of segments and no angles; why there are none is a finding."""
+    if "segments" not in trial.streams or "kinematics" in trial.streams:
+        return trial
+    try:
+        angles, findings = segment_angles(trial.stream("segments"))
+    except GaitdiscError as error:
+        said = Finding("warning", "no angles", trial.name, str(error).rstrip("."), "angles from segments")
+        return replace(trial, findings=(*trial.findings, said))
+    named = replace(angles, subject=trial.subject, condition=trial.condition)
+    return replace(trial, streams={**trial.streams, "kinematics": named}, findings=(*trial.findings, *findings))
 
 
 def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:

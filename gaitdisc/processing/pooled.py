@@ -16,9 +16,9 @@ from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
 from gaitdisc.kinetics.plate_steps import PlateStep
-from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
+from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
 from gaitdisc.processing.cycle_channels import cycle_channels
-from gaitdisc.processing.process import quality_findings
+from gaitdisc.processing.process import knees_and_hips, quality_findings
 from gaitdisc.processing.shelf import Shelf, ShelvedRecordings, shelf
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
@@ -27,9 +27,9 @@ from gaitdisc.processing.trial_cycles import (
     HeelPaths,
     Places,
     PlateLoadings,
+    cut_cycles,
     feet_in,
     heel_paths,
-    moved_events,
     plate_loadings,
     with_gaps,
     with_plate_steps,
@@ -46,6 +46,8 @@ from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
 
 DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics are shown of
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
+# kind of event and detector -> how much later the ground places each that both see [s], of all trials of a session
+Later = Mapping[tuple[str, str], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,24 +66,6 @@ class _Seen:
     findings: tuple[Finding, ...]
     files: dict[str, str]
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
-
-
-@dataclass(frozen=True, eq=False)
-class _Offsets:
-    """By detector: how much later the ground places each event that both see [s], of all trials of a session."""
-
-    contacts: Mapping[str, NDArray[np.float64]]
-    foot_offs: Mapping[str, NDArray[np.float64]]
-
-    def of_contacts(self, detector: str) -> float | None:
-        return _median(self.contacts.get(detector))
-
-    def of_foot_offs(self, detector: str) -> float | None:
-        return _median(self.foot_offs.get(detector))
-
-
-def _median(times: NDArray[np.float64] | None) -> float | None:
-    return float(np.median(times)) if times is not None and len(times) else None
 
 
 def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[PooledCycles, ...]:
@@ -103,9 +87,9 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
         with shelf() as shelved:
             for one in (own for own in sets if own.session == session):
                 seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, shelved, prints)
-            offsets = _offsets([trial for trials in seen.values() for trial in trials])
+            later = _later([trial for trials in seen.values() for trial in trials])
             found += [
-                _pooled(standing, one, seen[one.condition], lost[one.condition], offsets)
+                _pooled(standing, one, seen[one.condition], lost[one.condition], later)
                 for one in sets
                 if one.session == session
             ]
@@ -179,8 +163,7 @@ def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
     """Refuse swapped sides; on a treadmill, and where angles alone show the steps, what is no walking."""
     if "kinematics" not in trial.streams:
         return
-    joints = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
-    legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in joints)
+    legs = knees_and_hips(trial)
     for side, strides in found.items():
         if not outside or strides.detector == "angles":
             verify_walking(legs, strides, 1, LEAST_COVERAGE if strides.detector == "angles" and not outside else 0.0)
@@ -201,24 +184,28 @@ def _known(trial: Trial) -> Trial:
     return replace(trial, streams=streams)
 
 
-def _offsets(seen: Sequence[_Seen]) -> _Offsets:
-    contacts: dict[str, list[NDArray[np.float64]]] = {}
-    offs: dict[str, list[NDArray[np.float64]]] = {}
+def _later(seen: Sequence[_Seen]) -> Later:
+    found: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
     for trial in seen:
-        contacts.setdefault(trial.steps.detector, []).append(trial.steps.later_s("contacts"))
-        offs.setdefault(trial.steps.off_detector, []).append(trial.steps.later_s("foot_offs"))
-    return _Offsets(
-        {name: np.concatenate(parts) for name, parts in contacts.items()},
-        {name: np.concatenate(parts) for name, parts in offs.items()},
-    )
+        for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
+            found.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
+    return {of: np.concatenate(parts) for of, parts in found.items()}
+
+
+def _offset_s(later: Later, kind: str, detector: str) -> float | None:
+    times = later.get((kind, detector), ())
+    return float(np.median(times)) if len(times) else None
 
 
 def _pooled(
-    standing: Standing, one: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], offsets: _Offsets
+    standing: Standing, one: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], later: Later
 ) -> PooledCycles:
     study, participant = standing.study, standing.participant
-    cut = [_cut(study, trial, offsets) for trial in seen]
-    checked = _checked([cycles for cycles, _ in cut], study)
+    cut = [_cut(study, trial, later) for trial in seen]
+    # durations are checked over all trials together
+    durations = np.array([cycle.duration_s for cycles, _ in cut for cycle in cycles])
+    reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))
+    checked = [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in cycles] for cycles, _ in cut]
     outside = bool(seen) and all(trial.over_ground for trial in seen)
     too_few = _too_few(study, participant, one, checked, outside)
     where = " ".join(part for part in (one.session, one.condition) if part)
@@ -231,6 +218,15 @@ def _pooled(
     channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(seen, checked)
     late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
     off_late = next((trial.steps.off_detector for trial in seen), "")
+    offset_s, steps = _offset_s(later, "contacts", late), len(later.get(("contacts", late), ()))
+    findings = [finding for trial in seen for finding in trial.findings]
+    if late:
+        by = "the one step" if steps == 1 else f"the median of {steps} steps"
+        by, spoils = (
+            f"{by} that a plate or the file's events saw",
+            "phase by 3 to 5 % of the cycle, and stance by as much",
+        )
+        findings.append(offset_finding(where, late, offset_s, by, spoils))
     refusals = [*lost, *([Refusal(participant.id, where, too_few)] if too_few and (seen or not lost) else [])]
     return PooledCycles(
         participant.id,
@@ -239,14 +235,14 @@ def _pooled(
         one.condition,
         len(seen),
         dict(sorted(Counter(trial.steps.detector for trial in seen).items())),
-        offsets.of_contacts(late),
-        offsets.of_foot_offs(off_late),
-        len(offsets.contacts.get(late, ())),
+        offset_s,
+        _offset_s(later, "foot_offs", off_late),
+        steps,
         outside,
         channels,
         curves,
         table,
-        (*(finding for trial in seen for finding in trial.findings), *_offset_findings(where, late, offsets)),
+        tuple(findings),
         tuple(refusals),
         {file: sha for trial in seen for file, sha in trial.files.items()},
         next((leg_m for trial in seen if (leg_m := standing.leg_m(trial.planned)) is not None), None),
@@ -259,40 +255,16 @@ def pooled_instead(found: Sequence[PooledCycles]) -> bool:
     return bool(found) and all(one.over_ground and len(one.kept) for one in found)
 
 
-def _offset_findings(where: str, late: str, offsets: _Offsets) -> list[Finding]:
-    """By how much contacts of markers or angles were moved, or that nothing could show it."""
-    if not late:
-        return []
-    offset_s = offsets.of_contacts(late)
-    if offset_s is None:
-        what = f"contacts by {late}, and no plate saw a step: they lie early by some {EARLY_MS[late]:g} ms in walking "
-        what += f"({EARLY_RANGE[late]} with a plate)"
-        return [Finding("note", "contact offset", where, what, "phase by 3 to 5 % of the cycle, and stance by as much")]
-    steps = len(offsets.contacts[late])
-    way = "later" if offset_s >= 0 else "earlier"
-    seen = "the one step" if steps == 1 else f"the median of {steps} steps"
-    what = f"contacts by {late} moved {1e3 * abs(offset_s):.0f} ms {way}, {seen} that a plate or the file's events saw"
-    return [Finding("note", "contact offset", where, f"{what} too", "")]
-
-
-def _cut(study: Study, seen: _Seen, offsets: _Offsets) -> tuple[list[Cycle], list[Places]]:
+def _cut(study: Study, seen: _Seen, later: Later) -> tuple[list[Cycle], list[Places]]:
     belt = study.treadmill.speed_m_per_s if study.treadmill and not seen.over_ground else 0.0
     belt = seen.planned.speed_m_per_s or belt if not seen.over_ground else 0.0
-    contact_s = offsets.of_contacts(seen.steps.detector) or 0.0
-    off_s = offsets.of_foot_offs(seen.steps.off_detector) or 0.0
-    cycles = moved_events(seen.steps, contact_s, off_s)
+    contact_s = _offset_s(later, "contacts", seen.steps.detector) or 0.0
+    off_s = _offset_s(later, "foot_offs", seen.steps.off_detector) or 0.0
+    cycles = cut_cycles(seen.steps.corrected("contacts", contact_s), seen.steps.corrected("foot_offs", off_s))
     alone = seen.plate_steps
     cycles = with_plates(cycles, seen.plates) if alone is None else with_plate_steps(cycles, alone)
     cycles = without_doubted(cycles, [span for one in seen.findings if one.kind in DOUBTED for span in one.spans])
     return with_gaps(cycles, seen.legs), feet_in(cycles, seen.feet, belt)
-
-
-def _checked(cycles: Sequence[list[Cycle]], study: Study) -> list[list[Cycle]]:
-    """Cycles with the reason of their duration, which is checked over all trials together."""
-    flat = [cycle for own in cycles for cycle in own]
-    durations = np.array([cycle.duration_s for cycle in flat])
-    reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))
-    return [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in own] for own in cycles]
 
 
 def _too_few(

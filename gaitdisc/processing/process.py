@@ -60,12 +60,18 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     findings = [*trial.findings, *quality_findings(trial, study.models.angles, study.models.emg), *choice.findings]
     if set(choice.contacts) == {"r", "l"}:
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
-    verify_walking(_knees_and_hips(trial), strides[side], study.quality.min_strides)
-    verify_sides(_knees_and_hips(trial), strides[side])
+    verify_walking(knees_and_hips(trial), strides[side], study.quality.min_strides)
+    verify_sides(knees_and_hips(trial), strides[side])
     state = _state(trial, raw, study)
     findings += short_run_findings(raw, study.filters.kinematics_hz, study.filters.order, study.filters.gap_s)
     findings += stride_findings(state, strides[side]) + side_findings(trial, strides)
-    _refuse_late_change(findings, trial, study)
+    late = next((f for f in findings if f.kind == "late change" and f.severity == "warning"), None)
+    if late is not None and study.quality.late_change == "refuse":
+        raise StrideError(
+            f"trial {trial.name}: the gait must stay the same to the end, or the held-out part is another gait",
+            late.what,
+            'Look at the strides; set late_change = "report" in [quality] to use the trial nevertheless, or crop it.',
+        )
     return Walk(trial, state, strides, trajectory(state, strides[side]), tuple(findings), side)
 
 
@@ -116,7 +122,8 @@ def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     return recording.selected(names)
 
 
-def _knees_and_hips(trial: Trial) -> Recording:
+def knees_and_hips(trial: Trial) -> Recording:
+    """Sagittal angles of both knees and hips, those that there are."""
     wanted = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
     return trial.stream("kinematics").selected_by(lambda channel: channel.name in wanted)
 
@@ -128,7 +135,13 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     if not study.models.emg:
         return replace(angles, subject=trial.subject, condition=trial.condition)
     emg = _needed(trial, "emg", study.models.emg)
-    _refuse_dead(emg, trial)
+    dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
+    if dead:
+        raise ChannelError(
+            f"the models need live EMG in {', '.join(f.channel for f in dead)}",
+            f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
+            "Take the muscle out of [models], or leave the trial out.",
+        )
     envelope = envelope_of(emg, filters)
     values = interpolated(envelope.time, envelope.values, angles.time)
     marks = interpolated(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
@@ -150,9 +163,12 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     )
 
 
-def envelope_of(emg: Recording, filters: Filters) -> Recording:
-    """Envelope of raw EMG; what is an envelope already is low-passed as one is."""
-    if is_raw(emg):
+def envelope_of(emg: Recording, filters: Filters, raw: bool | None = None) -> Recording:
+    """Envelope of raw EMG; what is an envelope already is low-passed as one is.
+
+    raw: seen from the samples where it is not given
+    """
+    if is_raw(emg) if raw is None else raw:
         return enveloped(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
     return lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
 
@@ -161,23 +177,3 @@ def is_raw(emg: Recording) -> bool:
     """Distinguish raw EMG, which swings about zero, from an envelope, which does not fall below it."""
     known = emg.values[np.isfinite(emg.values)]
     return len(known) > 0 and bool(np.min(known) < 0)
-
-
-def _refuse_dead(emg: Recording, trial: Trial) -> None:
-    dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
-    if dead:
-        raise ChannelError(
-            f"the models need live EMG in {', '.join(f.channel for f in dead)}",
-            f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
-            "Take the muscle out of [models], or leave the trial out.",
-        )
-
-
-def _refuse_late_change(findings: Sequence[Finding], trial: Trial, study: Study) -> None:
-    late = next((f for f in findings if f.kind == "late change" and f.severity == "warning"), None)
-    if late is not None and study.quality.late_change == "refuse":
-        raise StrideError(
-            f"trial {trial.name}: the gait must stay the same to the end, or the held-out part is another gait",
-            late.what,
-            'Look at the strides; set late_change = "report" in [quality] to use the trial nevertheless, or crop it.',
-        )

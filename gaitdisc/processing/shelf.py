@@ -54,7 +54,11 @@ class Shelf:
                 files.append(file)
         except OSError:  # no room on disk
             return ShelvedRecordings(tuple(recordings))
-        return ShelvedRecordings(tuple(_emptied(one) for one in recordings), tuple(files))
+        empty = (
+            replace(one, time=one.time[:1].copy(), values=one.values[:1].copy(), suspect=np.array(one.suspect)[:1])
+            for one in recordings
+        )
+        return ShelvedRecordings(tuple(empty), tuple(files))
 
 
 @contextmanager
@@ -62,7 +66,3 @@ def shelf() -> Iterator[Shelf]:
     """Shelf that is cleared at the end."""
     with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
         yield Shelf(Path(folder))
-
-
-def _emptied(one: Recording) -> Recording:
-    return replace(one, time=one.time[:1].copy(), values=one.values[:1].copy(), suspect=np.array(one.suspect)[:1])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.ingest.c3d_measures import read_body_measures
@@ -17,8 +16,12 @@ from gaitdisc.kinematics.motion import chosen_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.processing.angles_of_segments import with_segment_angles
-from gaitdisc.processing.markers_to_moments import ComputedTrial, computed_trial, without_exchanged_markers
+from gaitdisc.processing.markers_to_moments import (
+    ComputedTrial,
+    computed_trial,
+    with_segment_angles,
+    without_exchanged_markers,
+)
 from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
@@ -52,7 +55,9 @@ class Standing:
         source = self.study.kinematics.angles if self.study.kinematics else ""
         trial = without_contradicted(trial if source == "markers" else self._without_exchanged(trial))
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
-        if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
+        angles = trial.streams["kinematics"].names if "kinematics" in trial.streams else ()
+        of_legs = any(name[:-2] in LEGS for name in angles)
+        if source == "file" or "markers" not in trial.streams or (not source and of_legs):
             return ComputedTrial(self._with_own_kinetics(planned, trial))
         bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
         given_up = bare if source == "markers" else trial
@@ -153,7 +158,9 @@ class Standing:
     def _calibration(self, markers: Recording) -> Calibration:
         """Of the person, with the marker set that the study names or the labels are of."""
         wanted = self.study.kinematics
-        chosen = chosen_marker_set(markers, self.markers, marker_set_of(self.study))
+        named = wanted.marker_set if wanted else ""  # a file lies relative to the study's
+        own = self.study.path_of(named) if named.endswith(".toml") else named or None
+        chosen = chosen_marker_set(markers, self.markers, own)
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
             kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
@@ -207,33 +214,10 @@ def standing_of(study: Study, participant: Participant, session: str, read: Read
     except GaitdiscError as error:
         return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
     sizes = emg_sizes(trial.stream("emg")) if "emg" in trial.streams else {}
-    unread, circled = "the static trial has no markers", _circled(study, participant, session, read)
+    unread, circles = "the static trial has no markers", functional_trial(study, participant, session)
+    try:  # the trial in which the legs are circled about the hips; `check` says why it cannot be read
+        circled = read(circles).streams.get("markers") if circles else None
+    except GaitdiscError:
+        circled = None
     markers, weighed_n = trial.streams.get("markers"), standing_weight_n(trial) if "markers" in trial.streams else None
     return Standing(study, participant, planned, markers, unread, sizes, circled, weighed_n)
-
-
-def _circled(study: Study, participant: Participant, session: str, read: Read) -> Recording | None:
-    """Markers of the trial in which the legs are circled about the hips; `check` says why it cannot be read."""
-    planned = functional_trial(study, participant, session)
-    if planned is None:
-        return None
-    try:
-        return read(planned).streams.get("markers")
-    except GaitdiscError:
-        return None
-
-
-def marker_set_of(study: Study) -> str | Path | None:
-    """Name or file of the marker set that a study names, files relative to the study file; None where it names none.
-
-    study: with or without `[kinematics]`
-    """
-    named = study.kinematics.marker_set if study.kinematics else ""
-    return study.path_of(named) if named.endswith(".toml") else named or None
-
-
-def has_leg_angles(trial: Trial) -> bool:
-    """Whether a trial's files hold a flexion angle of a leg."""
-    if "kinematics" not in trial.streams:
-        return False
-    return any(channel.name[:-2] in LEGS for channel in trial.stream("kinematics").channels)

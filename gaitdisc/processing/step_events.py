@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
-from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
+from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.contact_choice import (
     MOST_OFFSET_S,
     SEEN_LATE,
@@ -17,11 +17,11 @@ from gaitdisc.processing.contact_choice import (
     events_on_plates,
     exchanged_contacts,
     named_markers,
+    nothing_found,
     seen_contacts,
     trial_direction,
 )
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
 
@@ -78,8 +78,9 @@ class StepEvents:
         for side in sorted(set(own) | set(ground)):
             seen = list(ground.get(side, ()))
             moved = own.get(side, np.empty(0)) + offset_s
-            if kind == "contacts":  # one that only the ground saw lies outside of what the markers show, or is false
-                seen = [(at, word) for at, word in seen if _beside(at, moved)]
+            if kind == "contacts" and len(moved):  # what the ground alone saw between the markers' contacts is false
+                near = {at: np.abs(moved - at).min() <= ONE_EVENT_S for at, _ in seen}
+                seen = [(at, word) for at, word in seen if near[at] or at < moved[0] or at > moved[-1]]
             alone = [at for at in moved if all(abs(at - there) > ONE_EVENT_S for there, _ in seen)]
             found[side] = tuple(sorted([*seen, *((float(at), by) for at in alone)]))
         return found
@@ -102,19 +103,35 @@ def step_events(
     """
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     seen, findings = events_on_plates(seen, trial.name)
-    strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
+    strides = {
+        name: count
+        for name, contacts in seen.items()
+        if (count := sum(max(0, len(one) - 1) for one in contacts.values()))
+    }
     if not strides if detector == "auto" else detector not in strides:
-        raise _nothing_seen(trial, seen, refused, detector)
+        reasons = []
+        for name in dict.fromkeys([*seen, *refused]):
+            error = refused.get(name)
+            counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
+            reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
+        by = "events, force, markers or joint angles" if detector == "auto" else detector
+        raise nothing_found(trial, f"a cycle needs two initial contacts of one foot, from {by}", reasons)
     sure = {name: count for name, count in strides.items() if name != "angles"} or strides
     chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
     if chosen == "events":
-        findings += _exchanged_heels(trial, seen)
+        for side, at in exchanged_contacts(seen["events"], seen.get("markers", {})).items():
+            what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, where the "
+            what += "file's events have the other foot: the heels look exchanged; the events are used"
+            spoils = "lengths and widths of steps, left out for this trial; correct the labels"
+            findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
     contacts = {side: one.time for side, one in seen[chosen].items()}
     off_detector, offs = _seen_offs(trial, contacts, direction)
     ground = {name: seen[name] for name in GROUND if name in seen}
     ground_offs = {name: {s: one.foot_off for s, one in sides.items()} for name, sides in ground.items()}
-    if "force" in ground_offs and offs:
-        ground_offs["force"] = {s: _borne_out(times, offs.get(s)) for s, times in ground_offs["force"].items()}
+    for side, times in ground_offs.get("force", {}).items():  # a foot that leaves a plate may still be on the floor
+        own = offs.get(side, np.empty(0))
+        shown = [not len(own) or np.abs(own - at).min() <= MOST_OFFSET_S for at in times]
+        ground_offs["force"][side] = times[np.array(shown, bool)]
     late = ground if chosen in SEEN_LATE else {}
     return StepEvents(
         chosen,
@@ -125,17 +142,6 @@ def step_events(
         _merged(ground_offs),
         tuple(findings),
     )
-
-
-def _exchanged_heels(trial: Trial, seen: Mapping[str, Mapping[str, Contacts]]) -> list[Finding]:
-    """Say where a heel lands while the file marks the contact of the other foot, and none of its own."""
-    findings = []
-    for side, at in exchanged_contacts(seen["events"], seen.get("markers", {})).items():
-        what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, where the file's "
-        what += "events have the other foot: the heels look exchanged; the events are used"
-        spoils = "lengths and widths of steps, left out for this trial; correct the labels"
-        findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
-    return findings
 
 
 def walking_part(trial: Trial) -> Trial:
@@ -191,19 +197,15 @@ def over_ground(trial: Trial) -> bool:
 
     trial: with markers, or with `pelvis_tx` and `pelvis_tz`; without either a trial of up to 10 s is one over ground
     """
-    markers = trial.streams.get("markers")
-    if markers is not None:
-        try:
-            heels, pelvis = named_markers(markers)
-            return trial_direction(markers, heels, pelvis).headings is not None
-        except (ChannelError, StrideError):
-            pass
+    known = trial_markers(trial)
+    if known is not None:
+        return known[2].headings is not None
     kinematics = trial.streams.get("kinematics")
     path = [] if kinematics is None else [n for n in ("pelvis_tx", "pelvis_tz") if n in kinematics.names]
     if kinematics is not None and path:
-        known = kinematics.selected(path).values
-        known = known[np.isfinite(known).all(axis=1)]
-        away = float(np.linalg.norm(np.ptp(known, axis=0))) if len(known) else 0.0
+        places = kinematics.selected(path).values
+        places = places[np.isfinite(places).all(axis=1)]
+        away = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
         return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
     longest = max((recording.duration_s for recording in trial.streams.values()), default=0.0)
     return longest <= NO_WALKWAY_S
@@ -224,17 +226,6 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
         return None
 
 
-def _stride_count(contacts: Mapping[str, Contacts]) -> int:
-    return sum(max(0, len(one) - 1) for one in contacts.values())
-
-
-def _beside(at: float, moved: Times) -> bool:
-    """Whether a contact of the ground is one of these, or lies before or after all of them."""
-    if not len(moved):
-        return True
-    return bool(np.abs(moved - at).min() <= ONE_EVENT_S or at < moved[0] or at > moved[-1])
-
-
 def _merged(seen: Mapping[str, Mapping[str, Times]]) -> dict[str, tuple[tuple[float, str], ...]]:
     found: dict[str, list[tuple[float, str]]] = {}
     for name in GROUND:
@@ -242,13 +233,6 @@ def _merged(seen: Mapping[str, Mapping[str, Times]]) -> dict[str, tuple[tuple[fl
             there = found.setdefault(side, [])
             there += [(float(at), name) for at in times if all(abs(at - other) > ONE_EVENT_S for other, _ in there)]
     return {side: tuple(sorted(times)) for side, times in found.items()}
-
-
-def _borne_out(times: Times, own: Times | None) -> Times:
-    """Foot offs of a plate that markers or angles show too: a foot that leaves a plate may still be on the floor."""
-    if own is None or not len(own):
-        return times
-    return times[[bool(np.abs(own - at).min() <= MOST_OFFSET_S) for at in times]] if len(times) else times
 
 
 def _seen_offs(trial: Trial, contacts: Mapping[str, Times], direction: str) -> tuple[str, dict[str, Times]]:
@@ -267,22 +251,3 @@ def _seen_offs(trial: Trial, contacts: Mapping[str, Times], direction: str) -> t
     if kinematics is None or any(f"ankle_angle_{side}" not in kinematics.names for side in contacts):
         return "", {}
     return "angles", {s: angle_foot_off(kinematics, f"ankle_angle_{s}", windows[s]) for s in contacts}
-
-
-def _nothing_seen(
-    trial: Trial,
-    seen: Mapping[str, Mapping[str, Contacts]],
-    refused: Mapping[str, GaitdiscError | None],
-    detector: str,
-) -> StrideError:
-    reasons = []
-    for name in dict.fromkeys([*seen, *refused]):
-        error = refused.get(name)
-        counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
-        reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
-    by = "events, force, markers or joint angles" if detector == "auto" else detector
-    return StrideError(
-        f"a cycle needs two initial contacts of one foot, from {by}",
-        f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
-        "Add the file that holds forces, markers or angles to the trial, or leave the trial out.",
-    )

@@ -44,23 +44,20 @@ class StudyWalks:
     def read_walk(self, planned: PlannedTrial) -> ReadWalk:
         """Trial of the study, with angles and moments from its markers where the study requests them."""
         trial = self.read(planned)
-        standing = self._of_session(planned.session or "")
+        session = planned.session or ""
+        if session not in self._standing:
+            self._standing[session] = standing_of(self.study, self.participant, session, self.read)
+        standing = self._standing[session]
         computed = standing.computed(planned, trial).trial
         findings = standing.findings(computed, "kinematics" in computed.streams)
         ready = replace(computed, findings=(*computed.findings, *findings))
-        lacks = "kinematics" not in ready.streams and "markers" in ready.streams
-        return ReadWalk(ready, standing.body_weight_n(planned), self._why_none(ready, standing) if lacks else "")
+        why = ""
+        if "kinematics" not in ready.streams and "markers" in ready.streams:
+            why = next((one.what for one in ready.findings if one.kind == "no angles"), standing.unread)
+            if self.study.kinematics and self.study.kinematics.angles == "file":
+                why = 'those of the file are wanted, angles = "file" in [kinematics]'
+        return ReadWalk(ready, standing.body_weight_n(planned), why)
 
     def walk(self, planned: PlannedTrial) -> Walk:
         """Filtered walk, cut into strides, under the settings of the study."""
         return self.read_walk(planned).processed(self.study)
-
-    def _why_none(self, trial: Trial, standing: Standing) -> str:
-        if self.study.kinematics and self.study.kinematics.angles == "file":
-            return 'those of the file are wanted, angles = "file" in [kinematics]'
-        return next((one.what for one in trial.findings if one.kind == "no angles"), standing.unread)
-
-    def _of_session(self, session: str) -> Standing:
-        if session not in self._standing:
-            self._standing[session] = standing_of(self.study, self.participant, session, self.read)
-        return self._standing[session]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.kinetics.plate_steps import PlateStep
-from gaitdisc.processing.step_events import StepEvents, trial_markers
+from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Recording, Trial
 from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.signals.contact_force import RISE_N, loaded
@@ -84,8 +84,13 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
         return PlateLoadings()
     forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
     belts = frozenset(channel.side for channel in forces.channels if channel.side)
-    spans = () if belts else tuple(span for name in forces.names for span in _loadings(forces, name, rise_n))
-    return PlateLoadings(belts, spans)
+    spans = []
+    for force in () if belts else forces.values.T:
+        known = force[np.isfinite(force)]
+        upward = -force if len(known) and -known.min() > known.max() else force
+        found = loaded(upward, forces.rate_hz, rise_n)
+        spans += [(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]
+    return PlateLoadings(belts, tuple(spans))
 
 
 def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
@@ -95,8 +100,13 @@ def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
 
 def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
     """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance."""
-    whole = [step for step in steps if step.clean and step.whole]
-    return [replace(one, kinetic=any(_is_stance(step, one) for step in whole)) for one in cycles]
+    whole = [(step.side, step.start, step.end) for step in steps if step.clean and step.whole]
+
+    def stance(one: Cycle) -> bool:
+        ends = [(start - one.start, end - one.foot_off) for side, start, end in whole if side == one.side]
+        return any(max(abs(first), abs(last)) <= EDGE_S for first, last in ends)
+
+    return [replace(one, kinetic=stance(one)) for one in cycles]
 
 
 def without_doubted(cycles: list[Cycle], spans: Sequence[tuple[float, float]]) -> list[Cycle]:
@@ -104,11 +114,6 @@ def without_doubted(cycles: list[Cycle], spans: Sequence[tuple[float, float]]) -
     inside = [max([0.0, *(min(end, c.foot_off) - max(start, c.start) for start, end in spans)]) for c in cycles]
     halves = [0.5 * (one.foot_off - one.start) for one in cycles]
     return [replace(c, kinetic=c.kinetic and not s > h) for c, s, h in zip(cycles, inside, halves, strict=True)]
-
-
-def _is_stance(step: PlateStep, one: Cycle) -> bool:
-    same = abs(step.start - one.start) <= EDGE_S and abs(step.end - one.foot_off) <= EDGE_S
-    return step.side == one.side and same
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,29 +190,12 @@ def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
     return found
 
 
-def moved_events(steps: StepEvents, contact_s: float, off_s: float) -> list[Cycle]:
-    """Cycles of a trial whose events are moved by these offsets, the ground's own left where they are.
-
-    contact_s, off_s: added to contacts and to foot offs of markers or angles [s]
-    """
-    return cut_cycles(steps.corrected("contacts", contact_s), steps.corrected("foot_offs", off_s))
-
-
 def _first(times: tuple[tuple[float, str], ...], start: float, end: float) -> tuple[float, str]:
     return next(((at, by) for at, by in times if start <= at <= end), (NAN, ""))
 
 
 def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
     return vector - np.dot(vector, up) * up
-
-
-def _loadings(forces: Recording, name: str, rise_n: float) -> list[tuple[float, float]]:
-    """From when to when a plate is loaded [s]; what the recording cuts is not whole."""
-    force = forces[name]
-    known = force[np.isfinite(force)]
-    upward = -force if len(known) and -known.min() > known.max() else force
-    spans = loaded(upward, forces.rate_hz, rise_n)
-    return [(float(forces.time[a]), float(forces.time[b - 1])) for a, b in spans if a > 0 and b < len(force)]
 
 
 def _alone(one: Cycle, spans: Sequence[tuple[float, float]]) -> bool:

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import rankdata
+from scipy.stats import median_abs_deviation, rankdata
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.joint_centres import hip_of_spines
@@ -141,7 +141,11 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         what = f"{name} moves by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
             yield [name], f"{what}: its sign is turned, or two of the markers are exchanged"
-        elif moved[1] >= MOVES_DEG and r > ALIKE and not 1 / SCALE < _deviation(own) / _deviation(line) < SCALE:
+        elif (
+            moved[1] >= MOVES_DEG
+            and r > ALIKE
+            and not 1 / SCALE < median_abs_deviation(own) / median_abs_deviation(line) < SCALE
+        ):
             yield [name], f"{what}: its unit or scale is another"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
@@ -223,11 +227,6 @@ def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
             what = f"{moment} goes with {beside} (r = {r:.2f}), which it opposes in walking"
             yield [moment], f"{what}: its sign is turned"
-
-
-def _deviation(values: NDArray[np.float64]) -> float:
-    """Median distance from the median, which labels that are exchanged for a while hardly move."""
-    return float(np.median(np.abs(values - np.median(values))))
 
 
 def _range(values: NDArray[np.float64]) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,31 +27,52 @@ class Walk:
     side: str  # side whose strides the percent stride of the trajectory follows
 
     def summary(self) -> WalkSummary:
-        """What is kept of the walk: curves of every stride of the study's side, strides, findings, file hashes.
+        """What is kept of the walk: curves of every stride of the study's side, strides, findings, file hashes."""
+        return walk_summary(self.trial, [self.state], self.strides, self.side, self.findings)
 
-        Channels of the other side are cut by the strides of their own foot, so that left and right read alike.
-        """
-        files = {s.source.file: s.source.sha256 for s in self.trial.streams.values() if s.source.sha256}
-        return WalkSummary(
-            self.trial.subject,
-            self.trial.condition,
-            self.state.duration_s,
-            self.state.rate_hz,
-            self.strides[self.side].detector,
-            self.state.channels,
-            self._curves(),
-            pd.concat([stride_table(self.strides[side]) for side in sorted(self.strides)], ignore_index=True),
-            self.findings,
-            files,
-        )
 
-    def _curves(self) -> NDArray[np.float64]:
-        own = [channel.side if channel.side in self.strides else self.side for channel in self.state.channels]
-        by_side = {side: self.strides[side].normalised(self.state) for side in set(own)}
-        curves = np.full((max(map(len, by_side.values())), len(PERCENT), len(own)), np.nan)
-        for column, side in enumerate(own):
-            curves[: len(by_side[side]), :, column] = by_side[side][:, :, column]
-        return curves
+def walk_summary(
+    trial: Trial,
+    states: Sequence[Recording],
+    strides: Mapping[str, Strides],
+    follow: str,
+    findings: Sequence[Finding],
+) -> WalkSummary:
+    """What is kept of a walk.
+
+    Channels of the other side are cut by the strides of their own foot, so that left and right read alike.
+
+    states: filtered, each at its own rate; where there is none, length and rate are those of the trial's first stream
+    """
+    lead = [*states, *trial.streams.values()][0]
+    return WalkSummary(
+        trial.subject,
+        trial.condition,
+        lead.duration_s,
+        lead.rate_hz,
+        strides[follow].detector,
+        tuple(channel for state in states for channel in state.channels),
+        stride_curves(states, strides, follow),
+        pd.concat([stride_table(strides[side]) for side in sorted(strides)], ignore_index=True),
+        tuple(findings),
+        {one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
+    )
+
+
+def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:
+    """Strides of every channel, cut by the contacts of its own foot; without a side by those of the foot to follow.
+
+    returns (stride, phase, channel): NaN behind the strides of the foot that has fewer
+    """
+    columns: list[NDArray[np.float64]] = []
+    for state in states:
+        own = [channel.side if channel.side in strides else follow for channel in state.channels]
+        by_side = {side: strides[side].normalised(state) for side in set(own)}
+        columns += [by_side[side][:, :, column] for column, side in enumerate(own)]
+    curves = np.full((max(map(len, columns), default=0), len(PERCENT), len(columns)), np.nan)
+    for column, values in enumerate(columns):
+        curves[: len(values), :, column] = values
+    return curves
 
 
 def stride_table(strides: Strides) -> pd.DataFrame:

@@ -1,4 +1,7 @@
-"""Two recordings made comparable: the same filters, and percent stride counted by the same kind of contact."""
+"""Two recordings made comparable: the same filters, and percent stride counted by the same kind of contact.
+
+A periodic simulation gives one stride that closes in itself: it is walked on until contacts can be found in it.
+"""
 
 from __future__ import annotations
 
@@ -6,15 +9,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
 
-from gaitdisc.errors import GaitdiscError, StrideError
+from gaitdisc.errors import GaitdiscError, SamplingError, StrideError
 from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
-from gaitdisc.processing.one_stride import TIMES, repeated_stride
-from gaitdisc.processing.process import is_raw, quality_findings, stride_findings
-from gaitdisc.processing.walk import stride_table
-from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trial
+from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings
+from gaitdisc.processing.walk import walk_summary
+from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.results import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_angles import angle_contacts
@@ -23,10 +23,13 @@ from gaitdisc.signals.envelope import ENVELOPE_HZ, enveloped
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.spikes import without_spikes
 from gaitdisc.signals.stride_quality import without_outlying
-from gaitdisc.signals.strides import MAX_S, cut_strides
+from gaitdisc.signals.strides import MAX_S, MIN_S, cut_strides
 from gaitdisc.signals.walking import verify_walking
 
 FORCE_HZ = 20.0
+TIMES = 8  # a stride that closes in itself is walked
+LEGS = ("hip", "knee", "ankle")
+CLOSES = 0.08  # of an angle's reach: how far apart both ends may lie
 SPOILED_CHANNELS = 2  # of the legs' angles in which a stride must be unlike the others to be left out
 COMPARED = {
     "kinematics": ("angle",),
@@ -141,7 +144,8 @@ def _stride_count(contacts: Mapping[str, Contacts]) -> int:
 def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, repeated: bool) -> WalkSummary:
     strides = {side: cut_strides(found) for side, found in sorted(contacts.items())}
     if "kinematics" in trial.streams and not repeated:
-        legs = _legs(trial)
+        names = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"}
+        legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in names)
         strides = {side: without_outlying(legs, cut, SPOILED_CHANNELS) for side, cut in strides.items()}
     follow = "r" if "r" in strides else next(iter(strides))
     states = [state for key in COMPARED if (state := _state(trial, key, cutoff_hz)) is not None]
@@ -149,39 +153,18 @@ def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, r
     if not repeated:
         findings += quality_findings(replace(trial, streams={k: v for k, v in trial.streams.items() if k in COMPARED}))
     if "kinematics" in trial.streams:
-        findings += _looked_at(trial, strides[follow], repeated)
-    curves = _joined([_curves(state, strides, follow) for state in states])
-    if repeated:
-        curves = curves[len(curves) // 2 :][:1]  # all are the same
-    lead = states[0] if states else next(iter(trial.streams.values()))
-    return WalkSummary(
-        trial.subject,
-        trial.condition or trial.name,
-        lead.duration_s / (TIMES if repeated else 1),
-        lead.rate_hz,
-        strides[follow].detector,
-        tuple(channel for state in states for channel in state.channels),
-        curves,
-        pd.concat([stride_table(one) for one in strides.values()], ignore_index=True),
-        tuple(findings),
-        {r.source.file: r.source.sha256 for r in trial.streams.values() if r.source.sha256},
-    )
-
-
-def _looked_at(trial: Trial, strides: Strides, repeated: bool) -> list[Finding]:
-    """Refuse what is no walking; say what the strides show."""
-    legs = _legs(trial)
-    joints = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
-    if set(joints) <= set(legs.names):
-        verify_walking(legs.selected(joints), strides, fewest=1, least_coverage=0.0)
-    if f"knee_angle_{strides.side}" in legs.names:
-        verify_sides(legs, strides)
-    return [] if repeated else stride_findings(trial.stream("kinematics"), strides)
-
-
-def _legs(trial: Trial) -> Recording:
-    joints = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"}
-    return trial.stream("kinematics").selected_by(lambda channel: channel.name in joints)
+        legs = knees_and_hips(trial)
+        if len(legs.names) == 4:
+            verify_walking(legs, strides[follow], fewest=1, least_coverage=0.0)
+        if f"knee_angle_{follow}" in legs.names:
+            verify_sides(legs, strides[follow])
+        findings += [] if repeated else stride_findings(trial.stream("kinematics"), strides[follow])
+    found = walk_summary(trial, states, strides, follow, findings)
+    found = replace(found, condition=trial.condition or trial.name)
+    if not repeated:
+        return found
+    # all strides are the same
+    return replace(found, duration_s=found.duration_s / TIMES, curves=found.curves[len(found.curves) // 2 :][:1])
 
 
 def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
@@ -196,21 +179,66 @@ def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
     return lowpassed(without_spikes(recording), FORCE_HZ if key == "forces" else cutoff_hz)
 
 
-def _curves(state: Recording, strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:
-    """Strides of every channel, cut by the contacts of its own foot."""
-    own = [channel.side if channel.side in strides else follow for channel in state.channels]
-    by_side = {side: strides[side].normalised(state) for side in set(own)}
-    curves = np.full((max(map(len, by_side.values())), len(PERCENT), len(own)), np.nan)
-    for column, side in enumerate(own):
-        curves[: len(by_side[side]), :, column] = by_side[side][:, :, column]
-    return curves
+def repeated_stride(trial: Trial) -> Trial:
+    """Walk that repeats the one stride of a trial, so that contacts are found as in any other walk.
+
+    Only streams on the time base of the kinematics are kept. A last sample that repeats the first is left out.
+
+    trial: with the kinematics of one stride, wherever in the stride it begins
+
+    >>> from gaitdisc.channel import Channel
+    >>> t = np.linspace(0.0, 1.0, 101)
+    >>> hip = Recording(t, 30 * np.cos(2 * np.pi * t)[:, None], (Channel("hip_flexion_r", "angle", "deg", "r"),))
+    >>> round(repeated_stride(Trial("sim", {"kinematics": hip})).stream("kinematics").duration_s, 2)
+    8.0
+    """
+    kinematics = trial.stream("kinematics")
+    count = _period(kinematics, trial.name)
+    kept = {
+        key: _repeated(recording, count)
+        for key, recording in trial.streams.items()
+        if len(recording.time) == len(kinematics.time) and np.allclose(recording.time, kinematics.time, atol=1e-6)
+    }
+    left = sorted(set(trial.streams) - set(kept))
+    what = f"one stride of {count / kinematics.rate_hz:.3f} s that closes in itself, walked {TIMES} times"
+    if left:
+        what += f"; {', '.join(left)} left out: on another time base"
+    spread = "a spread of its own: it is taken as a curve"
+    note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
+    return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
 
 
-def _joined(parts: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    longest = max((len(part) for part in parts), default=0)
-    whole = np.full((longest, len(PERCENT), sum(part.shape[2] for part in parts)), np.nan)
-    column = 0
-    for part in parts:
-        whole[: len(part), :, column : column + part.shape[2]] = part
-        column += part.shape[2]
-    return whole
+def _period(kinematics: Recording, name: str) -> int:
+    """Samples of the stride: all of them, or one less where the last repeats the first."""
+    angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.name.startswith(LEGS))
+    needed = f"one stride of a periodic simulation lasts {MIN_S:g} to {MAX_S:g} s and ends where it began"
+    if not MIN_S <= kinematics.duration_s <= MAX_S or len(kinematics.time) < 8:
+        found = f"{name} lasts {kinematics.duration_s:.2f} s in {len(kinematics.time)} samples"
+        raise StrideError(needed, found, "Give one whole stride, or a walk of several.")
+    x = angles.values
+    reach = np.ptp(x, axis=0)
+    moving = np.isfinite(reach) & (reach > 1.0)
+    if not moving.any():
+        raise StrideError(needed, f"{name} has no angle of the legs that moves", "Give joint angles in deg or rad.")
+    apart = np.abs(x[-1] - x[0])[moving] / reach[moving]
+    if np.median(apart) > CLOSES:
+        worst = int(np.flatnonzero(moving)[np.argmax(apart)])
+        found = f"in {name} {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from where it began"
+        raise StrideError(needed, found, "Give a whole stride (two steps), or a walk of several.")
+    step = np.abs(np.diff(x, axis=0)).mean(axis=0)[moving] / reach[moving]
+    beside = np.abs(x[1] - x[-1])[moving] / reach[moving]
+    closing = np.median(apart) < 0.25 * np.median(step) and np.median(beside) > np.median(apart)
+    return len(x) - 1 if closing else len(x)
+
+
+def _repeated(recording: Recording, count: int) -> Recording:
+    if len(recording.time) < count:
+        raise SamplingError("a stride to repeat needs all its samples", f"found {len(recording.time)}", "Export again.")
+    time = recording.time[0] + np.arange(TIMES * count) / recording.rate_hz
+    assert recording.suspect is not None  # set by Recording
+    return replace(
+        recording,
+        time=time,
+        values=np.tile(recording.values[:count], (TIMES, 1)),
+        suspect=np.tile(recording.suspect[:count], (TIMES, 1)),
+    )

@@ -10,12 +10,13 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import side_of
-from gaitdisc.recording import PERCENT, Recording
+from gaitdisc.recording import Recording
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, SIDES, WITHOUT_DEVICE
-from gaitdisc.report.panels import Room, in_style, legend, panels, panels_for, sheets
+from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
 from gaitdisc.results import ResponseRun, WalkSummary
+from gaitdisc.results.pooled_cycles import mean_curve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 WALKS = ("nominal", "exo")
 LOOKS = tuple(RECONSTRUCTED.values())
 BINS = np.arange(0.0, 101.0, 2.0)
-LATENT, MODES = "latent state of SHRED", "modes of the states"
+LATENT = "latent state of SHRED"
 
 
 @in_style
@@ -48,26 +49,9 @@ def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
         summary = walk_of(run, participant, walk)
         if summary is None or not len(summary.curves):
             continue
-        present = np.isfinite(summary.curves)
-        count = present.sum(axis=0)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            mean = np.where(present, summary.curves, 0.0).sum(axis=0) / count
-            square = np.where(present, (summary.curves - mean) ** 2, 0.0).sum(axis=0)
-            spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
+        curves = summary.curves
         for column, channel in enumerate(summary.channels):
-            tables.append(
-                pd.DataFrame(
-                    {
-                        "channel": channel.name,
-                        "unit": channel.unit,
-                        "walk": walk,
-                        "percent": PERCENT,
-                        "n": count[:, column],
-                        "mean": mean[:, column],
-                        "sd": spread[:, column],
-                    }
-                )
-            )
+            tables.append(mean_curve(curves[:, :, column], channel=channel.name, unit=channel.unit, walk=walk))
     columns = pd.Index(["channel", "unit", "walk", "percent", "n", "mean", "sd"])
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
 
@@ -113,7 +97,7 @@ def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str
     ranges = _ranges(numbers)
     for axes, (channel, curves) in zip(cells, groups, strict=True):
         draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
-        axes.set_title(_title(str(channel)), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
+        axes.set_title(label(str(channel)).replace("EMG ", ""), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
         up = upwards(str(channel))
         unit = unit_text(str(curves["unit"].iloc[0]))
         axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
@@ -135,10 +119,6 @@ def _ranges(numbers: pd.DataFrame) -> dict[str, tuple[float, float]]:
         str(key): (float(low[key] - room[key]), float(high[key] + room[key])) if np.isfinite(low[key]) else (0.0, 1.0)
         for key in low.index
     }
-
-
-def _title(channel: str) -> str:
-    return label(channel).replace("EMG ", "")
 
 
 def walks_key(run: ResponseRun) -> list[Line2D]:
@@ -218,21 +198,3 @@ def draw_course(axes: Axes, numbers: pd.DataFrame) -> None:
     axes.set_xlim(0, 100)
     axes.set_xlabel("stride [%]")
     axes.set_ylabel("standard deviations [1]")
-
-
-@in_style
-def latent_course_figure(courses: dict[str, pd.DataFrame], name: str, source: str) -> Figure:
-    """Draw the latent state and the modes side by side.
-
-    courses: title of each panel -> its `course_numbers`
-    """
-    drawn, (row,) = panels(1, len(courses), 2.1, Room(across=0.7, top=0.5))
-    for axes, (title, numbers) in zip(row, courses.items(), strict=True):
-        draw_course(axes, numbers)
-        axes.set_title(title)
-    legend(drawn, row[0].get_lines())
-    caption = (
-        f"{source}. Principal components in time, each of standard deviation 1; shaded: standard deviation of 2 %."
-    )
-    numbers = pd.concat([each.assign(panel=title) for title, each in courses.items()], ignore_index=True)
-    return Figure(name, caption, "Components of the latent state and of the states over the stride", numbers, drawn)

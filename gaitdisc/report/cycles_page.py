@@ -32,7 +32,6 @@ from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.leg_curves import FEET
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 MOST_HERE = 2  # people whose figures are drawn one after the other
@@ -64,6 +63,7 @@ MOST_FAINT = 25  # cycles that are drawn one by one
 
 def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
     """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
+    computed = any(finding.kind == "residual" for one in run.cycles for finding in one.findings)
     tables = {
         "refusals": refusals_table(run),
         "findings": findings_table(run),
@@ -75,14 +75,10 @@ def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
         "answer": cycles_sentences(run),
         "blocks": saved_cycle_blocks(run, folder),
         "tables": tables,
-        "method": (*METHOD, *([COMPUTED] if _computed(run) else [])),
+        "method": (*METHOD, *([COMPUTED] if computed else [])),
     }
     save_cycle_tables(run, folder)
     return write_page("cycles", shown, folder)
-
-
-def _computed(run: ResponseRun) -> bool:
-    return any(finding.kind == "residual" for one in run.cycles for finding in one.findings)
 
 
 def save_cycle_tables(run: ResponseRun, folder: Path) -> None:
@@ -123,7 +119,9 @@ def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
     if not run.cycles:
         return []
     unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
-    first = Block("cycles", "Cycles", (_windows(run), *unfitted), (), (overview_table(run.cycles),))
+    device = "" if run.exo else " The study compares no device, so no models are fitted."
+    windows = f"Every cycle lies in one trial; nothing is joined across trials.{device}"
+    first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.cycles),))
     people = list(dict.fromkeys(one.subject for one in run.cycles))
     names = file_names(people)
     each = [
@@ -149,11 +147,6 @@ def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) ->
     save_tables(block.tables, folder)
     figures = save_figures(block.figures, folder, largest_inline(count))
     return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
-
-
-def _windows(run: ResponseRun) -> str:
-    device = "" if run.exo else " The study compares no device, so no models are fitted."
-    return f"Every cycle lies in one trial; nothing is joined across trials.{device}"
 
 
 def _person(sets: Sequence[PooledCycles]) -> str:
@@ -186,6 +179,9 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
+    from matplotlib.lines import Line2D
+
+    columns = [one.name for one in pooled.channels]
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
     shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
@@ -194,7 +190,14 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         own = by_joint[joint]
         for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
             curve = own[(own["channel"] == channel) & (own["side"] == side)]
-            _draw(axes, pooled, str(channel), str(side), curve)
+            of_side = (pooled.kept["side"] == side).to_numpy()
+            every = pooled.curves[of_side, :, columns.index(channel)]
+            every = every[np.isfinite(every).any(axis=1)]
+            draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), str(side))
+            off = pooled.kept.loc[of_side, "stance_percent"].mean()
+            if np.isfinite(off):
+                colour = SIDES[str(side)].colour
+                axes.axvline(float(off), color=colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
         first = str(own["channel"].iloc[0])
         axes.set_title(label(joint), fontsize=7.4)
         up, unit = upwards(first), unit_text(str(own["unit"].iloc[0]))
@@ -203,16 +206,11 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         axes.set_xticks([0, 50, 100])
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
-    legend(drawn, _key())
+    key = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
+    key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
+    key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
+    legend(drawn, key)
     return Figure(name, _caption(pooled), _alt(pooled, shown), shown, drawn)
-
-
-def _draw(axes: Axes, pooled: PooledCycles, channel: str, side: str, curve: pd.DataFrame) -> None:
-    look = SIDES[side]
-    draw_cycles(axes, _every(pooled, channel, side), curve["mean"].to_numpy(), curve["sd"].to_numpy(), side)
-    off = pooled.kept.loc[pooled.kept["side"] == side, "stance_percent"].mean()
-    if np.isfinite(off):
-        axes.axvline(float(off), color=look.colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
 
 
 def draw_cycles(
@@ -229,20 +227,6 @@ def draw_cycles(
     if len(every) > 2:
         axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
     axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)
-
-
-def _every(pooled: PooledCycles, channel: str, side: str) -> NDArray[np.float64]:
-    column = [one.name for one in pooled.channels].index(channel)
-    own = pooled.curves[(pooled.kept["side"] == side).to_numpy(), :, column]
-    return own[np.isfinite(own).any(axis=1)]
-
-
-def _key() -> list[Artist]:
-    from matplotlib.lines import Line2D
-
-    handles: list[Artist] = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
-    handles.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
-    return [*handles, Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off")]
 
 
 def _caption(pooled: PooledCycles) -> str:

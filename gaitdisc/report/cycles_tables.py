@@ -85,17 +85,8 @@ def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
                 if not np.isfinite(values).any():
                     continue
                 words = (one.subject, one.group, one.session, one.condition, cycle.trial, cycle.side, cycle.start_s)
-                tables.append(
-                    pd.DataFrame(
-                        {
-                            **dict(zip(columns, words, strict=False)),
-                            "channel": channel.name,
-                            "unit": channel.unit,
-                            "percent": PERCENT,
-                            "value": values,
-                        }
-                    )
-                )
+                named = dict(zip(columns, (*words, channel.name, channel.unit), strict=False))
+                tables.append(pd.DataFrame({**named, "percent": PERCENT, "value": values}))
     return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
 
 
@@ -123,11 +114,13 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
         counts = {side: (one.counted(side), int((one.left_out["side"] == side).sum())) for side in FEET}
         plates = {side: int((kinetic["side"] == side).sum()) for side in FEET}
         muscles = emg_counts(one)
+        live = [count for count in muscles.values() if count]
+        emg = f"{len(live)} live, {sum(live)} cycles" if live else NONE
         by = ", ".join(f"{name} ({count})" if len(one.detectors) > 1 else name for name, count in one.detectors.items())
         rows.append((
             one.subject, one.group or NONE, one.where, str(one.trials),
             *(f"{counts[side][0]} / {counts[side][1]}" for side in FEET),
-            f"{plates['l']}, {plates['r']}", _emg(muscles), by or NONE, offset_words(one),
+            f"{plates['l']}, {plates['r']}", emg, by or NONE, offset_words(one),
         ))  # fmt: skip
         records.append({
             "participant": one.subject, "group": one.group, "session": one.session, "condition": one.condition,
@@ -185,7 +178,7 @@ def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
                     (numbers["value"] == value) & (numbers["side"] == side)
                     & (numbers["session"] == one.session) & (numbers["condition"] == one.condition)
                 ].iloc[0]  # fmt: skip
-                cells.append(_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
+                cells.append(mean_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
         if set(cells) != {NONE}:
             rows.append((f"{words} [{unit}]", *cells))
     columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))
@@ -223,13 +216,9 @@ def _named(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
     return named
 
 
-def _emg(muscles: dict[str, int]) -> str:
-    live = {name: count for name, count in muscles.items() if count}
-    return f"{len(live)} live, {sum(live.values())} cycles" if live else NONE
-
-
-def _cell(mean: float, spread: float, count: int, digits: int) -> str:
+def mean_cell(mean: float, spread: float, count: int, digits: int) -> str:
+    """Mean ± standard deviation (count), as a cell has it."""
     if not count:
         return NONE
-    sd = f" ± {number(spread, digits)}" if np.isfinite(spread) else ""
+    sd = f" ± {spread:.{digits}f}" if np.isfinite(spread) else ""
     return f"{number(mean, digits)}{sd} ({count})"

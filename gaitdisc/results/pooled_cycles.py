@@ -175,26 +175,21 @@ class PooledCycles(Saved, by="gaitdisc.results.stores:CYCLES.save"):
         for column, channel in enumerate(self.channels):
             for side in (channel.side,) if channel.side else ("l", "r"):
                 own = curves[feet == side, :, column]
-                present = np.isfinite(own)
-                count = present.sum(axis=0)
-                if not count.any():
-                    continue
-                with np.errstate(invalid="ignore", divide="ignore"):
-                    mean = np.where(present, own, 0.0).sum(axis=0) / count
-                    square = np.where(present, (own - mean) ** 2, 0.0).sum(axis=0)
-                    spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
-                tables.append(
-                    pd.DataFrame(
-                        {
-                            "channel": channel.name,
-                            "unit": channel.unit,
-                            "side": side,
-                            "percent": PERCENT,
-                            "n": count,
-                            "mean": mean,
-                            "sd": spread,
-                        }
-                    )
-                )
+                if np.isfinite(own).any():
+                    tables.append(mean_curve(own, channel=channel.name, unit=channel.unit, side=side))
         columns = ["channel", "unit", "side", "percent", "n", "mean", "sd"]
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def mean_curve(curves: NDArray[np.float64], **words: str) -> pd.DataFrame:
+    """Mean and standard deviation of the curves that have a value there, behind a column of each of these words.
+
+    curves (cycle, phase): on 101 points
+    """
+    present = np.isfinite(curves)
+    count = present.sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(present, curves, 0.0).sum(axis=0) / count
+        square = np.where(present, (curves - mean) ** 2, 0.0).sum(axis=0)
+        spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
+    return pd.DataFrame({**words, "percent": PERCENT, "n": count, "mean": mean, "sd": spread})

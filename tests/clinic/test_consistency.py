@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.clinic.consistency import multiple_correlation
+from gaitdisc.clinic.reading import multiple_correlation
 
 
 def test_a_coefficient_computed_by_hand():

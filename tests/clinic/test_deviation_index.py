@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from made_clinic import made_controls, made_person
 
-from gaitdisc.clinic.deviation_index import deviation_index
+from gaitdisc.clinic.profile import deviation_index
 from gaitdisc.results.leg_curves import LegCurves, legs_of
 
 

@@ -9,9 +9,9 @@ import pytest
 from made_clinic import made_person
 
 from gaitdisc.clinic.like_controls import at_leg_length, described, dimensionless_speed, groups_of, like_controls
-from gaitdisc.clinic.outstanding import outstanding
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import reference_of
+from gaitdisc.clinic.rules import outstanding
 from gaitdisc.results.clinical_reference import ReferenceLeg
 from gaitdisc.results.leg_curves import LegCurves
 from gaitdisc.results.provenance import made_now

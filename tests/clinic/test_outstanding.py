@@ -3,8 +3,7 @@ from __future__ import annotations
 import pytest
 from made_clinic import ANKLE, made_controls, made_person
 
-from gaitdisc.clinic.outstanding import outstanding
-from gaitdisc.clinic.rules import rules_in
+from gaitdisc.clinic.rules import outstanding, rules_in
 from gaitdisc.recording import PERCENT
 from gaitdisc.results.leg_curves import legs_of
 

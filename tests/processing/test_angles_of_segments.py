@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.channel import Channel
-from gaitdisc.processing.angles_of_segments import with_segment_angles
+from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.recording import Recording, Trial
 
 LABELS = ("pelvis", *(f"{side}_{part}" for part in ("thigh", "shank", "foot") for side in "lr"))

@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import StrideError
-from gaitdisc.processing.one_stride import TIMES, repeated_stride
+from gaitdisc.processing.walk_pair import TIMES, repeated_stride
 from gaitdisc.recording import Recording, Trial
 
 HIP = Channel("hip_flexion_r", "angle", "deg", "r")

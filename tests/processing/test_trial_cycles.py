@@ -12,7 +12,6 @@ from gaitdisc.processing.trial_cycles import (
     cut_cycles,
     feet_in,
     heel_paths,
-    moved_events,
     plate_loadings,
     with_gaps,
     with_plate_steps,
@@ -124,7 +123,7 @@ def test_an_offset_moves_markers_and_not_the_ground():
     steps = StepEvents(
         "markers", "markers", {"r": np.array([1.0, 2.0])}, {"r": np.array([1.6])}, {"r": ((1.04, "force"),)}, {}
     )
-    (one,) = moved_events(steps, 0.04, -0.01)
+    (one,) = cut_cycles(steps.corrected("contacts", 0.04), steps.corrected("foot_offs", -0.01))
     assert (one.start, one.end, one.foot_off) == pytest.approx((1.04, 2.04, 1.59))
     assert one.contacts_by == ("force", "markers") and one.foot_off_by == "markers"
 

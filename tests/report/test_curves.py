@@ -7,13 +7,11 @@ from matplotlib.figure import Figure
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording
 from gaitdisc.report.curves import (
-    LATENT,
-    MODES,
     course_numbers,
     curve_numbers,
     curves_figures,
+    draw_course,
     draw_recording,
-    latent_course_figure,
     sides_together,
     walk_of,
 )
@@ -101,8 +99,6 @@ def test_a_mean_course_and_its_spread_by_percent_of_the_stride():
     np.testing.assert_allclose(first["mean"], 1.0)
     np.testing.assert_allclose(first["sd"], np.std([0.0, 0.0, 2.0, 2.0] * 2, ddof=1))
     np.testing.assert_allclose(second["mean"], second["percent"])
-    figure = latent_course_figure({LATENT: numbers, MODES: numbers}, "latent", "As Fig. 5.1")
-    left, right = figure.drawn.axes
-    assert [len(axes.get_lines()) for axes in (left, right)] == [2, 2]
-    assert (left.get_title(), right.get_title()) == (LATENT, MODES)
-    assert set(figure.numbers["panel"]) == {LATENT, MODES}
+    axes = Figure().subplots()
+    draw_course(axes, numbers)
+    assert [line.get_label() for line in axes.get_lines()] == ["component 1", "component 2"]

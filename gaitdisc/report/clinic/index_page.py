@@ -9,12 +9,13 @@ from gaitdisc.report.clinic.words import ENGLISH, PageWords, noted_sentences
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import save_tables, words_table
 from gaitdisc.report.wording import NONE, counted, number
-from gaitdisc.results import Refusal, ResponseRun
+from gaitdisc.results import ResponseRun
 from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.whole_file import write_whole
 
 RANKS = {"red": 0, "amber": 1, "green": 2}
+COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")
 HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]", "stands out", "why")
 
 
@@ -32,12 +33,12 @@ def write_index(
     rows = [_row(reading, one, name, say) for one, name in sessions for reading in one.readings]
     known = {reading.pooled.subject for one, _ in sessions for reading in one.readings}
     whole = [refusal for refusal in run.refusals if refusal.participant not in known]
-    rows += [_refused(refusal) for refusal in whole]
+    for refusal in whole:
+        who = {"light": "red", "subject": refusal.participant, "person": refusal.participant, "page": ""}
+        own = {"condition": refusal.condition or NONE, "why": refusal.reason}
+        rows.append({**who, **own, **dict.fromkeys(("cycles", "score", "noted"), NONE)})
     rows.sort(key=lambda row: RANKS[row["light"]])
-    cells = [
-        (row["light"], row["person"], row["condition"], row["cycles"], row["score"], row["noted"], row["why"])
-        for row in rows
-    ]
+    cells = [tuple(row[key] for key in COLUMNS) for row in rows]
     table = words_table("people", "People of the run.", HEADINGS, cells)
     save_tables([table], folder)
     lights = {light: sum(row["light"] == light for row in rows) for light in RANKS}
@@ -70,20 +71,6 @@ def _row(reading: ClinicalReading, person: PersonSession, name: str, say: PageWo
         "noted": first if not reading.silent else say("not said"),
         "why": "; ".join(reading.reasons) or NONE,
         "page": f"people/{name}.html" if name else "",
-    }
-
-
-def _refused(refusal: Refusal) -> dict[str, str]:
-    return {
-        "light": "red",
-        "subject": refusal.participant,
-        "person": refusal.participant,
-        "condition": refusal.condition or NONE,
-        "cycles": NONE,
-        "score": NONE,
-        "noted": NONE,
-        "why": refusal.reason,
-        "page": "",
     }
 
 

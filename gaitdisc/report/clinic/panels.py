@@ -15,7 +15,7 @@ from gaitdisc.report.palette import SIDES
 from gaitdisc.report.wording import SIDE_WORDS, label, number, sideless
 from gaitdisc.results import PooledCycles
 from gaitdisc.results.clinical_reading import Band, ClinicalReading, Contrast
-from gaitdisc.results.clinical_variables import BY_NAME, KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
+from gaitdisc.results.clinical_variables import KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
 from gaitdisc.results.leg_curves import FEET
 
 WIDTH, HEIGHT = 240, 165
@@ -183,10 +183,10 @@ def sheet(reading: ClinicalReading, *kinds: str) -> list[Panel]:
     """Mean curves of both legs over the reference's band, a panel for each variable of these kinds that is there."""
     found = []
     for variable in _present(reading, *kinds):
-        lines = tuple(
-            Line(side, leg.mean(variable.name)) for side, leg in reading.legs.items() if variable.name in leg.cycles
-        )
-        found.append(_panel(reading, variable, lines, _counts(reading, variable.name)))
+        own = {side: leg for side, leg in reading.legs.items() if variable.name in leg.cycles}
+        lines = tuple(Line(side, leg.mean(variable.name)) for side, leg in own.items())
+        counts = ", ".join(f"{SHORT[side]} {len(leg.cycles[variable.name])}" for side, leg in own.items())
+        found.append(_panel(reading, variable, lines, counts))
     return found
 
 
@@ -238,7 +238,9 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
             mean = own.mean(axis=0)
             panels.setdefault(sideless(channel.name), []).append(Line(channel.side, 100 * mean / mean.max()))
             counts.setdefault(sideless(channel.name), []).append(f"{SHORT[channel.side]} {len(own)}")
-    offs = _foot_off_of(pooled)
+    kept = pooled.kept
+    means = {side: float(kept.loc[kept["side"] == side, "stance_percent"].mean()) for side in FEET}
+    offs = tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
     found = []
     for place, (muscle, lines) in enumerate(panels.items()):
         short = muscle.removeprefix("emg_")
@@ -267,26 +269,10 @@ def _present(reading: ClinicalReading, *kinds: str) -> list[ClinicalVariable]:
     return [variable for variable in VARIABLES if variable.kind in kinds and variable.name in names]
 
 
-def _counts(reading: ClinicalReading, name: str) -> str:
-    each = [
-        f"{SHORT[side]} {len(reading.legs[side].cycles[name])}"
-        for side in FEET
-        if side in reading.legs and name in reading.legs[side].cycles
-    ]
-    return ", ".join(each)
-
-
 def _panel(
     reading: ClinicalReading, variable: ClinicalVariable, lines: tuple[Line, ...], note: str, banded: bool = True
 ) -> Panel:
-    one = BY_NAME[variable.name]
     band = reading.bands.get(variable.name) if banded else None
     offs = tuple((s, leg.stance_percent) for s, leg in reading.legs.items() if np.isfinite(leg.stance_percent))
-    words = (one.name, one.words, one.unit, one.up, one.down, note)
-    return Panel(*words, lines, band, offs, row=one.row, column=one.column)
-
-
-def _foot_off_of(pooled: PooledCycles) -> tuple[tuple[str, float], ...]:
-    kept = pooled.kept
-    means = {side: float(kept.loc[kept["side"] == side, "stance_percent"].mean()) for side in FEET}
-    return tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
+    words = (variable.name, variable.words, variable.unit, variable.up, variable.down, note)
+    return Panel(*words, lines, band, offs, row=variable.row, column=variable.column)

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.clinic.panels import ticks
-from gaitdisc.report.cycles_tables import VALUES
+from gaitdisc.report.cycles_tables import VALUES, mean_cell
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.table import Table, words_table
 from gaitdisc.report.wording import NONE, SIDE_WORDS, number, unit_text
@@ -28,15 +28,16 @@ def values_table(reading: ClinicalReading) -> Table:
         if not each:
             continue
         means = {side: float(own.mean()) for side, own in each.items()}
-        uneven = _asymmetry(means)
+        spreads = {side: float(own.std(ddof=1)) if len(own) > 1 else np.nan for side, own in each.items()}
+        left, right = (means.get(side, np.nan) for side in FEET)
+        uneven = 100 * (left - right) / ((left + right) / 2) if left * right > 0 else None
         limits = reading.spatiotemporal.get(value)
-        cells = [_cell(each.get(side), digits) for side in FEET]
+        cells = [mean_cell(means[s], spreads[s], len(each[s]), digits) if s in each else NONE for s in FEET]
         own = f"{number(limits.mean, digits)} ± {limits.sd:.{digits}f}" if limits else NONE
         rows.append((f"{words} [{unit}]", *cells, own, NONE if uneven is None else f"{number(uneven, 0)} %"))
         record = {"value": value, "unit": unit, "asymmetry_percent": uneven}
-        for side, own_values in each.items():
-            spread = float(own_values.std(ddof=1)) if len(own_values) > 1 else np.nan
-            record |= {f"mean_{side}": means[side], f"sd_{side}": spread, f"n_{side}": len(own_values)}
+        for side, mean in means.items():
+            record |= {f"mean_{side}": mean, f"sd_{side}": spreads[side], f"n_{side}": len(each[side])}
         if limits:
             record |= {"reference_mean": limits.mean, "reference_sd": limits.sd, "reference_people": limits.people}
         records.append(record)
@@ -98,27 +99,15 @@ def files_table(readings: list[ClinicalReading]) -> Table:
     return words_table("files", f"Files, n = {len(rows)}.", ("file", "SHA-256"), rows)
 
 
-def _asymmetry(means: dict[str, float]) -> float | None:
-    if set(means) != set(FEET):
-        return None
-    middle = (means["l"] + means["r"]) / 2
-    return 100 * (means["l"] - means["r"]) / middle if means["l"] * means["r"] > 0 else None
-
-
-def _cell(values: np.ndarray | None, digits: int) -> str:
-    if values is None or not len(values):
-        return NONE
-    spread = f" ± {float(values.std(ddof=1)):.{digits}f}" if len(values) > 1 else ""
-    return f"{number(float(values.mean()), digits)}{spread} ({len(values)})"
-
-
 def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
     """Bars of a profile; left above right, the reference's mean and spread behind."""
     rows: list[tuple[str, dict[str, Score]]] = [
         (BY_NAME[n].words, {s: profile.variables[n, s] for s in FEET if (n, s) in profile.variables}) for n in PROFILE
     ]
     rows.append(("gait profile score", dict(profile.legs)))
-    top = max(_reach(score) for _, scores in rows for score in scores.values())
+    shown = [score for _, scores in rows for score in scores.values()]
+    ends = [(score.value, score.reference_mean + score.reference_sd) for score in shown]
+    top = 1.08 * max(1e-6, *(end for both in ends for end in both if np.isfinite(end)))
     height = (BOTTOM - TOP) / len(rows)
 
     def x(value: float) -> float:
@@ -161,8 +150,3 @@ def _bars(scores: dict[str, Score], at: float, height: float, x) -> list[str]:
             f'fill="{SIDES[side].colour}" fill-opacity="{1.0 if side == "l" else 0.55}" stroke="{SIDES[side].colour}"/>'
         )
     return parts
-
-
-def _reach(score: Score) -> float:
-    own = score.reference_mean + score.reference_sd
-    return 1.08 * max(score.value, own if np.isfinite(own) else 0.0, 1e-6)
