@@ -18,8 +18,8 @@ from gaitdisc.chapters.fields.sea_surface import read_sst_mat
 from gaitdisc.chapters.fields.turbulence_cutout import read_cutout
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular

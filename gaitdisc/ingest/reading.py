@@ -11,13 +11,11 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
-from gaitdisc.ingest.angle_unit import plausible_unit
-from gaitdisc.ingest.array_trial import ENDINGS as ARRAYS
-from gaitdisc.ingest.array_trial import read_arrays
+from gaitdisc.ingest.array_file import ENDINGS as ARRAYS
+from gaitdisc.ingest.array_file import read_arrays
 from gaitdisc.ingest.columns import split_unit
-from gaitdisc.ingest.knee_sign import with_flexion_positive
-from gaitdisc.ingest.per_body_mass import per_kg_findings
-from gaitdisc.ingest.plausible import without_frozen, without_impossible
+from gaitdisc.ingest.plausible import with_flexion_positive, without_frozen, without_impossible
+from gaitdisc.ingest.stated_units import per_kg_findings, plausible_unit
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.table import read_frame, read_table
 from gaitdisc.ingest.trc import read_trc

@@ -16,7 +16,7 @@ from gaitdisc.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.emg import enveloped
 from gaitdisc.statistics.band_limit_null import simulate_null
 
 Differentiated = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]

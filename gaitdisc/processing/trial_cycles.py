@@ -14,7 +14,7 @@ from gaitdisc.processing.step_events import StepEvents, trial_markers
 from gaitdisc.recording import Cycle, Recording, Trial
 from gaitdisc.recording.cycle import NAN
 from gaitdisc.recording.strides import interpolated
-from gaitdisc.signals.contact_force import RISE_N, loaded
+from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.direction import Direction, marker_position
 from gaitdisc.signals.strides import gap_reasons
 

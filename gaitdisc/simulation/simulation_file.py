@@ -11,12 +11,12 @@ from typing import Any
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.regular_file import check_regular
-from gaitdisc.simulation.delay_check import refuse_delays
-from gaitdisc.simulation.observed_units import refuse_units
+from gaitdisc.simulation.delays import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes

@@ -12,9 +12,8 @@ from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import JOINTS, MUSCLES
 from gaitdisc.cohort.walk import QUICK_HZ
 from gaitdisc.signals.channel_quality import channel_findings
-from gaitdisc.signals.contact_force import force_contacts
-from gaitdisc.signals.emg_quality import emg_findings
-from gaitdisc.signals.envelope import ENVELOPE_HZ, enveloped
+from gaitdisc.signals.contacts import force_contacts
+from gaitdisc.signals.emg import ENVELOPE_HZ, emg_findings, enveloped
 
 
 @pytest.fixture(scope="module")
