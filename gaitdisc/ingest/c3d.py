@@ -127,7 +127,8 @@ class C3DReader:
             answer, arrays = self.process.read(ReadRequest.of_size(str(path), reader, counts, header.size))
             if "said" not in answer:
                 break
-            said[reader] = _in_words(answer["said"], path)
+            # on one line, without the folder, which may name a person
+            said[reader] = " ".join(answer["said"].replace(str(path), path.name).split())[:200].rstrip(".")
         else:
             raise ReadError(
                 f"{header.file} promises {layout.frames} frames, {layout.points} points and "
@@ -236,8 +237,3 @@ def _all_labels(parameters: C3DParameters, layout: C3DLayout) -> list[str]:
         *(one.description for one in analog),
         *point_names(parameters, layout.points),
     ]
-
-
-def _in_words(said: str, path: Path) -> str:
-    """Show what a reader said on one line, without the folder, which may name a person."""
-    return " ".join(said.replace(str(path), path.name).split())[:200].rstrip(".")

@@ -156,7 +156,8 @@ def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], 
             mapped = labels.name(label)
             known = named_channel(mapped) if mapped else vocabulary().named(label)
             name = known.name if known is not None else label
-            side = known.side if known is not None else _side(names[point])
+            own = re.match(r"([LR])[A-Z]", names[point])
+            side = known.side if known is not None else own[1].lower() if own else ""
             channels.append(Channel(name, quantity, inner, side))
     findings += _magnitude(values, kind, unit, file)
     return (values, tuple(channels)), findings
@@ -199,11 +200,6 @@ def _columns(points: list[int]) -> slice | NDArray[np.intp]:
     return (3 * np.array(points, dtype=np.intp)[:, None] + np.arange(3)).ravel()
 
 
-def _side(name: str) -> str:
-    found = re.match(r"([LR])[A-Z]", name)
-    return found[1].lower() if found else ""
-
-
 def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, source: Source) -> Recording | None:
     """Origin [m] and axes of each segment, `<segment>.x` to `.z` and `<segment>.r11` to `.r33`; None without any.
 
@@ -231,18 +227,13 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
     cells = decoded(raw, 4, header.processor).astype(float).reshape(frames, used, NUMBERS)
     poses = cells[:, :, :16].reshape(frames, used, 4, 4).swapaxes(2, 3)
     poses[cells[:, :, 16] < 0] = np.nan
-    names = _names(parameters, used)
+    names = [without_prefix(label) for label in parameters.texts("ROTATION", "LABELS")[:used]]
+    names += [f"segment_{number}" for number in range(len(names) + 1, used + 1)]
     rate_hz = parameters.number("ROTATION", "RATE") or ratio * (parameters.number("POINT", "RATE") or header.rate_hz)
     unit, _ = length_unit(parameters, poses[:, :, :3, 3].reshape(frames, -1), header.file)
     columns, channels = [], []
-    for place, name in enumerate(names):
+    for place, name in enumerate(re.sub(r"(?i)_4x4$", "", name) for name in names):
         columns += [convert(poses[:, place, :3, 3], unit, "m"), poses[:, place, :3, :3].reshape(frames, 9)]
         channels += [Channel(f"{name}.{axis}", "translation", "m") for axis in AXES]
         channels += [Channel(f"{name}.{cell}", "signal", "1") for cell in CELLS]
     return Recording(np.arange(frames) / rate_hz, np.hstack(columns), tuple(channels), source=source)
-
-
-def _names(parameters: C3DParameters, used: int) -> list[str]:
-    labels = [without_prefix(label) for label in parameters.texts("ROTATION", "LABELS")[:used]]
-    labels += [f"segment_{number}" for number in range(len(labels) + 1, used + 1)]
-    return [re.sub(r"(?i)_4x4$", "", label) for label in labels]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
+from gaitdisc.recording import Finding
 
 MISSING = ("", "nan", "NaN", "NAN", "-nan", "-nan(ind)", "nan(ind)", "1.#QNAN", "-1.#IND", "1.#IND")
 _NUMBER = re.compile(r"[-+]?\d*(?:[.,](\d*))?(?:[eEdD]([-+]?\d+))?")
@@ -131,6 +132,27 @@ def _numbers_cell_by_cell(
                     "Correct the cell; leave it blank or write nan where nothing was measured.",
                 )
     return values
+
+
+def check_counts(cells: Cells, file: str, *counts: tuple[str, Sequence[int], int]) -> list[Finding]:
+    """Refuse a file with fewer rows than its header claims; report other counts that are wrong.
+
+    counts each (str, sequence of int, int): what is counted, the header's counts of it, how many are there; rows first
+    """
+    kind, claimed, there = counts[0]
+    if claimed and there < max(claimed):
+        raise ReadError(
+            f"{file} should have {max(claimed)} {kind}{' of numbers' * (kind == 'rows')}, as its header says",
+            f"it ends after {there}, at line {cells.lines[-1]}",
+            "The file was cut: copy or export it again.",
+        )
+    findings = []
+    for kind, claimed, there in counts:
+        wrong = sorted({count for count in claimed if count != there})
+        if wrong:
+            what = f"the header claims {' and '.join(map(str, wrong))} {kind}, {there} are there"
+            findings.append(Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse it"))
+    return findings
 
 
 def printed_digit(texts: Iterable[str]) -> float:

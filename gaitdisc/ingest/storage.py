@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import QUANTITIES, Channel, folded_label, nearest_word, path_label, side_of, vocabulary
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Cells, Form, even_time, parsed_cells, printed_digit
+from gaitdisc.ingest.cells import Cells, Form, check_counts, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import Column, check_written_names, column_in_unit, mapped_label, named_channel, split_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
@@ -57,7 +57,8 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     columns = storage_columns(header, raw.name, channels)
     form = Form(raw.name, header.separator)
     cells = parsed_cells(lines[header.body_line - 1 :], header.labels, header.body_line, form)
-    findings = [*_check_counts(header, cells, raw.name), *naming_findings(columns, raw.name)]
+    claims = ("rows", header.rows, len(cells.values)), ("columns", header.columns, len(header.labels))
+    findings = [*check_counts(cells, raw.name, *claims), *naming_findings(columns, raw.name)]
     _check_last_cell(lines, cells, raw.name)
     time = even_time(cells.values[:, 0], printed_digit(cells.first_column), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
@@ -94,23 +95,6 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
     table = np.column_stack([recording.time, recording.values])
     rows = ("\t".join(map(repr, row)) for row in table.tolist())
     return write_whole(path, "\n".join([*header, *rows]) + "\n")
-
-
-def _check_counts(header: StorageHeader, cells: Cells, file: str) -> list[Finding]:
-    rows = len(cells.values)
-    if header.rows and rows < max(header.rows):
-        raise ReadError(
-            f"{file} should have {max(header.rows)} rows of numbers, as its header says",
-            f"it ends after {rows}, at line {cells.lines[-1]}",
-            "The file was cut: copy or export it again.",
-        )
-    findings = []
-    for kind, claimed, there in (("rows", header.rows, rows), ("columns", header.columns, len(header.labels))):
-        wrong = sorted({count for count in claimed if count != there})
-        if wrong:
-            what = f"the header claims {' and '.join(map(str, wrong))} {kind}, {there} are there"
-            findings.append(Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse it"))
-    return findings
 
 
 def _check_last_cell(lines: Sequence[str], cells: Cells, file: str) -> None:
@@ -185,9 +169,10 @@ def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
     """
     end = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
     if end is None:
+        nearest = nearest_word("endheader", [line.strip() for line in lines[:60] if len(line) < 30])
         raise ReadError(
             f"{file} should be an OpenSim storage file, whose header ends with the line 'endheader'",
-            f"none of its {len(lines)} lines is that" + _near_endheader(lines),
+            f"none of its {len(lines)} lines is that" + (f", the nearest is {nearest!r}" if nearest else ""),
             "Export it again from OpenSim, or rename it to .csv if it is a plain table.",
         )
     keys = list(_keys(lines[:end], file))
@@ -205,6 +190,7 @@ def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
     if len(labels) < 2 or not all(names):
         blank = f"label {names.index('') + 1} is blank" if "" in names else "there is time alone"
         raise ReadError(f"{file} needs a label for every column", f"line {at + 1}: {blank}", "Name the column.")
+    own = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
     return StorageHeader(
         title=next((line.strip() for line in lines[:end] if line.strip()), ""),
         labels=tuple(labels),
@@ -212,7 +198,7 @@ def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
         degrees=next((bool(value) for key, value in keys if key == "indegrees"), None),
         rows=tuple(int(value) for key, value in keys if key in _ROWS),
         columns=tuple(int(value) for key, value in keys if key in _COLUMNS),
-        own=_own_columns(lines[:end]),
+        own={int(m[1]): (m[2], m[3], m[4].lower()) for m in own if m},
         separator=separator,
     )
 
@@ -241,16 +227,6 @@ def _keys(lines: Sequence[str], file: str):
             yield key, _YES_NO[value.lower()]
 
 
-def _own_columns(lines: Sequence[str]) -> dict[int, tuple[str, str, str]]:
-    found = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines)
-    return {int(m[1]): (m[2], m[3], m[4].lower()) for m in found if m}
-
-
-def _near_endheader(lines: Sequence[str]) -> str:
-    nearest = nearest_word("endheader", [line.strip() for line in lines[:60] if len(line) < 30])
-    return f", the nearest is {nearest!r}" if nearest else ""
-
-
 def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str] | None = None) -> list[Column]:
     """Columns of a storage file, without time.
 
@@ -264,7 +240,10 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     >>> storage_columns(header, "a.sto")[0].channel.name
     'hip_flexion_r'
     """
-    of_emg = _holds_emg(header, file)
+    words = folded_label(header.title) + " " + folded_label(file)
+    known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]
+    muscles = sum(channel is not None and channel.quantity == "emg" for channel in known)
+    of_emg = "emg" in words or "electromyo" in words or muscles > len(known) / 2
     return [
         _column(header, number, label, (file, of_emg), channels) for number, label in enumerate(header.labels) if number
     ]
@@ -374,11 +353,3 @@ def _ground(label: str, name: str, found: re.Match[str]) -> Column:
         return Column(label, Channel(name, quantity, "N", side), "N", guess)
     channel = Channel(name if "ground" in name.lower() else f"ground_{name}", "moment", "N m", side)
     return Column(label, channel, "N m", guess)
-
-
-def _holds_emg(header: StorageHeader, file: str) -> bool:
-    words = folded_label(header.title) + " " + folded_label(file)
-    if "emg" in words or "electromyo" in words:
-        return True
-    known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]
-    return sum(channel is not None and channel.quantity == "emg" for channel in known) > len(known) / 2

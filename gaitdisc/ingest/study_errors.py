@@ -43,7 +43,11 @@ _PAIR = re.compile(rf"\s*({_DOTTED})\s*=")
 
 def schema_error(error: ValidationError, model: type[BaseModel], text: str, file: str) -> SchemaError:
     """Sentence for the first of pydantic's findings, with the count of the others."""
-    findings = [each for each in error.errors(include_url=False) if not _follows(each)]
+    findings = [
+        each
+        for each in error.errors(include_url=False)  # a list is called too short, too, when an entry of it was refused
+        if each["type"] != "too_short" or each.get("ctx", {})["actual_length"] >= len(each["input"])
+    ]
     first = min(findings, key=lambda each: (each["type"] != "extra_forbidden", line_of(text, _place(each)) or 0))
     place = _place(first)
     line = line_of(text, place)
@@ -52,11 +56,6 @@ def schema_error(error: ValidationError, model: type[BaseModel], text: str, file
     if len(findings) > 1:
         remedy += f" ({len(findings) - 1} more to correct after this.)"
     return SchemaError(f"{where}: {needed}", found, remedy)
-
-
-def _follows(finding: Mapping[str, Any]) -> bool:
-    """Whether a list is called too short only because an entry of it was refused."""
-    return finding["type"] == "too_short" and finding["ctx"]["actual_length"] < len(finding["input"])
 
 
 def _place(finding: Mapping[str, Any]) -> Place:

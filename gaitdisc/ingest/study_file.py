@@ -168,7 +168,9 @@ def grown_study(study: Study, draft: Study) -> Study:
         own = [
             owner[place] for trial in drafted.trials for file in trial.files if (place := _place(draft, file)) in owner
         ]
-        name = own[0] if own else _free(drafted.id, people)
+        # the pseudonym of a draft, or the next that nobody has
+        free = (name for name in (drafted.id, *(f"P{k:02d}" for k in range(1, 10_000))) if name not in people)
+        name = own[0] if own else next(free)
         new = [trial for trial in drafted.trials if any(_place(draft, file) not in owner for file in trial.files)]
         if new:
             people[name] = _grown(people.get(name) or Participant(id=name), drafted, new, study)
@@ -200,11 +202,6 @@ def _grown(person: Participant, drafted: Participant, new: list[PlannedTrial], s
         trials[place] = trials[place].model_copy(update={"files": (*trials[place].files, *more)})
     measures = {name: getattr(person, name) or getattr(drafted, name) for name in MEASURES}
     return person.model_copy(update={"trials": tuple(trials), **measures})
-
-
-def _free(wanted: str, people: Mapping[str, Participant]) -> str:
-    """The pseudonym of a draft, or the next that nobody has."""
-    return next(name for name in (wanted, *(f"P{k:02d}" for k in range(1, 10_000))) if name not in people)
 
 
 def _place(study: Study, file: str) -> Path:

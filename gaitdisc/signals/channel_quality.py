@@ -106,8 +106,9 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
     channel, x = recording.channels[column], recording.values[:, column]
     places = len(runs(marks))
     seconds = marks.sum() / recording.rate_hz
+    stops = " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))
     words = {
-        "clipped": (f"stops at {_stops(x, marks)} {channel.unit}", "the peaks, which are lost"),
+        "clipped": (f"stops at {stops} {channel.unit}", "the peaks, which are lost"),
         "jump": ("leaps from one sample to the next", "velocity and acceleration there"),
     }
     what, spoils = words[kind]
@@ -121,10 +122,6 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
         channel.name,
         spans_s(recording.time, marks),
     )
-
-
-def _stops(x: NDArray[np.float64], marks: NDArray[np.bool_]) -> str:
-    return " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))
 
 
 def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:

@@ -65,17 +65,15 @@ def marker_contacts(
                 f"{markers.source.file or 'the recording'}: {swing:.3f} m along the direction of walking",
                 "Check the direction, the marker's name and that the trial is walking.",
             )
-        times = _peak_times(markers.time, ahead, FEWEST_SWING * swing)
+        step = (markers.time[-1] - markers.time[0]) / (len(markers.time) - 1)
+        known = np.where(np.isfinite(ahead), ahead, -np.inf)
+        peaks, _ = find_peaks(known, distance=max(1, round(SHORTEST_STRIDE_S / step)))
+        swings = [peak for peak in peaks if _prominent(ahead, peak, FEWEST_SWING * swing)]
+        times = np.array([markers.time[peak] + step * _vertex(ahead, peak) for peak in swings])
         times = _of_each_step(markers.time, swung, direction, times)
         note = f"{heel} farthest in front of {', '.join(pelvis)}; {direction.how}"
         found[side] = Contacts(times, side, "markers", note=note)
     return found
-
-
-def _peak_times(time: NDArray[np.float64], x: NDArray[np.float64], prominence: float) -> NDArray[np.float64]:
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    peaks, _ = find_peaks(np.where(np.isfinite(x), x, -np.inf), distance=max(1, round(SHORTEST_STRIDE_S / step)))
-    return np.array([time[p] + step * _vertex(x, p) for p in peaks if _prominent(x, p, prominence)])
 
 
 def _of_each_step(

@@ -110,7 +110,8 @@ class _Graph:
         return self._two(symbol, *arguments)
 
     def _power(self, base: int, exponent: int) -> int:
-        value = self._value(exponent)
+        kind, value, *_ = self.parts[exponent]
+        value = value if kind == "constant" else None
         if value is None or value != int(value) or not 1 <= abs(value) <= _MOST_PRODUCTS:
             return self._two("**", base, exponent)
         power, rest, square = None, int(abs(value)), base
@@ -121,10 +122,6 @@ class _Graph:
             square = self._two("*", square, square) if rest else square
         assert power is not None  # the exponent is at least 1
         return power if value > 0 else self._two("/", self.constant(1.0), power)
-
-    def _value(self, node: int) -> float | None:
-        part = self.parts[node]
-        return part[1] if part[0] == "constant" else None
 
     def _two(self, symbol: str, a: int, b: int | None = None) -> int:
         b = a if b is None else b
