@@ -23,9 +23,8 @@ from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.measured_table import read_measured
-from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.simulation_file import bundled, read_simulation
 from gaitdisc.whole_file import write_whole
 
 

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
-from gaitdisc.ingest.c3d_events import file_events
 from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
-from gaitdisc.ingest.c3d_labels import LabelMap
+from gaitdisc.ingest.c3d_labels import LabelMap, file_events
 from gaitdisc.ingest.c3d_layout import C3DLayout, check_common_scales, expected_layout, unscaled_channels
 from gaitdisc.ingest.c3d_parameters import C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, file_segments, point_names, point_streams

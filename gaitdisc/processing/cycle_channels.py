@@ -14,9 +14,9 @@ from gaitdisc.processing.pelvis_and_foot import with_pelvis_and_foot
 from gaitdisc.processing.process import is_raw
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.channel_quality import plateau_marked
 from gaitdisc.signals.emg import emg_findings, enveloped
 from gaitdisc.signals.gaps import filled
-from gaitdisc.signals.plateaus import plateau_marked
 from gaitdisc.signals.spikes import without_spikes
 
 FORCE_HZ = 20.0

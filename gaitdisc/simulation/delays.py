@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.simulation.at_points import at_points
 from gaitdisc.simulation.expression import Name, Tree, delays, names, parsed, written
-from gaitdisc.simulation.program import compiled_program
+from gaitdisc.simulation.program import at_points, compiled_program
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
