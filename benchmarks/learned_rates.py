@@ -38,8 +38,8 @@ from gaitdisc.chapters.discrepancy.methods import MethodSettings
 from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.chapters.discrepancy.system import Rates, System, system_of
 from gaitdisc.model import Model
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.simulation_file import bundled
 
 TOLERANCE = 1e-8  # of solve_ivp, RK45: its own default of 1e-3 is no match for what is learned
 TOGETHER_S = 3.0

@@ -48,9 +48,9 @@ if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction as Reconstruction
     from gaitdisc.results.response_run import ResponseRun as ResponseRun
     from gaitdisc.signals.contacts import Contacts as Contacts
-    from gaitdisc.simulation.bundled import bundled as bundled_simulation
     from gaitdisc.simulation.parts import Term as Term
     from gaitdisc.simulation.simulation import Simulation as Simulation
+    from gaitdisc.simulation.simulation_file import bundled as bundled_simulation
     from gaitdisc.simulation.simulation_file import read_simulation as read_simulation
     from gaitdisc.simulation.writing import write_simulation as write_simulation
     from gaitdisc.statistics.holm_sidak import holm_sidak as holm_sidak
@@ -94,7 +94,7 @@ _HOME = {
     "Term": ("simulation.parts", "Term"),
     "read_simulation": ("simulation.simulation_file", "read_simulation"),
     "write_simulation": ("simulation.writing", "write_simulation"),
-    "bundled_simulation": ("simulation.bundled", "bundled"),
+    "bundled_simulation": ("simulation.simulation_file", "bundled"),
     "simulation_from_function": ("library.functions", "simulation_from_function"),
     "simulate": ("library.simulating", "simulate"),
     "discover": ("library.discovering", "discover"),

@@ -24,7 +24,7 @@ from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import MUSCLES, Spring
 from gaitdisc.cohort.walk import TrueWalk, walked
-from gaitdisc.signals.contact_force import force_contacts
+from gaitdisc.signals.contacts import force_contacts
 
 WALK_S = 120.0
 ON = 0.25  # of the way from the envelope's least to its largest

@@ -21,7 +21,7 @@ import pandas as pd
 from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.signals.plateaus import plateaus
+from gaitdisc.signals.channel_quality import plateaus
 from gaitdisc.signals.walking import verify_walking
 
 Row = tuple[str, str, str]

@@ -19,7 +19,7 @@ from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial,
 from gaitdisc.ingest.study_file import load_study, write_study
 from gaitdisc.ingest.table import write_table
 from gaitdisc.processing.process import processed
-from gaitdisc.signals.contact_force import force_contacts
+from gaitdisc.signals.contacts import force_contacts
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
 

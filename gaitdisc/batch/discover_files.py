@@ -17,7 +17,7 @@ from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.errors import SamplingError
-from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.results.discovery import DEVICE, SIMULATION, Discovery
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.even_time import MILLISECONDS

@@ -28,7 +28,7 @@ from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_files import TrackedMotion
 from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
 from gaitdisc.engines.written import WrittenModel, written_model
-from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import TRACKED, Discovery
 from gaitdisc.results.effect_words import amount

@@ -15,8 +15,7 @@ from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.emg_quality import emg_findings
-from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.emg import emg_findings, enveloped
 from gaitdisc.signals.strides import cut_strides
 
 STATES = "states"

@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 
-from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial
 from gaitdisc.results.provenance import code_sha256

@@ -66,9 +66,8 @@ def watch(
 
 def _grown(file: Path, recordings: Path, files: list[Path], looked: Looked) -> list[str]:
     """Write the study with what came; what cannot be read yet is not in it, and said in the notes."""
-    from gaitdisc.ingest.grown_study import grown_study
     from gaitdisc.ingest.new_study import found_study
-    from gaitdisc.ingest.study_file import load_study, write_study
+    from gaitdisc.ingest.study_file import grown_study, load_study, write_study
 
     draft, notes = found_study(recordings, file.parent, files, looked)
     if not file.is_file():

@@ -10,9 +10,8 @@ from dataclasses import dataclass, field
 from gaitdisc.discovery.catalogue import Shape, with_names
 from gaitdisc.discovery.effect_units import unit_of_state
 from gaitdisc.discovery.places import Place
-from gaitdisc.simulation.expression import Tree, parsed
+from gaitdisc.simulation.expression import Tree, parsed, substituted, written
 from gaitdisc.simulation.parts import Parameter, State, Term
-from gaitdisc.simulation.rewriting import substituted, written
 from gaitdisc.simulation.simulation import Simulation
 
 # verdict -> the kind of place it names

@@ -19,7 +19,7 @@ _WORD = re.compile(r"(.*?)\^?(-?\d+)?")
 def places_unit(simulation: Simulation, kind: str, place: str) -> str:
     """Return the unit of what is added at a port, or to the derivative of a state.
 
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> places_unit(bundled("ankle"), "port", "ankle_moment")
     'N m'
     """
@@ -51,7 +51,7 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
 def unit_of_state(simulation: Simulation, rate: str) -> str:
     """Return the unit of a state whose time derivative is an expression.
 
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> unit_of_state(bundled("ankle"), "omega - abs(omega)*z/0.1")
     'rad'
     """
@@ -77,7 +77,7 @@ def channel_unit(expression: str, units: Mapping[str, str]) -> str:
 def unit_of_channel(simulation: Simulation, channel: str) -> str:
     """Return the unit of an observed channel: the file's, or what follows from its expression.
 
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> unit_of_channel(bundled("ankle"), "theta")
     'rad'
     """

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.observation_map import RANK, ObservationMap
 from gaitdisc.discovery.segments import Segments
-from gaitdisc.signals.local_polynomial import savgol_filter
+from gaitdisc.signals.derivatives import savgol_filter
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation

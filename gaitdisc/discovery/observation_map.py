@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.simulation.at_points import at_points, leaf_columns
 from gaitdisc.simulation.compiled_simulation import Compiled
+from gaitdisc.simulation.program import at_points, leaf_columns
 
 TURNS = 30
 HALVINGS = 6

@@ -60,7 +60,7 @@ def prior_of(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Pri
 
     simulation: a parameter with `low` and `high` has a prior; one with a single bound or none is exact
 
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> prior = prior_of(bundled("ankle"), frozenset(["b"]))
     >>> prior.names, prior.sd.round(3).tolist()
     (('inertia', 'k'), [0.049, 19.5])

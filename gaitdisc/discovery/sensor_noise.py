@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.signals.local_polynomial import savgol_filter
+from gaitdisc.signals.derivatives import savgol_filter
 
 WINDOW, ORDER = 7, 3  # samples, and the order of the polynomial through them
 FEWEST = 12  # samples of a trial

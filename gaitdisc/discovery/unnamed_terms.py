@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.places import Place, kinematic_rates
-from gaitdisc.simulation.expression import Tree, parsed
-from gaitdisc.simulation.rewriting import substituted, written
+from gaitdisc.simulation.expression import Tree, parsed, substituted, written
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 

@@ -15,8 +15,7 @@ from gaitdisc.engines.tracked_mapping import Tracked, loads_of, xml_of
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
 from gaitdisc.ingest.cells import Form, parsed_cells
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.storage import read_storage
-from gaitdisc.ingest.storage_header import parsed_header
+from gaitdisc.ingest.storage import parsed_header, read_storage
 from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated

@@ -12,17 +12,13 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
-from gaitdisc.ingest.c3d_events import file_events
-from gaitdisc.ingest.c3d_header import C3DHeader, read_c3d_header
 from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
-from gaitdisc.ingest.c3d_labels import LabelMap
-from gaitdisc.ingest.c3d_layout import C3DLayout, expected_layout
-from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
-from gaitdisc.ingest.c3d_points import Streams, point_names, point_streams
-from gaitdisc.ingest.c3d_rotations import file_segments
-from gaitdisc.ingest.c3d_scales import check_common_scales, unscaled_channels
-from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.c3d_labels import LabelMap, file_events
+from gaitdisc.ingest.c3d_layout import C3DLayout, check_common_scales, expected_layout, unscaled_channels
+from gaitdisc.ingest.c3d_parameters import C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.c3d_points import Streams, file_segments, point_names, point_streams
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 
@@ -130,7 +126,8 @@ class C3DReader:
             answer, arrays = self.process.read(ReadRequest.of_size(str(path), reader, counts, header.size))
             if "said" not in answer:
                 break
-            said[reader] = _in_words(answer["said"], path)
+            # on one line, without the folder, which may name a person
+            said[reader] = " ".join(answer["said"].replace(str(path), path.name).split())[:200].rstrip(".")
         else:
             raise ReadError(
                 f"{header.file} promises {layout.frames} frames, {layout.points} points and "
@@ -239,8 +236,3 @@ def _all_labels(parameters: C3DParameters, layout: C3DLayout) -> list[str]:
         *(one.description for one in analog),
         *point_names(parameters, layout.points),
     ]
-
-
-def _in_words(said: str, path: Path) -> str:
-    """Show what a reader said on one line, without the folder, which may name a person."""
-    return " ".join(said.replace(str(path), path.name).split())[:200].rstrip(".")

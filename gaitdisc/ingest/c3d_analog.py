@@ -128,7 +128,9 @@ def analog_streams(
     for stream in ("emg", "signals", "forces"):
         group = [entry for entry in chosen if entry[0] == stream]
         if group:
-            values = rows[:, _side_by_side([one.number - 1 for _, one, _, _ in group])]
+            columns = [one.number - 1 for _, one, _, _ in group]
+            span = range(columns[0], columns[-1] + 1)  # a slice copies nothing
+            values = rows[:, slice(span.start, span.stop) if columns == list(span) else columns]
             for column, (_, _, channel, unit) in enumerate(group):
                 if unit != channel.unit:
                     values[:, column] = convert(values[:, column], unit, channel.unit)
@@ -191,11 +193,6 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
 def _listed(channels: list[AnalogLabel]) -> str:
     shown = ", ".join(f"#{one.number} {one.label}".strip() for one in channels[:4])
     return shown + (", ..." if len(channels) > 4 else "")
-
-
-def _side_by_side(columns: list[int]) -> list[int] | slice:
-    """Slice, which copies nothing, where columns stand side by side."""
-    return slice(columns[0], columns[-1] + 1) if columns == list(range(columns[0], columns[-1] + 1)) else columns
 
 
 def _slug(label: str) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from gaitdisc.ingest.c3d_header import read_c3d_header
 from gaitdisc.ingest.c3d_kinetics import body_mass
-from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
+from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.recording.body_measures import LENGTHS_M, BodyMeasures
 
 GROUPS = ("PROCESSING", "SUBJECTS", "SUBJECT")

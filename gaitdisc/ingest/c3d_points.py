@@ -1,24 +1,27 @@
-"""Points of a C3D file: markers in metres, and what a model put among them: angles, forces, moments, powers."""
+"""Points of a C3D file: markers in metres, what a model put among them, and poses of segments."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.errors import UnitError
+from gaitdisc.errors import ReadError, UnitError
 from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, without_prefix
-from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, decoded
 from gaitdisc.ingest.columns import named_channel
-from gaitdisc.ingest.marker_unit import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
-from gaitdisc.recording import Finding
+from gaitdisc.ingest.stated_units import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
+from gaitdisc.recording import Finding, Recording, Source
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
 Streams = dict[str, tuple[NDArray[np.float64], tuple[Channel, ...]]]
 AXES = "xyz"
+NUMBERS = 17  # 4 x 4, first index fastest, and how sure it is; negative where the pose is not known
+CELLS = tuple(f"r{row}{column}" for row in "123" for column in "123")
 
 
 @dataclass(frozen=True)
@@ -153,7 +156,8 @@ def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], 
             mapped = labels.name(label)
             known = named_channel(mapped) if mapped else vocabulary().named(label)
             name = known.name if known is not None else label
-            side = known.side if known is not None else _side(names[point])
+            own = re.match(r"([LR])[A-Z]", names[point])
+            side = known.side if known is not None else own[1].lower() if own else ""
             channels.append(Channel(name, quantity, inner, side))
     findings += _magnitude(values, kind, unit, file)
     return (values, tuple(channels)), findings
@@ -196,6 +200,40 @@ def _columns(points: list[int]) -> slice | NDArray[np.intp]:
     return (3 * np.array(points, dtype=np.intp)[:, None] + np.arange(3)).ravel()
 
 
-def _side(name: str) -> str:
-    found = re.match(r"([LR])[A-Z]", name)
-    return found[1].lower() if found else ""
+def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, source: Source) -> Recording | None:
+    """Origin [m] and axes of each segment, `<segment>.x` to `.z` and `<segment>.r11` to `.r33`; None without any.
+
+    Axes are as the file has them, the columns of `r`, in the laboratory's frame.
+
+    Source: ROTATION data type, c-motion.com: USED, RATIO, DATA_START, LABELS; 17 floats for each segment and frame.
+    """
+    used = parameters.count("ROTATION", "USED") or 0
+    start = parameters.count("ROTATION", "DATA_START") or 0
+    if not used or not start:
+        return None
+    ratio = parameters.count("ROTATION", "RATIO") or 1
+    frames = (parameters.count("POINT", "FRAMES") or header.frames) * ratio
+    size = 4 * NUMBERS * used * frames
+    first = (start - 1) * BLOCK
+    if first + size > header.size or not frames:
+        raise ReadError(
+            f"{header.file} promises {frames} frames of {used} segments in ROTATION",
+            f"{max(header.size - first, 0)} of {size} bytes follow block {start}",
+            "Export the trial again; this copy is cut off.",
+        )
+    with path.open("rb") as file:
+        file.seek(first)
+        raw = file.read(size)
+    cells = decoded(raw, 4, header.processor).astype(float).reshape(frames, used, NUMBERS)
+    poses = cells[:, :, :16].reshape(frames, used, 4, 4).swapaxes(2, 3)
+    poses[cells[:, :, 16] < 0] = np.nan
+    names = [without_prefix(label) for label in parameters.texts("ROTATION", "LABELS")[:used]]
+    names += [f"segment_{number}" for number in range(len(names) + 1, used + 1)]
+    rate_hz = parameters.number("ROTATION", "RATE") or ratio * (parameters.number("POINT", "RATE") or header.rate_hz)
+    unit, _ = length_unit(parameters, poses[:, :, :3, 3].reshape(frames, -1), header.file)
+    columns, channels = [], []
+    for place, name in enumerate(re.sub(r"(?i)_4x4$", "", name) for name in names):
+        columns += [convert(poses[:, place, :3, 3], unit, "m"), poses[:, place, :3, :3].reshape(frames, 9)]
+        channels += [Channel(f"{name}.{axis}", "translation", "m") for axis in AXES]
+        channels += [Channel(f"{name}.{cell}", "signal", "1") for cell in CELLS]
+    return Recording(np.arange(frames) / rate_hz, np.hstack(columns), tuple(channels), source=source)

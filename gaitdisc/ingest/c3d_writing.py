@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.columns import check_written_names
-from gaitdisc.ingest.force_plate import ForcePlate
+from gaitdisc.ingest.force_plates import ForcePlate
 from gaitdisc.recording import Recording, Surface
 from gaitdisc.whole_file import write_whole
 

@@ -112,7 +112,9 @@ def found_study(
             f"none there can be read{unread}",
             "Name the folder that holds them.",
         )
-    found = _in_one_group(found)
+    groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
+    alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
+    found = [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]  # the only one
     conditions, called = named_conditions(found, notes)
     sessions = _sessions(found)
     home = Path(home) if home is not None else folder
@@ -173,13 +175,6 @@ def _bodies(
     if said:
         notes.append(said)
     return found
-
-
-def _in_one_group(found: Sequence[FoundTrial]) -> list[FoundTrial]:
-    """Trials of no group are those of the only group that the person's word has."""
-    groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
-    alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
-    return [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]
 
 
 def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked: Looked) -> list[FoundTrial]:

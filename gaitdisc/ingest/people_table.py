@@ -28,15 +28,8 @@ OLDEST_YEARS = 120
 Sex = Literal["", "f", "m"]
 _MISSING = ("", "n/a", "na", "nan", "none", "null", "-", "unknown")
 _SEX: dict[str, Sex] = {
-    "f": "f",
-    "female": "f",
-    "woman": "f",
-    "girl": "f",
-    "w": "f",
-    "m": "m",
-    "male": "m",
-    "man": "m",
-    "boy": "m",
+    **dict.fromkeys(("f", "female", "woman", "girl", "w"), "f"),
+    **dict.fromkeys(("m", "male", "man", "boy"), "m"),
 }
 _METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
 
@@ -91,7 +84,7 @@ def person_key(word: str) -> str:
 
 
 def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measured]:
-    rows = list(csv.reader(lines, delimiter=_separator(lines[0])))
+    rows = list(csv.reader(lines, delimiter=max("\t;,", key=lines[0].count)))
     labels = [unquoted(label.strip()) for label in rows[0]]
     at = {
         key: next((i for word in words for i, label in enumerate(labels) if _folded(label) == word), None)
@@ -108,11 +101,12 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
         cells = {key: row[i].strip() if i is not None and i < len(row) else "" for key, i in at.items()}
         if cells["id"]:
             where = f"{file}, line {number}"
+            age = _within(cells["age"], "age", (1, OLDEST_YEARS, "years"), where, notes)
             one = Measured(
-                _mass(cells["mass"], where, notes),
+                _within(cells["mass"], "body mass", (*MASS_KG, "kg"), where, notes),
                 _height(cells["height"], labels[at["height"]] if at["height"] is not None else "", where, notes),
                 _sex(cells["sex"], where, notes),
-                _age(cells["age"], where, notes),
+                None if age is None else int(age),
             )
             found.setdefault(person_key(unquoted(cells["id"])), []).append(one)
     return {word: _agreed(rows, word, file, notes) for word, rows in found.items()}
@@ -127,10 +121,6 @@ def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) ->
         if len(said) > 1:
             notes.append(f"{file}: {name} of {word!r} differs between rows ({said[0]}, {said[1]}); not used")
     return Measured(**values)  # type: ignore[arg-type]
-
-
-def _separator(header: str) -> str:
-    return max("\t;,", key=header.count)
 
 
 def _folded(label: str) -> str:
@@ -153,11 +143,12 @@ def _number(text: str, where: str, what: str, notes: list[str]) -> float | None:
     return value
 
 
-def _mass(text: str, where: str, notes: list[str]) -> float | None:
-    value = _number(text, where, "body mass", notes)
-    if value is None or MASS_KG[0] <= value <= MASS_KG[1]:
+def _within(text: str, what: str, limits: tuple[float, float, str], where: str, notes: list[str]) -> float | None:
+    value, (low, high, unit) = _number(text, where, what, notes), limits
+    if value is None or low <= value <= high:
         return value
-    notes.append(f"{where}: a body mass of {value:g} is none of {MASS_KG[0]:g} to {MASS_KG[1]:g} kg; not used")
+    article = "an" if what[0] in "ae" else "a"
+    notes.append(f"{where}: {article} {what} of {value:g} is none of {low:g} to {high:g} {unit}; not used")
     return None
 
 
@@ -173,14 +164,6 @@ def _height(text: str, label: str, where: str, notes: list[str]) -> float | None
             return round(value * factor, 4)
     unit = stated[1] if stated else "m, cm or mm"
     notes.append(f"{where}: a stature of {value:g} {unit} is none of {low:g} to {high:g} m; not used")
-    return None
-
-
-def _age(text: str, where: str, notes: list[str]) -> int | None:
-    value = _number(text, where, "age", notes)
-    if value is None or 1 <= value <= OLDEST_YEARS:
-        return None if value is None else int(value)
-    notes.append(f"{where}: an age of {value:g} is none of 1 to {OLDEST_YEARS} years; not used")
     return None
 
 

@@ -11,13 +11,11 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
-from gaitdisc.ingest.angle_unit import plausible_unit
-from gaitdisc.ingest.array_trial import ENDINGS as ARRAYS
-from gaitdisc.ingest.array_trial import read_arrays
+from gaitdisc.ingest.array_file import ENDINGS as ARRAYS
+from gaitdisc.ingest.array_file import read_arrays
 from gaitdisc.ingest.columns import split_unit
-from gaitdisc.ingest.knee_sign import with_flexion_positive
-from gaitdisc.ingest.per_body_mass import per_kg_findings
-from gaitdisc.ingest.plausible import without_frozen, without_impossible
+from gaitdisc.ingest.plausible import with_flexion_positive, without_frozen, without_impossible
+from gaitdisc.ingest.stated_units import per_kg_findings, plausible_unit
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.table import read_frame, read_table
 from gaitdisc.ingest.trc import read_trc
@@ -115,7 +113,12 @@ def read_trial(
     surfaces = tuple(surface for one in parts for surface in one.surfaces)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition, surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
-    return _plausible_trial(trial if crop_s is None else _cropped(trial, *crop_s), begin_s)
+    trial = trial if crop_s is None else _cropped(trial, *crop_s)  # only what a crop leaves is checked
+    kept, turned = with_flexion_positive(trial.streams)
+    kept, still = without_frozen(kept)
+    kept, beyond = without_impossible(kept, begin_s)
+    found = (*trial.findings, *turned, *still, *beyond, *per_kg_findings(trial.streams))
+    return replace(trial, streams=kept, findings=found)
 
 
 def read_planned_trial(
@@ -200,15 +203,6 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
     )
 
 
-def _plausible_trial(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
-    """Trial with house signs and without impossible values; only what a crop leaves is checked."""
-    streams, turned = with_flexion_positive(trial.streams)
-    streams, still = without_frozen(streams)
-    streams, beyond = without_impossible(streams, begin_s)
-    found = (*trial.findings, *turned, *still, *beyond, *per_kg_findings(trial.streams))
-    return replace(trial, streams=streams, findings=found)
-
-
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
     there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
     there |= {channel for r in streams.values() for channel in r.names} | {"time"}
@@ -231,12 +225,8 @@ def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
             )
     events = tuple(event for event in trial.events if start_s <= event.time < end_s)
     if "kinematics" in streams:
-        _check_unit(streams["kinematics"])
+        kinematics = streams["kinematics"]  # angles stated in degrees may look like radians in what a crop leaves
+        angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.unit == "deg")
+        if angles.names:
+            plausible_unit(angles.time, angles.values, angles.names, "deg", kinematics.source.file)
     return replace(trial, streams=streams, events=events)
-
-
-def _check_unit(kinematics: Recording) -> None:
-    """Refuse angles stated in degrees that look like radians in what a crop leaves of them."""
-    angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.unit == "deg")
-    if angles.names:
-        plausible_unit(angles.time, angles.values, angles.names, "deg", kinematics.source.file)

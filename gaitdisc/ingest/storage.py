@@ -1,26 +1,43 @@
-"""OpenSim storage files (`.mot`, `.sto`): coordinates, ground forces, joint moments and EMG, read and written."""
+"""OpenSim storage files (`.mot`, `.sto`): coordinates, ground forces, joint moments and EMG, read and written.
+
+Headers are modern or of the old SIMM style, or both at once.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import QUANTITIES, Channel, folded_label, nearest_word, path_label, side_of, vocabulary
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.angle_unit import copied_coordinate_unit, plausible_unit
-from gaitdisc.ingest.cells import Cells, Form, parsed_cells
-from gaitdisc.ingest.clock import even_time, printed_digit
-from gaitdisc.ingest.columns import Column, check_written_names
+from gaitdisc.ingest.cells import Cells, Form, check_counts, even_time, parsed_cells, printed_digit
+from gaitdisc.ingest.columns import Column, check_written_names, column_in_unit, mapped_label, named_channel, split_unit
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.storage_columns import naming_findings, storage_columns
-from gaitdisc.ingest.storage_header import StorageHeader, parsed_header
+from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.whole_file import write_whole
+
+_YES_NO = {"yes": True, "y": True, "true": True, "1": True, "no": False, "n": False, "false": False, "0": False}
+_ROWS, _COLUMNS = ("nrows", "datarows"), ("ncolumns", "datacolumns")
+_OWN_COLUMN = re.compile(r"column\s+(\d+)\s*=\s*(\w+)\s*\[([^\]]*)\]\s*(r|l|)\s*", re.IGNORECASE)
+_GROUND = re.compile(r"(?:.*_)?(?:ground|grf|fp_?\d)\w*?_([vpm]?)([xyz])", re.IGNORECASE)
+_GROUND_WORD = re.compile(r"force|torque|moment", re.IGNORECASE)
+_RATES = {
+    "speeds": "/s",
+    "velocities": "/s",
+    "accelerations": "/s2",
+    "kinematics_u": "/s",  # what OpenSim's analyses write
+    "kinematics_dudt": "/s2",
+}
+# What OpenSim's analyses write of muscles under the names of the muscles, which elsewhere are those of EMG
+_OF_ACTUATORS = {"actuation_force": "N", "actuation_power": "W", "forcereporter": "N"}
+_RATE_WORD = {"/s": "speed", "/s2": "accel"}
 
 
 def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) -> Trial:
@@ -40,7 +57,8 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     columns = storage_columns(header, raw.name, channels)
     form = Form(raw.name, header.separator)
     cells = parsed_cells(lines[header.body_line - 1 :], header.labels, header.body_line, form)
-    findings = [*_check_counts(header, cells, raw.name), *naming_findings(columns, raw.name)]
+    claims = ("rows", header.rows, len(cells.values)), ("columns", header.columns, len(header.labels))
+    findings = [*check_counts(cells, raw.name, *claims), *naming_findings(columns, raw.name)]
     _check_last_cell(lines, cells, raw.name)
     time = even_time(cells.values[:, 0], printed_digit(cells.first_column), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
@@ -77,23 +95,6 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
     table = np.column_stack([recording.time, recording.values])
     rows = ("\t".join(map(repr, row)) for row in table.tolist())
     return write_whole(path, "\n".join([*header, *rows]) + "\n")
-
-
-def _check_counts(header: StorageHeader, cells: Cells, file: str) -> list[Finding]:
-    rows = len(cells.values)
-    if header.rows and rows < max(header.rows):
-        raise ReadError(
-            f"{file} should have {max(header.rows)} rows of numbers, as its header says",
-            f"it ends after {rows}, at line {cells.lines[-1]}",
-            "The file was cut: copy or export it again.",
-        )
-    findings = []
-    for kind, claimed, there in (("rows", header.rows, rows), ("columns", header.columns, len(header.labels))):
-        wrong = sorted({count for count in claimed if count != there})
-        if wrong:
-            what = f"the header claims {' and '.join(map(str, wrong))} {kind}, {there} are there"
-            findings.append(Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse it"))
-    return findings
 
 
 def _check_last_cell(lines: Sequence[str], cells: Cells, file: str) -> None:
@@ -141,3 +142,214 @@ def _in_true_unit(
         what = f"{', '.join(copies)} in {'deg' if unit == 'rad' else 'rad'}, all other angles in {unit}; converted"
         findings.append(Finding("note", "mixed units", file, what, ""))
     return columns, findings
+
+
+@dataclass(frozen=True)
+class StorageHeader:
+    """What stands above the numbers."""
+
+    title: str  # first line: `Coordinates`, `Inverse Dynamics Generalized Forces`, or any name
+    labels: tuple[str, ...]
+    body_line: int  # line in which the numbers start, counted from 1
+    degrees: bool | None = None  # what `inDegrees` states; None where it is absent
+    rows: tuple[int, ...] = ()  # counts that the header claims; two of a kind where both styles stand in it
+    columns: tuple[int, ...] = ()  # counts that the header claims; two of a kind where both styles stand in it
+    # dict of int to (str, str, str), column -> quantity, unit and side, in files that `write_storage` wrote
+    own: Mapping[int, tuple[str, str, str]] = field(default_factory=dict)
+    separator: str = "\t"  # what stands between cells: a tab, or a blank for any run of blanks
+
+
+def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
+    r"""Header of a storage file.
+
+    >>> lines = ["Coordinates", "nRows=1", "inDegrees=yes", "endheader", "time\tknee_angle_r", "0\t1"]
+    >>> h = parsed_header(lines, "a.mot")
+    >>> h.degrees, h.labels, h.body_line
+    (True, ('time', 'knee_angle_r'), 6)
+    """
+    end = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
+    if end is None:
+        nearest = nearest_word("endheader", [line.strip() for line in lines[:60] if len(line) < 30])
+        raise ReadError(
+            f"{file} should be an OpenSim storage file, whose header ends with the line 'endheader'",
+            f"none of its {len(lines)} lines is that" + (f", the nearest is {nearest!r}" if nearest else ""),
+            "Export it again from OpenSim, or rename it to .csv if it is a plain table.",
+        )
+    keys = list(_keys(lines[:end], file))
+    at = next((i for i in range(end + 1, len(lines)) if lines[i].strip()), None)
+    labels_line = lines[at].strip() if at is not None else ""
+    separator = "\t" if "\t" in labels_line else " "
+    labels = [label.strip() for label in (labels_line.split("\t") if separator == "\t" else labels_line.split())]
+    if at is None or not labels or labels[0].lower() != "time":
+        raise ReadError(
+            f"{file} needs a line of labels after 'endheader', the first of them 'time'",
+            f"line {(at or end) + 1} begins with {(labels[0][:40] if labels else '')!r}",
+            "Export it again, or write the labels there.",
+        )
+    names = [split_unit(label)[0] for label in labels]
+    if len(labels) < 2 or not all(names):
+        blank = f"label {names.index('') + 1} is blank" if "" in names else "there is time alone"
+        raise ReadError(f"{file} needs a label for every column", f"line {at + 1}: {blank}", "Name the column.")
+    own = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
+    return StorageHeader(
+        title=next((line.strip() for line in lines[:end] if line.strip()), ""),
+        labels=tuple(labels),
+        body_line=at + 2,
+        degrees=next((bool(value) for key, value in keys if key == "indegrees"), None),
+        rows=tuple(int(value) for key, value in keys if key in _ROWS),
+        columns=tuple(int(value) for key, value in keys if key in _COLUMNS),
+        own={int(m[1]): (m[2], m[3], m[4].lower()) for m in own if m},
+        separator=separator,
+    )
+
+
+def _keys(lines: Sequence[str], file: str):
+    for number, line in enumerate(lines, 1):
+        key, sign, value = line.partition("=")
+        if not sign:
+            key, _, value = line.strip().partition(" ")  # SIMM: `datarows 4610`
+        key, value = key.strip().lower(), value.strip()
+        if key in (*_ROWS, *_COLUMNS) and (sign or value):
+            if not re.fullmatch(r"\d{1,12}", value):
+                raise ReadError(
+                    f"{file}: line {number} needs a whole number after {key!r}",
+                    f"found {value[:40]!r}",
+                    "Write the count, or take the line away.",
+                )
+            yield key, int(value)
+        elif key == "indegrees" and sign:
+            if value.lower() not in _YES_NO:
+                raise ReadError(
+                    f"{file}: line {number} needs inDegrees=yes or inDegrees=no",
+                    f"found {value[:40]!r}",
+                    "Write yes where the angles are in degrees, no where they are in radians.",
+                )
+            yield key, _YES_NO[value.lower()]
+
+
+def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str] | None = None) -> list[Column]:
+    """Columns of a storage file, without time.
+
+    The study's map comes first, then what the file itself states, then the vocabulary, then the habits of OpenSim:
+    `*_moment` in N m, `*_force` in N, `/speed` per second, EMG without a unit. Angles are marked `deg` here; whether
+    the file holds radians follows from the numbers.
+
+    channels: the study's `[channels]`
+
+    >>> header = StorageHeader("Coordinates", ("time", "/jointset/hip_r/hip_flexion_r/value"), 3)
+    >>> storage_columns(header, "a.sto")[0].channel.name
+    'hip_flexion_r'
+    """
+    words = folded_label(header.title) + " " + folded_label(file)
+    known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]
+    muscles = sum(channel is not None and channel.quantity == "emg" for channel in known)
+    of_emg = "emg" in words or "electromyo" in words or muscles > len(known) / 2
+    return [
+        _column(header, number, label, (file, of_emg), channels) for number, label in enumerate(header.labels) if number
+    ]
+
+
+def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
+    """Say what was guessed about the columns of a file.
+
+    >>> naming_findings([Column("x", Channel("x", "signal", "1"), "1", "kept as a signal")], "a.sto")[0].what
+    'x: kept as a signal'
+    """
+    by_guess: dict[str, list[str]] = {}
+    for column in columns:
+        if column.guessed:
+            by_guess.setdefault(column.guessed, []).append(column.label)
+    findings = []
+    for guess, labels in by_guess.items():
+        more = f" and {len(labels) - 6} more" if len(labels) > 6 else ""
+        what = f"{', '.join(labels[:6])}{more}: {guess}"
+        findings.append(Finding("note", "guessed", file, what, "these channels if wrong; map them in [channels]"))
+    sides = {column.channel.side for column in columns if column.label.lower().startswith("ground_force_v")}
+    if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
+        what = "ground_force_ is taken as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"
+        findings.append(Finding("note", "guessed", file, what, "the sides if wrong; map them in [channels]"))
+    return findings
+
+
+def _column(
+    header: StorageHeader, number: int, label: str, where: tuple[str, bool], channels: Mapping[str, str] | None
+) -> Column:
+    file, of_emg = where
+    plain, unit = split_unit(label)
+    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    if said:
+        name, said_unit = split_unit(said)
+        channel, unit = named_channel(name), said_unit or unit
+        if channel.quantity == "emg" and unit is None:
+            return Column(label, replace(channel, unit="1"), "1")
+        if channel.quantity != "signal" or unit:
+            return column_in_unit(label, channel, unit or channel.unit, file)
+        return replace(_guessed(label, name, header.title), guessed="its name is in [channels], its unit is not")
+    if number in header.own:
+        quantity, own_unit, side = header.own[number]
+        # the label is the name to the letter here, brackets and all: the header states the unit
+        channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(label)
+        return column_in_unit(label, channel, own_unit, file)
+    column = _known(label, plain, header.title, of_emg)
+    return column_in_unit(label, column.channel, unit, file) if unit else column
+
+
+def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
+    last = path_label(plain)
+    stem, _, kind = last.partition("/")
+    rate = {"speed": "/s", "accel": "/s2"}.get(kind) or _RATES.get(title.lower(), "")
+    channel = vocabulary().named(stem if kind else plain)
+    if channel and rate and channel.quantity in ("angle", "translation"):
+        name = f"{channel.name}/{_RATE_WORD[rate]}"
+        return Column(label, Channel(name, "signal", channel.unit + rate, channel.side), channel.unit + rate)
+    if channel and channel.quantity == "emg":
+        unit = _OF_ACTUATORS.get(title.lower())
+        if unit:
+            return Column(label, Channel(plain, "signal", unit, channel.side), unit, f"{title} of a muscle, no EMG")
+        return Column(label, replace(channel, unit="1"), "1")
+    if channel:
+        return Column(label, channel, channel.unit)
+    if of_emg:
+        return _muscle(label, plain)
+    return _guessed(label, plain if plain.startswith("/forceset") else last, title)
+
+
+def _muscle(label: str, plain: str) -> Column:
+    """EMG whose side or muscle the vocabulary cannot determine."""
+    of_right = vocabulary().named(f"{plain}_r")
+    if of_right and of_right.quantity == "emg":
+        channel = Channel(of_right.name.removesuffix("_r"), "emg", "1")
+        return Column(label, channel, "1", "the label names no side")
+    name = plain if plain.startswith("emg_") else f"emg_{plain}"
+    return Column(label, Channel(name, "emg", "1", side_of(plain)), "1", "kept as EMG of an unknown muscle")
+
+
+def _guessed(label: str, name: str, title: str) -> Column:
+    side = side_of(name)
+    if name.endswith(("_moment", "_force")):
+        guess = "the generalised force of a copied rotation, taken in N m though OpenSim calls it a force"
+        channel = named_channel(name)
+        return Column(label, channel, channel.unit, guess if name.endswith("_beta_force") else "")
+    ground = _GROUND.fullmatch(name)
+    if ground and (ground[1] or _GROUND_WORD.search(name)):
+        return _ground(label, name, ground)
+    if title.lower() == "coordinates":
+        if re.search(r"_t[xyz]$", name):
+            return Column(label, Channel(name, "translation", "m", side), "m", "taken as a translation in m")
+        return Column(label, Channel(name, "angle", "deg", side), "deg", "unknown coordinate, taken as an angle")
+    return Column(label, Channel(name, "signal", "1", side), "1", "unknown name, kept as a signal without a unit")
+
+
+def _ground(label: str, name: str, found: re.Match[str]) -> Column:
+    """Ground reaction by its last letters: v a force, p a place, m a moment; by the word where none stands there."""
+    kind, axis = found[1].lower(), found[2].lower()
+    words = _GROUND_WORD.findall(name.lower())
+    side = side_of(name)
+    guess = "taken as ground reaction by its name" + ("" if side else ", side unknown")
+    if kind == "p":
+        return Column(label, Channel(name, "pressure_centre", "m", side), "m", guess)
+    if kind == "v" or (not kind and words[-1] == "force"):
+        quantity = "vertical_force" if axis == "y" else "force"
+        return Column(label, Channel(name, quantity, "N", side), "N", guess)
+    channel = Channel(name if "ground" in name.lower() else f"ground_{name}", "moment", "N m", side)
+    return Column(label, channel, "N m", guess)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.toml_lines import Place, line_of
 
 _KINDS = {
     "float": ("be a number", "Write it without quotes, for example 6.0."),
@@ -33,11 +33,21 @@ _LIMITS = {
     "less_than": ("below", "lt"),
     "less_than_equal": ("at most", "le"),
 }
+Place = tuple[str | int, ...]
+# where keys stand; the parser of the standard library does not say
+_KEY = r"""(?:"[^"]*"|'[^']*'|[A-Za-z0-9_-]+)"""
+_DOTTED = rf"{_KEY}(?:\s*\.\s*{_KEY})*"
+_TABLE = re.compile(rf"\s*(\[\[?)\s*({_DOTTED})\s*\]\]?")
+_PAIR = re.compile(rf"\s*({_DOTTED})\s*=")
 
 
 def schema_error(error: ValidationError, model: type[BaseModel], text: str, file: str) -> SchemaError:
     """Sentence for the first of pydantic's findings, with the count of the others."""
-    findings = [each for each in error.errors(include_url=False) if not _follows(each)]
+    findings = [
+        each
+        for each in error.errors(include_url=False)  # a list is called too short, too, when an entry of it was refused
+        if each["type"] != "too_short" or each.get("ctx", {})["actual_length"] >= len(each["input"])
+    ]
     first = min(findings, key=lambda each: (each["type"] != "extra_forbidden", line_of(text, _place(each)) or 0))
     place = _place(first)
     line = line_of(text, place)
@@ -46,11 +56,6 @@ def schema_error(error: ValidationError, model: type[BaseModel], text: str, file
     if len(findings) > 1:
         remedy += f" ({len(findings) - 1} more to correct after this.)"
     return SchemaError(f"{where}: {needed}", found, remedy)
-
-
-def _follows(finding: Mapping[str, Any]) -> bool:
-    """Whether a list is called too short only because an entry of it was refused."""
-    return finding["type"] == "too_short" and finding["ctx"]["actual_length"] < len(finding["input"])
 
 
 def _place(finding: Mapping[str, Any]) -> Place:
@@ -150,3 +155,52 @@ def _what(given: Any) -> str:
     if isinstance(given, list | tuple):
         return f"a list of {len(given)}"
     return "a table" if isinstance(given, dict) else "nothing" if given is None else repr(given)
+
+
+def line_of(text: str, place: Place) -> int | None:
+    r"""Line of a key, or of the table it belongs to where the key itself is absent.
+
+    returns: counted from 1; None where not even the table is there
+
+    >>> line_of("title = 'x'\n[filters]\norder = 3\n", ("filters", "order"))
+    3
+    """
+    best, deepest = None, 0
+    for found, line in _places(text):
+        depth = _shared(found, place)
+        if depth == len(found) and depth > deepest:
+            best, deepest = line, depth
+    return best
+
+
+def _places(text: str) -> Iterator[tuple[Place, int]]:
+    table: Place = ()
+    counts: dict[Place, int] = {}
+    for line, words in enumerate(text.split("\n"), 1):
+        header, pair = _TABLE.match(words), _PAIR.match(words)
+        if header:
+            table = _resolved(_keys(header[2]), counts)
+            if header[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+                table = (*table, counts[table])
+            yield table, line
+        elif pair:
+            yield (*table, *_keys(pair[1])), line
+
+
+def _resolved(keys: Sequence[str], counts: dict[Place, int]) -> Place:
+    """Path of a table, with the place in each array of tables on the way to it."""
+    place: Place = ()
+    for i, key in enumerate(keys):
+        place = (*place, key)
+        if place in counts and i < len(keys) - 1:
+            place = (*place, counts[place])
+    return place
+
+
+def _keys(dotted: str) -> list[str]:
+    return [key.strip("\"'") for key in re.findall(_KEY, dotted)]
+
+
+def _shared(one: Place, other: Place) -> int:
+    return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))

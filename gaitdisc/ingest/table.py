@@ -14,9 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.angle_unit import plausible_unit
-from gaitdisc.ingest.cells import Form, parsed_cells
-from gaitdisc.ingest.clock import even_time, printed_digit
+from gaitdisc.ingest.cells import Form, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import (
     Column,
     check_written_names,
@@ -25,6 +23,7 @@ from gaitdisc.ingest.columns import (
     split_unit,
 )
 from gaitdisc.ingest.raw_file import RawFile, read_raw
+from gaitdisc.ingest.stated_units import plausible_unit
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.spreadsheet import quoted, unquoted

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError, SamplingError, UnitError
-from gaitdisc.ingest.cells import Cells, Form, parsed_cells
-from gaitdisc.ingest.clock import even_time, printed_digit
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import mapped_label, split_unit
-from gaitdisc.ingest.marker_unit import distance_from_origin, refuse_other_unit
 from gaitdisc.ingest.raw_file import read_raw
+from gaitdisc.ingest.stated_units import distance_from_origin, refuse_other_unit
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Trial
 from gaitdisc.units import convert, inner_unit, parsed_unit
@@ -53,7 +52,8 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     cells = parsed_cells(
         lines[header.body_line - 1 :], ["Frame#", "Time", *coordinates], header.body_line, Form(raw.name)
     )
-    findings = _check_counts(header, cells, raw.name)
+    claims = ("frames", [header.frames], len(cells.values)), ("markers", [header.markers], len(header.labels))
+    findings = check_counts(cells, raw.name, *claims)
     digit = printed_digit(lines[number - 1].split("\t")[1] for number in cells.lines.tolist())
     time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
     _check_rate(header, time, digit, raw.name)
@@ -64,7 +64,9 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     if dropped:
         findings.append(Finding("note", "identifier", raw.name, "the part of labels before ':' was dropped", ""))
     made = [Channel(f"{name}.{axis}", "marker", "m") for name in names for axis in "xyz"]
-    return sorted_trial(raw.source("trc"), time, _without_zeros(positions), made, findings)
+    triples = positions.reshape(len(positions), -1, 3).copy()
+    triples[(triples == 0).all(axis=2)] = np.nan
+    return sorted_trial(raw.source("trc"), time, triples.reshape(len(triples), -1), made, findings)
 
 
 def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
@@ -115,22 +117,6 @@ def _number(fields: Mapping[str, str], key: str, file: str) -> float:
     return number
 
 
-def _check_counts(header: TrcHeader, cells: Cells, file: str) -> list[Finding]:
-    rows = len(cells.values)
-    if rows < header.frames:
-        raise ReadError(
-            f"{file} should have {header.frames} frames, as its header says",
-            f"it ends after {rows}, at line {cells.lines[-1]}",
-            "The file was cut: copy or export it again.",
-        )
-    findings = []
-    for kind, claimed, there in (("frames", header.frames, rows), ("markers", header.markers, len(header.labels))):
-        if claimed != there:
-            what = f"the header claims {claimed} {kind}, {there} are there"
-            findings.append(Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse it"))
-    return findings
-
-
 def _check_rate(header: TrcHeader, time: NDArray[np.float64], digit_s: float, file: str) -> None:
     step = (time[-1] - time[0]) / (len(time) - 1)
     allowed = RATE_TOLERANCE / header.rate_hz + digit_s / (len(time) - 1)
@@ -150,9 +136,3 @@ def _marker_names(labels: Sequence[str], channels: Mapping[str, str] | None) -> 
     ]
     names = [split_unit(name)[0] if name else short for name, short in zip(said, plain, strict=True)]
     return names, plain != list(labels)
-
-
-def _without_zeros(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    triples = positions.reshape(len(positions), -1, 3).copy()
-    triples[(triples == 0).all(axis=2)] = np.nan
-    return triples.reshape(len(positions), -1)

@@ -14,7 +14,7 @@ from gaitdisc.errors import ChannelError, ReadError, UnitError
 from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
 from gaitdisc.recording import Recording, Surface, Trial
 from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.contact_force import loaded
+from gaitdisc.signals.contacts import loaded
 
 AXES = "xyz"
 CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does

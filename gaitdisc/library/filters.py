@@ -15,7 +15,7 @@ from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.arrays import real_array
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, highpassed, lowpassed
 from gaitdisc.signals.derivatives import differentiated_recording
-from gaitdisc.signals.envelope import ENVELOPE_HZ, HIGHPASS_HZ, enveloped
+from gaitdisc.signals.emg import ENVELOPE_HZ, HIGHPASS_HZ, enveloped
 from gaitdisc.signals.gaps import MAX_SPLINE_S
 
 if TYPE_CHECKING:

@@ -10,11 +10,8 @@ import numpy as np
 
 from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.signals.contact_angles import angle_contacts
-from gaitdisc.signals.contact_events import event_contacts
-from gaitdisc.signals.contact_force import force_contacts, plate_contacts
-from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import MATCH_S, Agreement, Contacts
+from gaitdisc.signals.contact_movement import angle_contacts, marker_contacts
+from gaitdisc.signals.contacts import MATCH_S, Agreement, Contacts, event_contacts, force_contacts, plate_contacts
 from gaitdisc.signals.direction import Direction, given_direction, walking_direction
 
 HEELS = {

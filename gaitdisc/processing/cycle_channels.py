@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Filters
-from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.kinematics.laboratory import PATH_S, STRAIGHT_DEG
+from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.runs import runs
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.emg_quality import live_channels
+from gaitdisc.signals.channel_quality import plateau_marked
+from gaitdisc.signals.emg import live_channels
 from gaitdisc.signals.gaps import filled
-from gaitdisc.signals.plateaus import plateau_marked
 from gaitdisc.signals.spikes import without_spikes
 
 FORCE_HZ = 20.0

@@ -20,7 +20,7 @@ from gaitdisc.recording import Finding, Trial
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.signals.emg_quality import emg_findings
+from gaitdisc.signals.emg import emg_findings
 from gaitdisc.signals.strides import cut_strides
 
 JOINT_AT = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gaitdisc.processing.process import is_raw
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.emg import enveloped
 from gaitdisc.signals.spikes import without_spikes
 
 SHARE_OF_RATE = 0.4  # cut-off of the low-pass before resampling; half the rate is the limit

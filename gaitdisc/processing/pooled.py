@@ -39,7 +39,7 @@ from gaitdisc.processing.trial_cycles import (
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.results import PooledCycles, Refusal
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
-from gaitdisc.signals.contact_force import rise_of
+from gaitdisc.signals.contacts import rise_of
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons
 from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking

@@ -17,17 +17,14 @@ from gaitdisc.processing.walk import Walk
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed, short_run_findings
-from gaitdisc.signals.channel_quality import channel_findings
+from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.derivatives import trajectory
-from gaitdisc.signals.emg_quality import emg_findings
-from gaitdisc.signals.envelope import enveloped
-from gaitdisc.signals.force_drift import drift_findings
+from gaitdisc.signals.emg import emg_findings, enveloped
 from gaitdisc.signals.gaps import filled
-from gaitdisc.signals.late_change import late_change_findings
-from gaitdisc.signals.plateaus import plateau_findings, plateau_marked
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.spikes import spike_findings, without_spikes
+from gaitdisc.signals.stride_quality import late_change_findings
 from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking

@@ -16,10 +16,8 @@ from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
 from gaitdisc.processing.contact_choice import named_markers
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.signals.direction import marker_position
-from gaitdisc.signals.emg_order import order_of_muscles
-from gaitdisc.signals.emg_quality import live_channels
-from gaitdisc.signals.envelope import HIGHPASS_HZ, enveloped
-from gaitdisc.signals.side_labels import load_findings, marker_side_findings, sway_findings
+from gaitdisc.signals.emg import HIGHPASS_HZ, enveloped, live_channels, order_of_muscles
+from gaitdisc.signals.sides import load_findings, marker_side_findings, sway_findings
 
 TOES = (("RTOE", "LTOE"), ("RMT5", "LMT5"), ("RMT1", "LMT1"), ("R.Toe.Tip", "L.Toe.Tip"), ("RTOE1", "LTOE1"))
 FEWEST = 2  # steps

@@ -26,7 +26,7 @@ from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
-from gaitdisc.signals.emg_size import FEWEST, OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
+from gaitdisc.signals.emg import FEWEST, OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
 from gaitdisc.signals.marker_distances import person_findings
 
 Read = Callable[[PlannedTrial], Trial]

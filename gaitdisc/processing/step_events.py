@@ -22,8 +22,8 @@ from gaitdisc.processing.contact_choice import (
     trial_direction,
 )
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
-from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
 
 TOES = {
     "r": ("RTOE", "R.Toe", "R.Toe.Tip", "R_Toe", "RMT2", "RMTH2", "RFM2", "RD2M", "RSMH"),

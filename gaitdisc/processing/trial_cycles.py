@@ -13,7 +13,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Recording, Trial
 from gaitdisc.recording.strides import NAN, interpolated
-from gaitdisc.signals.contact_force import RISE_N, loaded
+from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.direction import Direction, marker_position
 from gaitdisc.signals.strides import gap_reasons
 

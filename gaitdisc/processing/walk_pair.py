@@ -17,9 +17,9 @@ from gaitdisc.processing.walk import walk_summary
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.results import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
-from gaitdisc.signals.envelope import ENVELOPE_HZ, enveloped
+from gaitdisc.signals.emg import ENVELOPE_HZ, enveloped
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.spikes import without_spikes
 from gaitdisc.signals.stride_quality import without_outlying

@@ -147,8 +147,5 @@ def _shared_runs(known: NDArray[np.bool_]) -> dict[tuple[int, int], list[int]]:
 def _both_ways(sections: NDArray[np.float64], x: NDArray[np.float64], padding: int) -> NDArray[np.float64]:
     offset = x[0]  # keeps a constant channel constant to the last digit
     both = sosfiltfilt(sections, x - offset, axis=0, padtype="odd", padlen=padding)
-    return both + offset * float(_gain_at_zero(sections))
-
-
-def _gain_at_zero(sections: NDArray[np.float64]) -> int:
-    return round(float(np.prod(sections[:, :3].sum(axis=1) / sections[:, 3:].sum(axis=1))))
+    gain_at_zero = round(float(np.prod(sections[:, :3].sum(axis=1) / sections[:, 3:].sum(axis=1))))
+    return both + offset * float(gain_at_zero)

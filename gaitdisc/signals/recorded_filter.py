@@ -79,8 +79,9 @@ def recorded_filter(
     spectrum = spectrum_of(trials)
     if spectrum is None or not _may_be_filtered(spectrum, trials):
         return None
-    kept = _above_the_signal(spectrum)
-    above = spectrum.lines(kept)
+    # the lines beyond the last one that is surely signal, without those next to half the rate
+    surely = np.flatnonzero(spectrum.power > SIGNAL * spectrum.power[2:].max())
+    above = spectrum.lines(slice(int(surely[-1]) + 1, len(spectrum.power) - 3))
     if len(above.frequency) < FEWEST_LINES:
         return None
     model = spectrum_of(like) if like is not None else None
@@ -100,7 +101,7 @@ def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
 
     trials each (sample,): NaN where nothing was measured: a window takes the longest stretch without any
     """
-    stretches = [stretch for trial in trials for stretch in _whole_stretches(trial)]
+    stretches = [trial[first:end] for trial in trials for first, end in runs(np.isfinite(trial))]
     length = min(max((len(one) for one in stretches), default=0), WINDOW)
     if length < FEWEST:
         return None
@@ -116,10 +117,6 @@ def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
     return Spectrum(np.arange(length // 2 + 1) / length, np.mean(powers, axis=0), len(powers))
 
 
-def _whole_stretches(trial: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    return [trial[first:end] for first, end in runs(np.isfinite(trial))]
-
-
 def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) -> bool:
     """Whether the power falls up to half the rate, or ends on the floor of the digits that were written."""
     quarter = float(np.median(spectrum.power[(spectrum.frequency > 0.2) & (spectrum.frequency < 0.28)]))
@@ -130,12 +127,6 @@ def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) 
     step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
     length = 2 * (len(spectrum.frequency) - 1)
     return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])
-
-
-def _above_the_signal(spectrum: Spectrum) -> slice:
-    """Return the lines beyond the last one that is surely signal, without those next to half the rate."""
-    surely = np.flatnonzero(spectrum.power > SIGNAL * spectrum.power[2:].max())
-    return slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
 
 
 def _falls_far(spectrum: Spectrum, cutoff: float) -> bool:

@@ -76,25 +76,21 @@ def spike_findings(recording: Recording) -> list[Finding]:
         low, high = np.nanpercentile(rest, [1, 99])
         outside = np.where(here, np.abs(x - (low + high) / 2), 0.0)
         at = int(np.argmax(outside))
-        places = len(runs(here))
+        places, known = len(runs(here)), np.flatnonzero(np.isfinite(rest))
+        beside = rest[known[np.abs(known - at).argmin()]]
         findings.append(
             Finding(
                 "warning",
                 "spike",
                 recording.source.file,
                 f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) beside "
-                f"{_beside(rest, at):.4g} {channel.unit}; {places} place{'s' if places > 1 else ''} in all",
+                f"{beside:.4g} {channel.unit}; {places} place{'s' if places > 1 else ''} in all",
                 "nothing: taken out before the filter, bridged where short, and marked",
                 channel.name,
                 spans_s(recording.time, here),
             )
         )
     return findings
-
-
-def _beside(rest: NDArray[np.float64], at: int) -> float:
-    known = np.flatnonzero(np.isfinite(rest))
-    return float(rest[known[np.abs(known - at).argmin()]])
 
 
 def _running_median(x: NDArray[np.float64], half: int) -> NDArray[np.float64]:

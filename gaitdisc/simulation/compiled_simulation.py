@@ -9,10 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording.arrays import read_only
-from gaitdisc.simulation.at_points import at_points, leaf_columns
 from gaitdisc.simulation.delays import before_rows, cubic_in_rows, linear_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.program import Program, compiled_program
+from gaitdisc.simulation.program import Program, at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.simulation import Simulation
 
 SUBSTEPS = 5  # Runge-Kutta steps for each sample

@@ -67,7 +67,9 @@ def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: NDArray[np
     values = (
         compiled.defaults if rows.values is None else np.atleast_2d(rows.values)[row if rows.values.ndim > 1 else 0]
     )
-    late = np.array([[_now(compiled, signal, x, u[0]) for signal, _ in compiled.right_hand_side.delays]])
+    # signals without their delay, which is near enough to say what is fast
+    now = dict(zip(compiled.inputs, u[0], strict=True)) | dict(zip(compiled.states, x, strict=True))
+    late = np.array([[float(now[signal]) for signal, _ in compiled.right_hand_side.delays]])
     with np.errstate(all="ignore"):
         rates = compiled.rates(t, x[None], u, values, late)[0]
         speed = np.abs(np.nan_to_num(rates, nan=np.inf, posinf=np.inf)) / (1e-6 + np.abs(x))
@@ -82,8 +84,3 @@ def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: NDArray[np
         change = np.zeros(1)
     parameter = compiled.parameters[int(np.argmax(change))] if change.max() > 0 else ""
     return Divergence(row, trial, float(t[0]), compiled.states[fastest], float(x[fastest]), parameter)
-
-
-def _now(compiled: Compiled, signal: str, x: NDArray[np.float64], u: NDArray[np.float64]) -> float:
-    """Signal without its delay, which is near enough to say what is fast."""
-    return float(x[compiled.states.index(signal)] if signal in compiled.states else u[compiled.inputs.index(signal)])

@@ -95,7 +95,9 @@ def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArra
     """Rate of a clock that is even but for the digits that it was printed with (else None), and each row's place."""
     mean = (time[-1] - time[0]) / (len(time) - 1)
     off = np.abs(time - time[0] - mean * np.arange(len(time)))
-    printed = 0.51 * 10.0 ** -_decimals(time)
+    # decimals that the times were printed with, 9 at most
+    decimals = (d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time))))
+    printed = 0.51 * 10.0 ** -next(decimals, 9)
     if off.max() <= max(EVEN * mean, min(2 * printed, 0.25 * mean)):
         return _rounded(1.0 / mean), np.arange(len(time))
     steps = np.diff(time)
@@ -181,7 +183,9 @@ def _bridged(
         empty = ~np.isfinite(filled[:, column])
         if not empty.any():
             continue
-        first, longest = _longest_run(empty)
+        spans = runs(empty)
+        first, end = map(int, spans[np.argmax(spans[:, 1] - spans[:, 0])])
+        longest = end - first
         if longest / rate > BRIDGED_S + 1e-9 or empty[0] or empty[-1]:
             raise ReadError(
                 f"an input has a value in every row, but for gaps of at most {BRIDGED_S:g} s between others",
@@ -198,18 +202,6 @@ def _bridged(
     return replace(trial, inputs=filled)
 
 
-def _longest_run(flags: NDArray[np.bool_]) -> tuple[int, int]:
-    """First sample and length of the longest stretch of true values."""
-    spans = runs(flags)
-    first, end = spans[np.argmax(spans[:, 1] - spans[:, 0])]
-    return int(first), int(end - first)
-
-
 def _rounded(rate: float, to: float = 1e-4) -> float:
     """A rate, whole where it is as good as that [Hz]."""
     return float(np.round(rate, 9)) if abs(rate - round(rate)) > to or rate < 0.5 else float(round(rate))
-
-
-def _decimals(time: NDArray[np.float64]) -> int:
-    """Decimals that the times were printed with, 9 at most."""
-    return next((d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time)))), 9)

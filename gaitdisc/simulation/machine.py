@@ -78,7 +78,7 @@ def integrate_block(program, drive, rows, plan, past, into):
     registers, rates = _filled(program, rows, n + wraps.size), np.zeros((n, BLOCK))
     flat, out, lanes = registers.reshape(-1), rates.reshape(-1), np.uint64(width)
     execute(code[:setup], flat, out, lanes)
-    main, timed = code[setup:], _reads_time(code)
+    main, timed = code[setup:], np.any(code[:, 2:] == 0)  # time is the first register
     x, total, ends = np.zeros((n, BLOCK)), np.zeros((n, BLOCK)), np.zeros((2, wraps.size, BLOCK))
     x[:, :width] = starts.T
     registers[1 : 1 + n] = x
@@ -108,11 +108,6 @@ def integrate_block(program, drive, rows, plan, past, into):
         _keep(x, place[:, 1] + sample, last, live, found[:, sample + 1], ok)
         if not live.any():
             break
-
-
-@compiled
-def _reads_time(code):
-    return np.any(code[:, 2:] == 0)  # time is the first register
 
 
 @compiled

@@ -136,11 +136,6 @@ def _together(notes: list[Finding]) -> list[Finding]:
     ]
 
 
-def _still(values: NDArray[np.float64]) -> bool:
-    """Whether what there is of a channel never varies."""
-    return bool(np.ptp(values[np.isfinite(values)]) == 0)
-
-
 def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str) -> list[Finding]:
     """Refuse a channel that is as good as empty in a trial; report empty cells."""
     found = []
@@ -169,7 +164,8 @@ def _constant(
     found = []
     for kind, names in (("observed", channels), ("inputs", inputs)):
         for column, name in enumerate(names):
-            still = [trial.name for trial in trials if _still(getattr(trial, kind)[:, column])]
+            values = [(trial.name, getattr(trial, kind)[:, column]) for trial in trials]
+            still = [trial for trial, one in values if np.ptp(one[np.isfinite(one)]) == 0]
             if len(still) == len(trials) and kind == "observed":
                 raise ShapeError(
                     f"an observed channel varies: {name!r}",

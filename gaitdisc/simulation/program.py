@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from gaitdisc.simulation.expression import Name, Number, Operation, Tree
-from gaitdisc.simulation.rewriting import written
+from gaitdisc.simulation.expression import Name, Number, Operation, Tree, written
+from gaitdisc.simulation.refusal import SimulationError
 
 CODES = {
     "store": 0, "+": 1, "-": 2, "*": 3, "/": 4, "**": 5, "neg": 6, "sin": 7, "cos": 8, "tan": 9, "tanh": 10, "exp": 11,
@@ -111,7 +111,8 @@ class _Graph:
         return self._two(symbol, *arguments)
 
     def _power(self, base: int, exponent: int) -> int:
-        value = self._value(exponent)
+        kind, value, *_ = self.parts[exponent]
+        value = value if kind == "constant" else None
         if value is None or value != int(value) or not 1 <= abs(value) <= _MOST_PRODUCTS:
             return self._two("**", base, exponent)
         power, rest, square = None, int(abs(value)), base
@@ -122,10 +123,6 @@ class _Graph:
             square = self._two("*", square, square) if rest else square
         assert power is not None  # the exponent is at least 1
         return power if value > 0 else self._two("/", self.constant(1.0), power)
-
-    def _value(self, node: int) -> float | None:
-        part = self.parts[node]
-        return part[1] if part[0] == "constant" else None
 
     def _two(self, symbol: str, a: int, b: int | None = None) -> int:
         b = a if b is None else b
@@ -217,3 +214,67 @@ class _Order:
 
     def _store(self, node: int, outputs: list[int]) -> None:
         self.code += [(CODES["store"], output, self._register[node], self._register[node]) for output in outputs]
+
+
+def leaf_columns(
+    t: ArrayLike, x: NDArray[np.float64], u: NDArray[np.float64], values: NDArray[np.float64]
+) -> list[NDArray[np.float64]]:
+    """Values of time, states, inputs and parameters in the order in which a program takes them.
+
+    t (point,): time [s]
+    x, u (point, state), (point, input): states and inputs
+    values (parameter,) or (point, parameter): parameters
+    """
+    return [np.asarray(t, float), *np.asarray(x, float).T, *np.asarray(u, float).T, *np.asarray(values, float).T]
+
+
+def at_points(
+    program: Program,
+    columns: Sequence[NDArray[np.float64]],
+    late: NDArray[np.float64] | None = None,
+    points: int | None = None,
+) -> NDArray[np.float64]:
+    """Outputs of a program at many points, (output, point).
+
+    columns each (point,) or (): values of its leaves; one number serves all points
+    late (point, delay): delayed signals, where the program has any
+    points: how many; the length of the first column by default
+    """
+    if program.delays and (late is None or np.shape(late)[-1] != len(program.delays)):
+        raise SimulationError(
+            f"delayed signals are needed at each point: {', '.join(signal for signal, _ in program.delays)}",
+            "they were not given",
+            "Run the simulation, or give `late`.",
+        )
+    table = PointTable(program, int(np.size(columns[0])) if points is None else points)
+    table.fill(0, [*columns, *(np.asarray(late).T if program.delays else ())])
+    return table.outputs()
+
+
+class PointTable:
+    """Values of a program's leaves at a number of points, to be filled in part and evaluated again and again."""
+
+    def __init__(self, program: Program, points: int) -> None:
+        from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
+
+        self._code, self._evaluated = program.placed(BLOCK), evaluate_blocks
+        self._used = tuple(program.used())
+        self._program, self._points = program, points
+        self._spread = np.full(program.registers, 2, np.int64)
+        self._table = np.zeros((len(self._used), points))
+
+    def fill(self, first: int, columns: Sequence[NDArray[np.float64]]) -> None:
+        """Put values in place of those of some leaves; what the program does not read is passed over.
+
+        columns each (point,) or (): their values; one number serves all points
+        """
+        for leaf, column in enumerate(columns, first):
+            if self._used[leaf]:
+                self._spread[leaf] = int(np.ndim(column) > 0)
+                self._table[leaf, : self._points if np.ndim(column) else 1] = column
+
+    def outputs(self) -> NDArray[np.float64]:
+        """Outputs of the program, (output, point)."""
+        into = np.empty((self._program.outputs, self._points))
+        self._evaluated(self._code, self._program.constants, self._table, self._spread, into)
+        return into

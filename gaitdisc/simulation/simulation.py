@@ -9,10 +9,9 @@ from typing import Any
 
 from gaitdisc.notebook import html_of
 from gaitdisc.simulation.checking import check
-from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.expression import parsed, substituted, written
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.rewriting import substituted, written
 
 Lines = tuple[tuple[str, str], ...]  # name, expression
 

@@ -1,4 +1,4 @@
-"""Reading a simulation file (docs/simulation.md)."""
+"""Reading a simulation file (docs/simulation.md); those that come with the package can be read and copied."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from typing import Any
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.regular_file import check_regular
-from gaitdisc.simulation.delay_check import refuse_delays
-from gaitdisc.simulation.observed_units import refuse_units
+from gaitdisc.simulation.delays import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
@@ -31,6 +31,7 @@ _EXPRESSIONS = ("definitions", "equations", "observations")
 _SECTIONS = ("title", "model", *_TABLES, *_EXPRESSIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
 _OBSERVATION = ("expression", "unit", "sd", "lowpass")
+_FOLDER = Path(__file__).parent / "systems"
 
 
 def read_simulation(path: Path | str) -> Simulation:
@@ -265,3 +266,42 @@ def _line(text: str, place: tuple[str, ...]) -> int | None:
             if key and key[1] == place[-1]:
                 return line
     return here
+
+
+def bundled_names() -> tuple[str, ...]:
+    """Names of the simulations that come with the package.
+
+    >>> "lorenz" in bundled_names()
+    True
+    """
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def bundled(name: str) -> Simulation:
+    """Simulation that comes with the package.
+
+    Parameters
+    ----------
+    name : str
+        `pendulum`, `lorenz` and so on; one that is none of them is refused with the list.
+
+    Raises
+    ------
+    ReadError
+        If there is none of that name.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.bundled_simulation("pendulum").values()["length"]
+    0.8
+    """
+    if name not in bundled_names():
+        nearest = nearest_word(name, bundled_names())
+        hint = f"Did you mean {nearest!r}? " if nearest else ""
+        raise ReadError(
+            "a simulation that comes with the package",
+            f"there is none called {name!r}",
+            f"{hint}Known: {', '.join(bundled_names())}.",
+        )
+    return read_simulation(_FOLDER / f"{name}.toml")

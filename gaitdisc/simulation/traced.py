@@ -372,7 +372,8 @@ class _Surroundings:
         if not isinstance(one, FunctionType):
             inside = [getattr(one, name) for name in INSIDE if isinstance(getattr(one, name, None), FunctionType)]
             return self.replaced(inside[0]) if inside else one
-        if _of_a_library(one):
+        room = (one.__module__ or "").split(".")[0]
+        if (room in sys.stdlib_module_names and room != "__main__") or room in ("numpy", "scipy"):
             return one
         around: dict[str, Any] = {"__builtins__": self._builtins, "__name__": one.__module__}
         cells = tuple(CellType() for _ in one.__closure__ or ())
@@ -385,11 +386,6 @@ class _Surroundings:
         for cell, original in zip(cells, one.__closure__ or (), strict=True):
             cell.cell_contents = self.replaced(original.cell_contents)
         return copy
-
-
-def _of_a_library(function: FunctionType) -> bool:
-    room = (function.__module__ or "").split(".")[0]
-    return (room in sys.stdlib_module_names and room != "__main__") or room in ("numpy", "scipy")
 
 
 def _names_in(code: CodeType) -> set[str]:

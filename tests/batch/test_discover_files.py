@@ -8,7 +8,7 @@ from hidden_in_a_mass import MASS, Experiment, record, with_load
 
 from gaitdisc.batch.discover_files import discover_files, discover_model
 from gaitdisc.errors import SamplingError, SchemaError
-from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.parts import Term

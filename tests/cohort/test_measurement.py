@@ -11,9 +11,8 @@ from gaitdisc.cohort.measurement import BAND_HZ, CROSS_TALK, DELAY_S, FLOOR_V, R
 from gaitdisc.cohort.person import JOINTS, MUSCLES, drawn
 from gaitdisc.cohort.walk import QUICK_HZ
 from gaitdisc.signals.channel_quality import channel_findings
-from gaitdisc.signals.contact_force import force_contacts
-from gaitdisc.signals.emg_quality import emg_findings
-from gaitdisc.signals.envelope import ENVELOPE_HZ, enveloped
+from gaitdisc.signals.contacts import force_contacts
+from gaitdisc.signals.emg import ENVELOPE_HZ, emg_findings, enveloped
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import PERCENT, Event
 from gaitdisc.results import WalkSummary
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 
 CHANNELS = tuple(Channel(f"{joint}_r", "angle", "deg", "r") for joint in ("hip_flexion", "knee_angle", "ankle_angle"))
 SHAPE = np.stack([20 * np.cos(2 * np.pi * k * PERCENT / 100) for k in (1, 2, 3)], axis=1)

@@ -9,7 +9,7 @@ from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize, Whereabouts
-from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.simulation_file import bundled
 
 SHAPE = next(one for one in known_shapes() if one.name == "one_sided_spring")
 ENGAGED = Candidate(

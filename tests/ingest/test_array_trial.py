@@ -7,7 +7,7 @@ import pytest
 from scipy.io import savemat
 
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.ingest.array_trial import read_arrays
+from gaitdisc.ingest.array_file import read_arrays
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study_file import load_study
 

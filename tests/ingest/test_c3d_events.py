@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.ingest.c3d_events import event_kind, file_events
+from gaitdisc.ingest.c3d_labels import event_kind, file_events
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.c3d_header import decoded, read_c3d_header
+from gaitdisc.ingest.c3d_parameters import decoded, read_c3d_header
 
 
 def test_header_of_a_written_file(tmp_path, write_c3d, some_points, some_analog):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.c3d_header import read_c3d_header
-from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
+from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 
 
 def _parameters(path):

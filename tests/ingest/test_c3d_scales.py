@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ReadError
+from gaitdisc.ingest.c3d_layout import unscaled_channels
 from gaitdisc.ingest.c3d_parameters import C3DParameters
-from gaitdisc.ingest.c3d_scales import unscaled_channels
 from gaitdisc.ingest.reading import read_trial
 
 UNUSABLE = (float("nan"), float("inf"), float("-inf"), 0.0)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import SamplingError
-from gaitdisc.ingest.clock import even_time, printed_digit
+from gaitdisc.ingest.cells import even_time, printed_digit
 
 
 def test_printed_digit_is_the_finest_one():

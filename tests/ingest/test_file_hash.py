@@ -4,9 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from gaitdisc.ingest import file_hash
-from gaitdisc.ingest.file_hash import file_sha256, known_sha256
-from gaitdisc.ingest.raw_file import read_raw
+from gaitdisc.ingest.raw_file import file_sha256, known_sha256, read_raw
 
 YESTERDAY = 1_700_000_000
 
@@ -22,7 +20,7 @@ def settled(tmp_path):
 def counted(monkeypatch):
     """Files that are hashed from now on, in order."""
     hashed, plain = [], hashlib.file_digest
-    monkeypatch.setattr(file_hash.hashlib, "file_digest", lambda f, name: hashed.append(f.name) or plain(f, name))
+    monkeypatch.setattr(hashlib, "file_digest", lambda f, name: hashed.append(f.name) or plain(f, name))
     return hashed
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.ingest.force_plate import ForcePlate, centre_of_pressure
+from gaitdisc.ingest.force_plates import ForcePlate, centre_of_pressure
 
 # 0.6 m x 0.4 m, its z axis down: x forwards, y to the right
 CORNERS = np.array([[0.6, 0, 0], [0, 0, 0], [0, 0.4, 0], [0.6, 0.4, 0]])

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.grown_study import grown_study
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import grown_study
 
 
 def study_of(people, sessions=(), others=(), **more):

@@ -9,7 +9,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.columns import named_channel
-from gaitdisc.ingest.knee_sign import with_flexion_positive
+from gaitdisc.ingest.plausible import with_flexion_positive
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.table import write_table

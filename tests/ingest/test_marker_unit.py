@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.marker_unit import distance_from_origin, refuse_other_unit
+from gaitdisc.ingest.stated_units import distance_from_origin, refuse_other_unit
 from gaitdisc.ingest.trc import read_trc
 
 

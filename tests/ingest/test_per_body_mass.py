@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import vocabulary
-from gaitdisc.ingest.per_body_mass import per_kg_findings
 from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.stated_units import per_kg_findings
 from gaitdisc.recording import Recording
 
 

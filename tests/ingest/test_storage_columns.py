@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gaitdisc.ingest.storage_columns import naming_findings, storage_columns
-from gaitdisc.ingest.storage_header import StorageHeader
+from gaitdisc.ingest.storage import StorageHeader, naming_findings, storage_columns
 from gaitdisc.ingest.streams import stream_of
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.storage_header import parsed_header
+from gaitdisc.ingest.storage import parsed_header
 
 
 def test_both_styles_at_once_as_in_the_emg_file_of_an_example():

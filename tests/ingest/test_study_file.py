@@ -27,6 +27,7 @@ from gaitdisc.ingest.study import (
 from gaitdisc.ingest.study_file import load_study, study_schema, study_text, write_study
 
 words = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)
+file_names = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=20)
 positive = st.floats(1e-3, 1e4)
 
 
@@ -36,7 +37,7 @@ def studies(draw):
         PlannedTrial,
         condition=st.sampled_from(["natural", "exo", "slow", "static", "unknown"]),
         session=st.sampled_from([None, "before", "after"]),
-        files=st.lists(words, min_size=1, max_size=3).map(tuple),
+        files=st.lists(file_names, min_size=1, max_size=3).map(tuple),
         speed_m_per_s=st.none() | positive,
         crop_s=st.none() | st.tuples(st.floats(0, 10), st.floats(11, 20)),
     )

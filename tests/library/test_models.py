@@ -5,9 +5,9 @@ import math
 import pytest
 
 from gaitdisc.library.models import model_of
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation_file import bundled
 from gaitdisc.simulation.writing import write_simulation
 
 

@@ -7,7 +7,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.contact_choice import chosen_contacts, named_markers
 from gaitdisc.recording import Event, Recording, Trial
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 
 
 def only(trial, *keys):

@@ -19,7 +19,7 @@ from gaitdisc.response.fit_response import (
 from gaitdisc.response.models import fit_linear, fit_models
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.derivatives import trajectory
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.statistics.r2 import r2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ChannelError, StrideError
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.strides import cut_strides
 
 

@@ -5,8 +5,7 @@ import pytest
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Event, Trial
-from gaitdisc.signals.contact_events import event_contacts
-from gaitdisc.signals.contact_force import plate_contacts
+from gaitdisc.signals.contacts import event_contacts, plate_contacts
 from gaitdisc.signals.direction import walking_direction
 
 

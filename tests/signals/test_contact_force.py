@@ -6,9 +6,8 @@ import pytest
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording, Source
-from gaitdisc.signals.contact_force import force_contacts, loaded, plate_contacts
-from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import order_findings
+from gaitdisc.signals.contact_movement import marker_contacts
+from gaitdisc.signals.contacts import force_contacts, loaded, order_findings, plate_contacts
 from gaitdisc.signals.direction import given_direction, walking_direction
 from gaitdisc.signals.strides import cut_strides
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.recording import Recording, Strides
-from gaitdisc.signals.emg_order import order_of_muscles, stance_over_swing
+from gaitdisc.signals.emg import order_of_muscles, stance_over_swing
 
 
 def walk(*names, swing=()):

@@ -7,7 +7,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording
-from gaitdisc.signals.emg_size import OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
+from gaitdisc.signals.emg import OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
 
 MUSCLES = ("emg_sol_r", "emg_ta_r", "emg_gas_r", "emg_rf_r")
 SIZES = np.array([3e-4, 5e-5, 1e-4, 2e-5])

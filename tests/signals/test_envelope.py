@@ -6,7 +6,7 @@ import pytest
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Recording, Source
-from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.emg import enveloped
 
 SOLEUS = Channel("emg_sol_r", "emg", "V", "r")
 

@@ -7,8 +7,8 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording
+from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
 from gaitdisc.signals.direction import given_direction
-from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
 
 OFFS = np.array([0.62, 1.637, 2.65])
 TIME = np.arange(330) / 100

@@ -5,7 +5,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Source
-from gaitdisc.signals.force_drift import drift_findings, swing_baseline
+from gaitdisc.signals.channel_quality import drift_findings, swing_baseline
 
 RATE = 1000.0
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import StrideError
-from gaitdisc.signals.contact_angles import angle_contacts
-from gaitdisc.signals.late_change import late_change, late_change_findings
+from gaitdisc.signals.contact_movement import angle_contacts
+from gaitdisc.signals.stride_quality import late_change, late_change_findings
 from gaitdisc.signals.strides import cut_strides
 
 

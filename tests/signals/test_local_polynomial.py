@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import savgol_filter as of_scipy
 
-from gaitdisc.signals.local_polynomial import savgol_filter
+from gaitdisc.signals.derivatives import savgol_filter
 
 
 @given(half=st.integers(2, 12), extra=st.integers(0, 30), derivative=st.integers(0, 2), seed=st.integers(0, 99))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gaitdisc.signals.period import stride_period
+from gaitdisc.signals.walking import stride_period
 
 
 @settings(deadline=None, max_examples=20)

@@ -7,7 +7,7 @@ import pytest
 
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
-from gaitdisc.signals.plateaus import plateau_findings, plateau_marked, plateaus
+from gaitdisc.signals.channel_quality import plateau_findings, plateau_marked, plateaus
 
 
 def test_free_joints_have_no_plateau(made):

@@ -5,7 +5,7 @@ import pytest
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.recording import Recording, Strides
-from gaitdisc.signals.side_labels import load_findings, marker_side_findings, sway_findings
+from gaitdisc.signals.sides import load_findings, marker_side_findings, sway_findings
 
 PLACES = {  # x forward, y to the left, z up [m]
     "RASI": (0.10, -0.12, 1.0), "LASI": (0.10, 0.12, 1.0), "RPSI": (-0.10, -0.05, 1.0), "LPSI": (-0.10, 0.05, 1.0),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.recording import Strides
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.stride_quality import outlying, stride_distances, stride_findings, without_outlying
 from gaitdisc.signals.strides import cut_strides
 

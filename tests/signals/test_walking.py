@@ -5,7 +5,7 @@ import pytest
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Strides
-from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import measured_walking, verify_walking
 

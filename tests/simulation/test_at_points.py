@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.at_points import at_points, leaf_columns
 from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.program import compiled_program
+from gaitdisc.simulation.program import at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.refusal import SimulationError
 
 

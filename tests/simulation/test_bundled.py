@@ -5,9 +5,9 @@ import pytest
 from scipy.special import ellipk
 
 from gaitdisc.errors import ReadError
-from gaitdisc.simulation.bundled import bundled, bundled_names
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import bundled, bundled_names
 from gaitdisc.simulation.solving import solve
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.simulation.delay_check import refuse_delays
+from gaitdisc.simulation.delays import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, State
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.refusal import SimulationError

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.at_points import at_points
 from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.program import compiled_program
+from gaitdisc.simulation.program import at_points, compiled_program
 
 X = np.concatenate([np.linspace(-30, 30, 301), [1e-8, -1e-8, 1e-3, 350.0, -350.0, 1e5, -1e5]])
 

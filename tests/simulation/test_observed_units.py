@@ -3,10 +3,10 @@
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.simulation.observed_units import refuse_units
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.unit_check import refuse_units
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.simulation.at_points import at_points
 from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.program import CODES, compiled_program
+from gaitdisc.simulation.program import CODES, at_points, compiled_program
 
 
 def _value(text, **values):

@@ -3,8 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.simulation.expression import Name, Number, Operation, parsed
-from gaitdisc.simulation.rewriting import substituted, written
+from gaitdisc.simulation.expression import Name, Number, Operation, parsed, substituted, written
 
 leaves = st.one_of(
     st.floats(allow_nan=False, allow_infinity=False).map(Number), st.sampled_from(["x", "v", "k"]).map(Name)

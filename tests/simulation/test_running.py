@@ -3,9 +3,8 @@
 import numpy as np
 
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.python_running import PythonCompiled
 from gaitdisc.simulation.python_simulation import python_simulation
-from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.running import PythonCompiled, compile_simulation
 
 
 def test_effects_act_at_ports_and_in_equations(ankle):

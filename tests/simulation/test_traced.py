@@ -7,8 +7,7 @@ from math import sin as sine
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.rewriting import written
+from gaitdisc.simulation.expression import parsed, written
 from gaitdisc.simulation.traced import NotTraced, traced_equations
 
 GRAVITY = 9.81

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from gaitdisc.simulation.bundled import bundled, bundled_names
 from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import bundled, bundled_names, simulation_of
 from gaitdisc.simulation.unit_check import unit_findings
 
 TEXT = """title = "mass"

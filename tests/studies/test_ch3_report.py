@@ -7,8 +7,8 @@ import pytest
 from gaitdisc.chapters.discrepancy.cell import cell_of
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import system_of
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.simulation_file import bundled
 
 STUDIES = Path(__file__).parents[2] / "studies"
 

@@ -43,7 +43,7 @@ def cell(
     returns: with the refusal in words where nothing can be fitted
 
     >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> from gaitdisc.simulation.parts import Term
     >>> system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
     >>> found = cell(system, "sindy", "dynamics", Conditions(duration_s=20.0))

@@ -31,7 +31,7 @@ def error_samples(record: Record, approach: Approach, of_time: bool = False) -> 
 
     >>> from gaitdisc.chapters.discrepancy.record import Conditions, recorded
     >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> from gaitdisc.simulation.parts import Term
     >>> pushed = system_of(bundled("van_der_pol"), Term("y", "equation", "constant_force", "0.1"))
     >>> error_samples(recorded(pushed, Conditions(duration_s=5.0)), "dynamics").y[:, 1].mean().round(2)

@@ -19,7 +19,7 @@ def forecast_start(record: Record, learned: Model | None, approach: Approach) ->
 
     >>> from gaitdisc.chapters.discrepancy.record import Conditions, recorded
     >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> record = recorded(system_of(bundled("van_der_pol")), Conditions(0.1, duration_s=20.0))
     >>> true, last = record.start(forecast=True), record.filtered[-1]
     >>> error = abs(forecast_start(record, None, "dynamics") - true).max()

@@ -31,7 +31,7 @@ def grid(
     Before the first, each method is fitted to a short record, so that no cell's seconds hold importing and compiling.
 
     >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> from gaitdisc.simulation.parts import Term
     >>> system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
     >>> len(grid(system, Conditions(duration_s=20.0), (0.0, 0.001), (0, 1), (("sindy",), ("dynamics",))))

@@ -47,7 +47,7 @@ def method_answer(
 
     >>> from gaitdisc.chapters.discrepancy.record import Conditions
     >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> alike = HiddenEffect("van der Pol", "", system_of(bundled("van_der_pol")))
     >>> method_answer(alike, recorded(alike.system, Conditions(0.001, duration_s=20.0)), "sindy").hidden
     ''

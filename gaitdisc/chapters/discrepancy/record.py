@@ -96,7 +96,7 @@ def recorded(system: System, conditions: Conditions) -> Record:
     """Run the true system and measure it.
 
     >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> recorded(system_of(bundled("lorenz")), Conditions(duration_s=5.0)).split
     301
     """

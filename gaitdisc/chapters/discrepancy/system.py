@@ -61,7 +61,7 @@ def system_of(
 
     gain: of the measured channels, which are the first states; every state and 1 where empty
 
-    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.simulation_file import bundled
     >>> system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3")).states
     ('x', 'y')
     """

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Axis, Field, Source
 from gaitdisc.regular_file import check_regular
 

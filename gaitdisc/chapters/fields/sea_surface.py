@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.chapters.fields.netcdf import read_variables
 from gaitdisc.errors import ReadError, ShapeError, UnitError
-from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.hdf5 import is_hdf5
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Axis, Field, Source
 
 WEEK_DAYS = 7.0

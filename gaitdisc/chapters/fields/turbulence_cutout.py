@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, ShapeError
-from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.hdf5 import data_set, hdf5_file, member_names
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Axis, Field, Source
 
 NAMES = {"velocity": ("u", "v", "w"), "pressure": ("p",)}

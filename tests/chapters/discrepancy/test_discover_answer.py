@@ -10,8 +10,8 @@ from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import system_of
 from gaitdisc.errors import ShapeError
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.simulation_file import bundled
 
 
 @pytest.fixture(scope="module")

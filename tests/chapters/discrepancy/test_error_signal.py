@@ -6,7 +6,7 @@ from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import system_of
 from gaitdisc.chapters.regression.sindy import fit_sindy
 from gaitdisc.errors import ShapeError
-from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.simulation_file import bundled
 
 
 def test_the_dynamical_error_is_the_hidden_term(quiet):

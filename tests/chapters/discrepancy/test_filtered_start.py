@@ -7,7 +7,7 @@ from gaitdisc.chapters.discrepancy.methods import MethodSettings
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import system_of
 from gaitdisc.errors import ShapeError
-from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.simulation_file import bundled
 
 
 @pytest.mark.parametrize("by", ["unscented", pytest.param("ensemble", marks=pytest.mark.slow)])

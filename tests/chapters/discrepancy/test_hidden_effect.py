@@ -7,7 +7,7 @@ from gaitdisc.chapters.discrepancy.hidden_effect import HiddenEffect, method_ans
 from gaitdisc.chapters.discrepancy.methods import MethodSettings
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import system_of
-from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.simulation_file import bundled
 
 CUBIC = {"y": {"x**3": -0.01}}
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.chapters.discrepancy.known_rates import KnownRates
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation_file import bundled
 from gaitdisc.simulation.solving import solve
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 
 from gaitdisc.chapters.discrepancy.system import system_of
-from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.simulation_file import bundled
 
 
 def test_what_is_hidden_is_in_the_true_rates_only(van_der_pol):

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.angle_unit import copied_coordinate_unit, plausible_unit
+from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
 
 TIME = np.arange(200) / 100
 NAMES = ["pelvis_rotation", "hip_flexion_r", "knee_angle_r", "ankle_angle_r"]

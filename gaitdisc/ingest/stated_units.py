@@ -1,22 +1,31 @@
-"""Degrees or radians: what a file states is checked against how far hips and knees move."""
+"""Units that a file states, held against its numbers: degrees or radians, m or mm, newtons or newtons per kg."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import UnitError
-from gaitdisc.recording import Finding
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import runs
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
 PERCENTILES = (5, 95)
 SHORTEST_S, FEWEST = 0.5, 20  # a shorter piece, or one of fewer samples, may hold no movement
 _COPIED = re.compile(r"(knee_angle_[rl])_beta")
+METRES_AT_MOST = 15.0  # no laboratory's markers are farther from its origin, and no body is smaller than 10 cm
+MILLIMETRES_AT_LEAST = 100.0
+FORCE_N = (5.0, 40.0)  # peak of the vertical force: half to four body weights in N/kg; a child of 5 kg has 50 N
+MOMENT_NM = (0.4, 6.0)  # peak of hip, knee and ankle in N m/kg; a child of 15 kg has 15 N m and more at push-off
+STANCE_S = (0.15, 3.0)  # a plate is loaded for as long as a step lasts; drift is longer, noise shorter
+SHARE = 0.5  # of the peak: above it while loaded
+EMPTY = 0.1  # of the peak: below it while the foot swings
+_LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 
 
 def plausible_unit(
@@ -113,3 +122,70 @@ def _undecided(file: str, why: str) -> UnitError:
         f"its header is silent and {why}",
         "Add the line inDegrees=yes or inDegrees=no before endheader.",
     )
+
+
+def distance_from_origin(places: NDArray[np.float64]) -> float:
+    """How far markers lie out, as the 99th percentile of their coordinates; NaN without any.
+
+    places (frame, coordinate): in the file's unit, NaN allowed; some thousand frames are looked at
+
+    >>> distance_from_origin(np.array([[1.0, -2.0]]))
+    1.99
+    """
+    some = places[:: max(len(places) // 1000, 1)]
+    finite = np.abs(some[np.isfinite(some)])
+    return float(np.quantile(finite, 0.99)) if finite.size else float("nan")
+
+
+def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
+    """Refuse a unit that the distance from the origin contradicts.
+
+    >>> refuse_other_unit("mm", 1500.0, "walk.trc", "Units in line 3")
+    """
+    if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST):
+        raise UnitError(
+            f"markers in {unit} are {'less' if unit == 'm' else 'more'} than {METRES_AT_MOST:g} {unit} from the origin",
+            f"those of {file} are {far:.4g} away, which looks like {'mm' if unit == 'm' else 'm'}",
+            f"Correct {where} of the file.",
+        )
+
+
+def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
+    """Say that ground forces or joint moments stated in N or N m are per kg of body mass.
+
+    >>> from gaitdisc.channel import vocabulary
+    >>> steps = np.tile(np.r_[np.full(60, 9.8), np.zeros(40)], 3)[:, None]
+    >>> belt = Recording(np.arange(300) / 100, steps, (vocabulary().named("ground_force_r_vy"),))
+    >>> [finding.kind for finding in per_kg_findings({"forces": belt})]
+    ['per body mass']
+    """
+    found = []
+    for key, quantity, unit, (low, high), like in (
+        ("forces", "vertical_force", "N", FORCE_N, "is loaded as in steps, where a person presses with hundreds of N"),
+        ("moments", "moment", "N m", MOMENT_NM, "is the largest moment of the legs, where walking needs tens of N m"),
+    ):
+        if key not in streams:
+            continue
+        recording = streams[key]
+        meant = [c.name for c in recording.channels if (c.quantity, c.unit) == (quantity, unit)]
+        peaks = {name: _peak(recording[name]) for name in meant if key == "forces" or _LEG.fullmatch(name)}
+        most = max(peaks, key=lambda name: peaks[name], default="")
+        walks = recording.duration_s >= STANCE_S[0] and (key == "moments" or (most and _like_steps(recording, most)))
+        if most and low <= peaks[most] <= high and walks:
+            what = f"peaks at {peaks[most]:.3g} {unit} and {like}: it looks like {unit} per kg of body mass"
+            spoils = f"contacts by force, moments and powers; state {unit}/kg, or multiply by body mass"
+            found.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
+    return found
+
+
+def _like_steps(forces: Recording, name: str) -> bool:
+    force = np.abs(np.nan_to_num(forces[name]))
+    peak = float(force.max())
+    lengths = [(end - start) / forces.rate_hz for start, end in runs(force > SHARE * peak)]
+    empty = float(np.mean(force < EMPTY * peak))
+    return empty > EMPTY and max(lengths, default=0.0) >= STANCE_S[0] and max(lengths, default=0.0) <= STANCE_S[1]
+
+
+def _peak(values: NDArray[np.float64]) -> float:
+    finite = np.abs(values[np.isfinite(values)])
+    return float(np.quantile(finite, 0.999)) if finite.size else 0.0

@@ -7,8 +7,8 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import StrideError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording
-from gaitdisc.signals.contact_events import event_contacts
-from gaitdisc.signals.contact_markers import marker_contacts
+from gaitdisc.signals.contact_movement import marker_contacts
+from gaitdisc.signals.contacts import event_contacts
 from gaitdisc.signals.direction import given_direction, walking_direction
 
 CONTACTS = np.array([0.731, 1.802, 2.93, 4.01, 5.12, 6.2])

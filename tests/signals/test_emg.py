@@ -7,7 +7,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Source
-from gaitdisc.signals.emg_quality import amplifier_range, burst_ratio, emg_findings, live_channels
+from gaitdisc.signals.emg import amplifier_range, burst_ratio, emg_findings, live_channels
 
 RATE = 1000.0
 STEP = 2.5 / 2**16
