@@ -36,8 +36,10 @@ def own_foot_kg(person: Person) -> float:
     return 0.0145 * person.mass_kg + FOOT_KG
 
 
-def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
-    """Stretches of a walk, as inputs and observation of tracked_ankle.toml."""
+def ankle_trials(
+    walk: TrueWalk, emg_late_s: float, emg_error: float = EMG_ERROR, others_nm: float = OTHERS_NM
+) -> Measured:
+    """Stretches of a walk, as inputs and observation of tracked_ankle.toml; errors are standard deviations."""
     rng = np.random.default_rng([walk.seed, 31])
     trial = measured(walk, walk.person.name, "", emg_late_s).stream("kinematics")
     angle = np.radians(trial.values[:, trial.names.index("ankle_angle_r")])
@@ -47,8 +49,8 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
     net = walk.moments[:, SIDE, ANKLE] + walk.spring[:, SIDE]
     net = net - (own_foot_kg(walk.person) + walk.person.foot_kg) * per_kg
     net = net + PRESSURE_M * _wander(rng, len(net)) * np.interp(walk.slow_s, walk.quick_s, walk.force[:, SIDE, 1])
-    others = others + OTHERS_NM * _wander(rng, len(net))
-    late = np.interp(walk.slow_s - emg_late_s, walk.slow_s, by_emg * (1 + EMG_ERROR * _wander(rng, len(net))))
+    others = others + others_nm * _wander(rng, len(net))
+    late = np.interp(walk.slow_s - emg_late_s, walk.slow_s, by_emg * (1 + emg_error * _wander(rng, len(net))))
     recorded = sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED)) - _low(net)
     columns = [recorded, *(_low(one) for one in (per_kg, late, others))]
     columns.append(np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1))

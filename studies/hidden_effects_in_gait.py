@@ -1,6 +1,6 @@
 """Effects hidden in the walks of the embedded cohort: which are named, and how near to the truth.
 
-    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--quick]
+    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--emg-error 0.05] [--others-nm 1.5] [--quick]
 
 Each of the twelve walks with one thing hidden that the simulation (tracked_ankle.toml) does not know: the spring of the
 exoskeleton, weak plantarflexors, EMG that is 40 ms late, 0.8 kg on the foot, a spring of 0.6 of its moment; and the
@@ -18,6 +18,8 @@ GIVEN = command_line(
     __doc__,
     argument("out", "CSV that gets the table (default: none)", nargs="?", type=Path),
     argument("--people", "how many of the twelve", 12),
+    argument("--emg-error", "error of the plantarflexors' moment, sd as a share of it", 0.05),
+    argument("--others-nm", "error of all other muscles' moment, sd [N m]", 1.5),
     QUICK,
 )  # before the slow imports
 
@@ -69,22 +71,22 @@ class Result:
         )
 
 
-def run(quick: bool, people_count: int = 12) -> Result:
+def run(quick: bool, people_count: int = 12, *errors: float) -> Result:
     """Hide each effect in each person's walk, and search for what is missing."""
     people = the_twelve()[: 1 if quick else people_count]
     hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
-    return Result(pd.DataFrame([found_in(person, effect) for person in people for effect in hidden]))
+    return Result(pd.DataFrame([found_in(person, effect, *errors) for person in people for effect in hidden]))
 
 
-def found_in(person: Person, hidden: str) -> dict[str, object]:
-    """One walk, one search: what it says beside what is true."""
+def found_in(person: Person, hidden: str, *errors: float) -> dict[str, object]:
+    """One walk, one search: what it says beside what is true; `errors` of the moments, as in `ankle_trials`."""
     size = {"spring": 1.0, "scaled moment": SCALED}.get(hidden, 0.0)
     spring = Spring(STIFFNESS * size) if size else None
     strength, added = WEAK if hidden == "weak plantarflexor" else 1.0, ADDED_KG if hidden == "foot mass" else 0.0
     walker = person.adapted_to(spring) if spring else replace(person, plantarflexors=strength, foot_kg=added)
     walk = walked(walker, spring, WALK_S + 4.0, seed=list(RIGHT).index(hidden))
     kg = own_foot_kg(person)
-    measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0)
+    measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0, *errors)
     found = discover(gd.read_simulation(MODEL).with_values({"foot_mass": kg}), measured)[0]
     moved = [one for one in found.corrections if not one.found.low <= one.given <= one.found.high]
     named = [(each.name, each.place) for each in found.effects] + [("correction", one.parameter) for one in moved]
@@ -109,7 +111,7 @@ def found_in(person: Person, hidden: str) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    result = run(GIVEN.quick, GIVEN.people)
+    result = run(GIVEN.quick, GIVEN.people, GIVEN.emg_error, GIVEN.others_nm)
     print(result.table.round(4).to_string())
     print(result.summary().round(3).to_string())
     if GIVEN.out:
