@@ -22,7 +22,7 @@ GIVEN = command_line(
     argument("--half", "develop, kept or both", "develop"),
     argument("--people", "only these", nargs="+", type=str, default=None),
     argument("--kinds", "only kinds of fault whose name has one of these words, separated by commas", ""),
-    argument("--others", "people of other laboratories", "/work/people"),
+    argument("--others", "people of other laboratories", str(SHARED / "people")),
     argument("-j", "processes", 1),
     argument("--healthy", "no faults: what is said of the people at hand", False),
     argument("--made", "no faults: what is said of so many made people", 0),

@@ -10,7 +10,7 @@ negative of the file's (moments are internal, conventions.md); which is, is prin
 
 from __future__ import annotations
 
-from command_line import argument, command_line
+from command_line import SHARED, argument, command_line
 
 GIVEN = command_line(
     __name__,
@@ -18,7 +18,7 @@ GIVEN = command_line(
     argument("out", "folder of the tables and of the runs", type=str, metavar="OUT"),
     argument("--half", "develop, kept or both", "develop"),
     argument("--people", "only these", nargs="+", type=str, default=None),
-    argument("--others", "people of other laboratories", "/work/people"),
+    argument("--others", "people of other laboratories", str(SHARED / "people")),
 )  # before the slow imports
 
 import csv

@@ -154,6 +154,10 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         share = float(known.std()) / limit.volts
         at_rail = np.abs(x) >= AT_RAIL_SHARE * limit.volts
         rail = f"range {limit.volts:.3g} V, from {limit.how}"
+        top, bottom = known.max(), known.min()  # a muscle meets each once: an input that stops before the others do
+        ends = (x >= top - 1e-6 * (top - bottom)) | ((x <= bottom + 1e-6 * (top - bottom)) & (bottom < 0))
+        if ends.mean() >= RAILS_SHARE > at_rail.mean():
+            at_rail, rail = ends, f"limits of this channel, {bottom:.3g} and {top:.3g} V"
         size = f"standard deviation {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
         clipped = at_rail.mean() >= CLIPPED_SHARE
         silent = 1.4826 * float(np.median(np.abs(known - np.median(known)))) / limit.volts

@@ -110,3 +110,10 @@ def test_a_clipped_channel_without_bursts_or_without_a_muscle_between_is_no_musc
     assert (found["b"].kind, found["b"].severity) == ("dead", "refused")
     assert "1 % of the samples at the amplifier's range 1.25 V" in found["b"].what and "0.3" in found["b"].what
     assert set(found) == {"a", "b"}
+
+
+def test_a_channel_that_stops_before_the_others_do_is_clipped_at_its_own_limits():
+    clipped = np.clip(30 * live(0.02, 7), -0.16, 0.16)
+    found = emg_findings(emg(sol=clipped, ta=live(0.1, 8)), 1.25)
+    assert [(one.channel, one.kind) for one in found] in ([("sol", "clipped")], [("sol", "unplugged")])
+    assert "limits of this channel, -0.16 and 0.16 V" in found[0].what
