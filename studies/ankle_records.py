@@ -23,8 +23,7 @@ from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_tri
 
 INPUTS = ("recorded", "per_kg", "plantarflexors", "others", "phase")
 LOWPASS_HZ, EDGE_S, TRIALS = 10.0, 2.0, 8
-PRESSURE_M, EMG_ERROR, OTHERS_NM = 0.003, 0.05, 1.5
-ERROR_HZ = 6.0
+PRESSURE_M, EMG_ERROR, OTHERS_NM, ERROR_HZ = 0.003, 0.05, 1.5, 6.0
 TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration, as in tracked_ankle.toml
 ANKLE, SIDE = 2, 0
 FLEXIONS = [0, 3, 4]  # hip, knee and ankle among the walk's angles

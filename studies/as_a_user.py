@@ -75,15 +75,15 @@ def answer_of(folder: Path, reference: Path, angles: str = "file", pages: bool =
 
 def undrawn(study: Path, reference: Path, checked: Answer) -> Answer:
     """Add what `run` finds to what `check` said."""
+    import gaitdisc as gd
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.clinic.reading import read_beside
-    from gaitdisc.errors import GaitdiscError
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.results.clinical_reference import load_reference
 
     try:
         run = run_study(load_study(study), study / "run")
-    except GaitdiscError as error:
+    except gd.GaitdiscError as error:
         return checked._replace(lines=[*checked.lines, f"refused: {error}"])
     lines = [f"refused: {one.condition}: {one.reason}" for one in run.refusals]
     lines += [f"{one.severity}: {one.kind}: {one.channel}, {one.what}" for own in run.cycles for one in own.findings]

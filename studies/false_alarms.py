@@ -11,17 +11,15 @@ import shutil
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from as_a_user import Answer, answer_of, told, without_numbers
 from markdown_table import markdown_table
 
+import gaitdisc as gd
 from gaitdisc.cohort.other_people import PATTERNS, Pattern, somebody, walking_with
 from gaitdisc.cohort.person import Person, drawn
-
-if TYPE_CHECKING:
-    from gaitdisc.recording import Trial
 
 COLUMNS = ("person", "kind", "trials", "cycles", "alarms", "sentences", "said")
 ALWAYS, WALKED_STRIDES, TRIALS, CONTROLS = 10.0, 6.5, 3, 20
@@ -82,11 +80,10 @@ def write_person(made: Made, folder: Path) -> None:
     (folder / "rec" / "participants.csv").write_text(table, encoding="utf-8")
 
 
-def on_plates(static: Trial, mass_kg: float, seed: int) -> Trial:
+def on_plates(static: gd.Trial, mass_kg: float, seed: int) -> gd.Trial:
     """Static trial with half of the body weight under the middle of each foot."""
-    from gaitdisc.channel import Channel
     from gaitdisc.cohort.marker_trial import FORCE_N, MOMENT_NM, belts
-    from gaitdisc.recording import Recording, Source
+    from gaitdisc.recording import Source
 
     markers, plates = static.stream("markers"), belts()
     time = np.arange(round(1000 * float(markers.time[-1]))) / 1000
@@ -100,8 +97,8 @@ def on_plates(static: Trial, mass_kg: float, seed: int) -> Trial:
             noise = FORCE_N if name[0] == "f" else MOMENT_NM
             columns.append(load + rng.normal(0.0, noise, len(time)))
             quantity, unit = ("force", "N") if name[0] == "f" else ("moment", "N m")
-            channels.append(Channel(f"{plate.name}_{name}", quantity, unit))
-    forces = Recording(time, np.column_stack(columns), tuple(channels), static.subject, "", Source(reader="cohort"))
+            channels.append(gd.Channel(f"{plate.name}_{name}", quantity, unit))
+    forces = gd.Recording(time, np.column_stack(columns), tuple(channels), static.subject, "", Source(reader="cohort"))
     return replace(static, streams={**static.streams, "forces": forces}, surfaces=plates)
 
 

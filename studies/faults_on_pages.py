@@ -220,18 +220,19 @@ def main() -> None:
     out.mkdir(parents=True, exist_ok=True)
     reference(out)
     if GIVEN.healthy or GIVEN.made:
-        import false_alarms
+        from false_alarms import COLUMNS as SEEN
+        from false_alarms import Made, made_reference, of_made, of_person, table
 
         jobs = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast) if GIVEN.healthy else []
         if GIVEN.made:
-            false_alarms.made_reference(out, GIVEN.seed)
-        made = [false_alarms.Made(number, GIVEN.seed, out) for number in range(GIVEN.made)]
+            made_reference(out, GIVEN.seed)
+        made = [Made(number, GIVEN.seed, out) for number in range(GIVEN.made)]
         name = "healthy.csv" if GIVEN.healthy else "made.csv"
         (out / name).unlink(missing_ok=True)
-        work, chosen = (false_alarms.of_person, jobs) if GIVEN.healthy else (false_alarms.of_made, made)
+        work, chosen = (of_person, jobs) if GIVEN.healthy else (of_made, made)
         rows = (row for rows in mapped(work, chosen, GIVEN.j) for row in rows)
-        written_rows(out / name, false_alarms.COLUMNS, rows, 0)
-        print(false_alarms.table(kept_rows(out / name), kept_rows(Path(GIVEN.against or "-"))))
+        written_rows(out / name, SEEN, rows, 0)
+        print(table(kept_rows(out / name), kept_rows(Path(GIVEN.against or "-"))))
         return
     everybody = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast)[: 1 if GIVEN.quick else None]
     words = QUICK_KINDS if GIVEN.quick else [word.strip() for word in GIVEN.kinds.split(",")]

@@ -32,16 +32,18 @@ def walk():
 @pytest.fixture
 def folder(walk, tmp_path):
     kinematics = walk.stream("kinematics").selected(ANGLES)
-    for name in ("nominal", "exo"):
-        write_storage(kinematics, tmp_path / f"{name}.mot")
+    (tmp_path / "P02").mkdir()
+    for number, name in enumerate(("nominal", "exo", "P02/nominal")):  # no two are one recording
+        write_storage(kinematics.with_values(kinematics.values + 0.01 * number), tmp_path / f"{name}.mot")
     return tmp_path
 
 
 def checked(folder, files, **settings):
     """Exit code, and what `gaitdisc check` says of a sound person P01 and of P02, whose device walk is `files`."""
     sound = tuple(PlannedTrial(condition=word, files=(f"{word}.mot",)) for word in ("nominal", "exo"))
+    others = PlannedTrial(condition="nominal", files=("P02/nominal.mot",))
     people = (
-        Participant(id="P02", trials=(sound[0], PlannedTrial(condition="exo", files=tuple(files)))),
+        Participant(id="P02", trials=(others, PlannedTrial(condition="exo", files=tuple(files)))),
         Participant(id="P01", trials=sound),
     )
     models = Models(angles=ANGLES, outputs=("knee_angle_r",))

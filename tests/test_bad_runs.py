@@ -166,7 +166,9 @@ def refused_words(monkeypatch, capsys, *words):
 
 
 def test_a_disk_that_fills_in_the_middle_keeps_what_was_finished(folder, monkeypatch, capsys):
-    written(folder, walker("P01"), walker("P02"))
+    for word in ("nominal", "exo"):
+        (folder / f"second_{word}.mot").write_bytes((folder / f"{word}.mot").read_bytes() + b"\n")
+    written(folder, walker("P01"), walker("P02", "second_nominal.mot", "second_exo.mot"))
     plain = os.fsync
 
     def full(handle):

@@ -121,7 +121,10 @@ def discovered(
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
-        found, augmented = discover(model, data, shapes, progress, weighed, refitted)
+        with np.errstate(
+            over="ignore", invalid="ignore"
+        ):  # an explanation that runs away explains nothing
+            found, augmented = discover(model, data, shapes, progress, weighed, refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "a simulation must be predictable from each sample to the next",

@@ -22,6 +22,7 @@ from gaitdisc.recording.runs import runs, spans_s
 JOINTS = ("angle", "translation")
 CHANCE = 1e-6  # of a stretch that repeats one value, with the channel's own share of repeated samples; no false one in
 FEWEST_REPEATS = 3  # 4,000 made channels (smooth, noisy, quantised, held, clamped), tests/ingest/test_plausible.py
+LEGS = re.compile("(pelvis|hip|knee|ankle|subtalar|foot)_")  # a model holds arms that no marker shows
 LEAP_TIMES = 3.0  # of the three steps beyond the edge of a stretch: a joint that turns slows down before it and after
 OFF_LEAP, FOOT_N = 0.2, 50.0  # of the largest force, and at least, in one sample: no foot loses and gains as much
 SHORTEST_SWING_S = 0.3
@@ -116,7 +117,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
         for place, channel in enumerate(recording.channels):
             if channel.quantity == "marker" or key == "forces":
                 groups.setdefault(re.sub("[._][^._]*$", "", channel.name), []).append(place)
-            elif channel.name in words and channel.quantity in JOINTS:
+            elif channel.name in words and channel.quantity in JOINTS and LEGS.match(channel.name):
                 groups[channel.name] = [place]
         for columns in map(np.array, groups.values()):
             load = [int(at) for at in columns if recording.channels[at].quantity == "vertical_force"]

@@ -45,7 +45,7 @@ def test_a_participant_of_a_study_and_too_few_participants(lab):
     people = (Participant(id="P01", trials=trials), Participant(id="P02", trials=(other,)))
     study = Study(conditions=Conditions(nominal="free", device="exo"), participants=people).placed(lab)
     found = compare_study(study, "P01")
-    assert (found.first, found.second) == ("P01 exo", "P01 free")
+    assert (found.first, found.second) == ("P01 free", "P01 exo")  # second minus first
     assert found.ordered()[0].startswith("ankle")
     with pytest.raises(SchemaError, match="P02 has none of 'free', 1 of 'exo'"):
         compare_study(study, "P02")

@@ -51,7 +51,7 @@ def first_time(small, tmp_path_factory):
     """Folder, variants and shares said, by question: computed once for all tests; what is learnt counts in one."""
     folder = tmp_path_factory.mktemp("variants")
     with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+        brief.setattr("gaitdisc.networks.training_settings.epochs_of", lambda *_: 2)
         modalities = computed(small, folder, "modalities")
     return {"modalities": (folder, *modalities), "sensitivity": (folder, *computed(small, folder, "sensitivity"))}
 

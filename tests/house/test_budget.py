@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
-from pathlib import Path
-
-_spec = importlib.util.spec_from_file_location("budget", Path(__file__).with_name("budget.py"))
-assert _spec is not None
-assert _spec.loader is not None
-budget = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(budget)
+import budget
 
 ROOMS, WHOLE = budget.read_rooms()
 SIZES, HOMELESS = budget.measure(ROOMS)
