@@ -104,8 +104,12 @@ def test_one_participant_carries_no_test(folder):
 
 @pytest.mark.slow
 def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
+    for name in ("P02", "P03", "P04_nominal", "P04_exo"):  # no two people share a recording
+        file = "exo.mot" if name.endswith("exo") else "nominal.mot"
+        (folder / f"{name}.mot").write_bytes((folder / file).read_bytes() + b"\n" * (2 + ord(name[2])))
     written(
-        folder, walker("P01"), walker("P02", exo=""), walker("P03", exo="gone.mot"), walker("P04"),
+        folder, walker("P01"), walker("P02", "P02.mot", ""), walker("P03", "P03.mot", "gone.mot"),
+        walker("P04", "P04_nominal.mot", "P04_exo.mot"),
         walker("P05", "still_ankle_angle_r_nominal.mot", "still_ankle_angle_r_exo.mot"),
     )  # fmt: skip
     code, words = said("run", folder)
