@@ -121,9 +121,7 @@ def discovered(
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
-        with np.errstate(
-            over="ignore", invalid="ignore"
-        ):  # an explanation that runs away explains nothing
+        with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
             found, augmented = discover(model, data, shapes, progress, weighed, refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
