@@ -12,8 +12,7 @@ import math
 import numpy as np
 
 from gaitdisc.simulation.operations import BLOCK, compiled, execute
-
-BOUND = 1e6  # a state beyond has diverged
+from gaitdisc.simulation.program import BOUND
 
 
 @compiled

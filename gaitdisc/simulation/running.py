@@ -13,8 +13,7 @@ from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
 from gaitdisc.simulation.delays import before_rows, linear_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
-from gaitdisc.simulation.machine import BOUND
-from gaitdisc.simulation.program import PointTable, at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.program import BOUND, PointTable, at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.python_simulation import PythonSimulation, called
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
