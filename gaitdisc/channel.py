@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -136,6 +136,15 @@ def nearest_word(word: str, among: Iterable[str]) -> str | None:
     by_fold = {candidate.lower(): candidate for candidate in among}
     close = difflib.get_close_matches(word.lower(), by_fold, n=1, cutoff=0.6)
     return by_fold[close[0]] if close else None
+
+
+def list_names(names: Sequence[str], most: int = 6, none: str = "nothing") -> str:
+    """Say the first names of many, and how many more there are.
+
+    >>> list_names(["a", "b", "c"], 2), list_names([])
+    ('a, b and 1 more', 'nothing')
+    """
+    return (", ".join(names[:most]) or none) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
 def folded_label(label: str) -> str:

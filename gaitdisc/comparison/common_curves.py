@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, nearest_word
+from gaitdisc.channel import Channel, list_names, nearest_word
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
 from gaitdisc.recording.wrapping import turn_of
@@ -92,8 +92,7 @@ def _say_lacking(walks: Sequence[WalkSummary], units: list[dict[str, str]], find
     for walk, unit in zip(walks, units, strict=True):
         absent = sorted(everything - set(unit))
         if absent:
-            more = f" and {len(absent) - 6} more" if len(absent) > 6 else ""
-            what = f"no {', '.join(absent[:6])}{more}, which the other has"
+            what = f"no {list_names(absent)}, which the other has"
             findings.append(Finding("note", "not compared", _name(walk), what, "the comparison of these"))
 
 

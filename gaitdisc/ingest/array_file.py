@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import list_names, nearest_word
 from gaitdisc.errors import GaitdiscError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.cells import even_time
 from gaitdisc.ingest.columns import Column, column_in_unit, column_of, named_channel, said_clock, split_unit
@@ -69,7 +69,9 @@ class ArrayFile:
         if not top:
             near = nearest_word(re.split(r"[.({]", steps)[0], self.names)
             hint = f", the nearest is {near!r}" if near else ""
-            raise self._refused(whole, f"it has {_some(self.names)}{hint}", "Correct the path in [channels].")
+            raise self._refused(
+                whole, f"it has {list_names(self.names, _SHOWN)}{hint}", "Correct the path in [channels]."
+            )
         rest = steps[len(top) :]
         if "".join(found[0] for found in _STEP.finditer(rest)) != rest:
             raise self._refused(whole, f"{rest!r} is no path", _REMEDY)
@@ -88,7 +90,9 @@ class ArrayFile:
         if field not in node:
             near = nearest_word(field, node)
             hint = f", the nearest is {near!r}" if near else ""
-            raise self._refused(path, f"the struct has {_some(tuple(node))}{hint}", "Correct the path in [channels].")
+            raise self._refused(
+                path, f"the struct has {list_names(tuple(node), _SHOWN)}{hint}", "Correct the path in [channels]."
+            )
         return node[field]
 
     def _element(self, node: Any, number: int, path: str) -> Any:
@@ -133,7 +137,7 @@ class ArrayFile:
 
     def overview(self) -> str:
         """Variables at the top of the file, in words."""
-        return f"{self.raw.name} holds {_some(self.names)}"
+        return f"{self.raw.name} holds {list_names(self.names, _SHOWN)}"
 
 
 def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> ArrayFile:
@@ -267,7 +271,7 @@ def _structs(file: Any, name: str, path: Path) -> Any:
 
 def _what(node: Any) -> str:
     if isinstance(node, Mapping):
-        return f"a struct of {_some(tuple(node))}"
+        return f"a struct of {list_names(tuple(node), _SHOWN)}"
     if isinstance(node, Cells):
         return f"{len(node.held)} elements"
     if isinstance(node, np.ndarray):
@@ -277,11 +281,6 @@ def _what(node: Any) -> str:
 
 def _shape(values: NDArray[Any]) -> str:
     return " x ".join(map(str, values.shape)) or "one number"
-
-
-def _some(names: tuple[str, ...]) -> str:
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return ", ".join(names[:_SHOWN]) + more if names else "nothing"
 
 
 def read_arrays(

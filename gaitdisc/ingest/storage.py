@@ -13,7 +13,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import QUANTITIES, Channel, folded_label, nearest_word, path_label, side_of, vocabulary
+from gaitdisc.channel import (
+    QUANTITIES,
+    Channel,
+    folded_label,
+    list_names,
+    nearest_word,
+    path_label,
+    side_of,
+    vocabulary,
+)
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Cells, Form, check_counts, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import Column, check_written_names, column_in_unit, mapped_label, named_channel, split_unit
@@ -261,8 +270,7 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
             by_guess.setdefault(column.guessed, []).append(column.label)
     findings = []
     for guess, labels in by_guess.items():
-        more = f" and {len(labels) - 6} more" if len(labels) > 6 else ""
-        what = f"{', '.join(labels[:6])}{more}: {guess}"
+        what = f"{list_names(labels)}: {guess}"
         findings.append(Finding("note", "guessed", file, what, "these channels if wrong; map them in [channels]"))
     sides = {column.channel.side for column in columns if column.label.lower().startswith("ground_force_v")}
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):

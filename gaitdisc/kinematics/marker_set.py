@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.channel import folded_label, nearest_word, schema_folder
+from gaitdisc.channel import folded_label, list_names, nearest_word, schema_folder
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS
 from gaitdisc.regular_file import check_regular
@@ -369,11 +369,7 @@ def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str
     *_, name, lacking = min(nearest)
     raise ChannelError(
         f"the markers need to be of one of the sets {', '.join(shipped_marker_sets())}",
-        f"{file or 'the static trial'} has {_some(static)}; the nearest set is {name}, which lacks {_some(lacking)}",
+        f"{file or 'the static trial'} has {list_names(static, none='no markers')}; "
+        f"the nearest set is {name}, which lacks {list_names(lacking)}",
         "Give the marker set, rename the markers, or write a set of your own as docs/kinematics.md shows.",
     )
-
-
-def _some(names: Sequence[str], most: int = 6) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return (", ".join(names[:most]) or "no markers") + more

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from gaitdisc.channel import list_names
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
@@ -255,8 +256,7 @@ def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
     if len(same) == 1:
         return first.line()
     channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
-    named = ", ".join(channels[:SHOWN]) + (f" and {len(channels) - SHOWN} more" if len(channels) > SHOWN else "")
-    where = ", ".join(part for part in (first.file, named) if part)
+    where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
     spoils = f"; spoils {first.spoils}" if first.spoils else ""
     said = f"{first.channel}: {first.what}" if first.channel else first.what
     return f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import median_abs_deviation, rankdata
 
+from gaitdisc.channel import list_names
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.joint_centres import hip_of_spines
 from gaitdisc.kinematics.marker_set import NEEDED, shipped_marker_sets
@@ -23,7 +24,6 @@ from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.strides import interpolated
 
 KIND = "contradicted"
-NAMED = 6  # channels of one line; a whole file is said by its first ones
 Contradictions = Iterator[tuple[Sequence[str], str]]  # channels that cannot be what they say, and why
 # Angles of files follow lines between single markers: r >= .85, median deviations .92 to 2.3 of theirs, offsets within
 # 12 deg of these and 6.4 deg apart from left to right (18 walks): 4 times, or 12 deg apart, is no choice of axes.
@@ -62,7 +62,7 @@ def without_contradicted(trial: Trial) -> Trial:
         recording = trial.stream(streams[0])
         found = list(check(*(trial.stream(key) for key in streams)))
         file, spoils = recording.source.file, "the channel: it is left out; correct the file"
-        said = [Finding("refused", KIND, file, what, spoils, ", ".join(names[:NAMED])) for names, what in found]
+        said = [Finding("refused", KIND, file, what, spoils, list_names(list(names), none="")) for names, what in found]
         lost = {name for names, _ in found for name in names}
         kept = [name for name in recording.names if name not in lost]
         rest = {key: value for key, value in trial.streams.items() if kept or key != streams[0]}

@@ -8,6 +8,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from gaitdisc.channel import list_names
 from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder, guarded
 from gaitdisc.whole_file import written_together
@@ -24,7 +25,6 @@ READERS = {  # the JSON file of each kind, and what reads its folder
     "variant_run.json": f"{HERE}.stores:load_variant_run",
     "cycles.json": f"{HERE}.stores:CYCLES.load",
 }
-SHOWN = 6  # files of a folder that holds no result
 
 
 class Saved:
@@ -65,10 +65,10 @@ def load_saved(folder: Path, readers: Mapping[str, str] = READERS) -> Any:
     for name, reader in readers.items():
         if (folder / name).is_file():
             return _function(reader)(folder)
-    held = sorted(path.name for path in folder.iterdir())[:SHOWN] if folder.is_dir() else []
+    held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
     raise SchemaError(
         f"a saved result is a folder with one of {', '.join(readers)}",
-        f"{folder.name} {'holds ' + (', '.join(held) or 'nothing') if folder.is_dir() else 'is no folder'}",
+        f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is no folder'}",
         "Give the folder that the command or .save(folder) wrote.",
     )
 

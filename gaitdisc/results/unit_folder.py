@@ -18,7 +18,7 @@ import pandas as pd
 from jsonschema import Draft202012Validator
 from numpy.typing import NDArray
 
-from gaitdisc.channel import schema_folder
+from gaitdisc.channel import list_names, schema_folder
 from gaitdisc.recording import Finding
 from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged, of_another_format
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
@@ -28,7 +28,6 @@ from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written
 FORMAT = 1
 EARLIER = {"told": "reconstructed"}  # what columns were called in folders saved before
 NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in its folder
-SHOWN = 4  # files of one line
 T = TypeVar("T")
 
 
@@ -107,10 +106,7 @@ def damaged_units(folder: Path) -> tuple[str, ...]:
             check_files(path.parent, data.get("sha256", {}))
         except DamagedError as error:
             kinds.setdefault(error.what, []).append(error.path.relative_to(folder).as_posix())
-    return tuple(
-        f"{', '.join(files[:SHOWN])}{f' and {len(files) - SHOWN} more' if len(files) > SHOWN else ''}: {what}"
-        for what, files in kinds.items()
-    )
+    return tuple(f"{list_names(files, 4)}: {what}" for what, files in kinds.items())
 
 
 def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
