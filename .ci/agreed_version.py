@@ -11,7 +11,7 @@ from pathlib import Path
 
 PLACES = {
     "pyproject.toml": r'^version = "([^"]+)"',
-    "gaitdisc/__init__.py": r'^__version__ = "([^"]+)"',
+    "gaitdisc/_version.py": r'^__version__ = "([^"]+)"',
     "CITATION.cff": r"^version: (\S+)",
     "CHANGELOG.md": r"^## (\S+)",  # the newest stands first
 }

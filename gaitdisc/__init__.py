@@ -4,6 +4,8 @@
 docs/compatibility.md, and docs/library.md has four short scripts.
 """
 
+from gaitdisc._version import __version__ as __version__
+
 TYPE_CHECKING = False  # typing itself takes longer to load than all else here; type checkers know the name
 if TYPE_CHECKING:
     from gaitdisc.channel import Channel as Channel
@@ -56,8 +58,6 @@ if TYPE_CHECKING:
     from gaitdisc.statistics.holm_sidak import holm_sidak as holm_sidak
     from gaitdisc.statistics.r2 import r2 as r2
     from gaitdisc.statistics.signed_rank import signed_rank as signed_rank
-
-__version__ = "0.1.0"
 
 # name -> module, and the name there; in the order of the reference
 _HOME = {

@@ -16,7 +16,7 @@ from typing import Annotated, Any
 
 import typer
 
-import gaitdisc
+from gaitdisc._version import __version__
 from gaitdisc.commands.exit_codes import ENDED, REFUSED
 from gaitdisc.commands.options import Overwrite
 from gaitdisc.errors import GaitdiscError
@@ -75,7 +75,7 @@ for _command in COMMANDS:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"gaitdisc {gaitdisc.__version__}")
+        typer.echo(f"gaitdisc {__version__}")
         raise typer.Exit
 
 

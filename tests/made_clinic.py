@@ -8,10 +8,10 @@ import pandas as pd
 from gaitdisc.channel import Channel
 from gaitdisc.clinic.reference import reference_of
 from gaitdisc.recording import PERCENT
-from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.clinical_variables import PROFILE
-from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
+from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.response_run import ResponseRun
 
 SOURCE = "# Made, after the form of Schwartz 2008: 83 children of 4 to 17 years; licence: none, made here"
 T = 2 * np.pi * PERCENT / 100

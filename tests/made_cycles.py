@@ -7,8 +7,8 @@ import pandas as pd
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results import PooledCycles, Refusal
-from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
+from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
+from gaitdisc.results.provenance import Refusal
 
 CHANNELS = (
     *(Channel(f"knee_angle_{side}", "angle", "deg", side) for side in "lr"),

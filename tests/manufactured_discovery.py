@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.recording import Finding
-from gaitdisc.results import Provenance
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs, Whereabouts
+from gaitdisc.results.provenance import Provenance
 
 NAN = float("nan")
 SPRING = FoundEffect(

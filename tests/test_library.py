@@ -40,6 +40,7 @@ def test_type_checkers_see_the_names_that_are_loaded():
         name: (f"gaitdisc.{module}", inside) if inside else (f"gaitdisc.{module.rpartition('.')[0]}", name)
         for name, (module, inside) in gd._HOME.items()
     }
+    assert seen.pop("__version__") == ("gaitdisc._version", "__version__")
     assert seen == loaded
     assert sorted(gd.__all__) == sorted(loaded)
 

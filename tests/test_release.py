@@ -46,7 +46,7 @@ def test_dated_changes_may_be_released(folder):
     ("name", "old", "new", "said"),
     [
         ("CITATION.cff", "\nversion: ", "\nversion: 9", "CITATION.cff says 9"),
-        ("gaitdisc/__init__.py", "__version__ = ", "version = ", "gaitdisc/__init__.py says no version"),
+        ("gaitdisc/_version.py", "__version__ = ", "version = ", "gaitdisc/_version.py says no version"),
         ("CHANGELOG.md", "(2027-01-31)", "(not released)", "CHANGELOG.md has no date: write '## "),
     ],
 )

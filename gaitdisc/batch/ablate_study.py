@@ -16,7 +16,9 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import LENGTHS_S, fit_data_quantity
 from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results import DataQuantity, Refusal, ResponseRun
+from gaitdisc.results.participant_response import DataQuantity
+from gaitdisc.results.provenance import Refusal
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.run_store import save_run
 from gaitdisc.results.stores import QUANTITY, RESPONSE
 from gaitdisc.write_lock import write_lock

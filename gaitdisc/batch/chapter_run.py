@@ -13,7 +13,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import gaitdisc
 from gaitdisc.batch.chapter_parts import OUT, Part, studies_folder
 from gaitdisc.errors import SchemaError, TrainingError
 from gaitdisc.own_files import claim_folder
@@ -95,7 +94,7 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
     """Run the study of a part to its end, and return what it printed."""
     words = [str(folder) if word == OUT else word for word in (part.quick_words if quick else part.words)]
     command = [sys.executable, str(studies_folder() / f"{part.study}.py"), *words]
-    package = str(Path(gaitdisc.__file__).parents[1])
+    package = str(Path(__file__).parents[2])
     paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH", ""))))
     environment = {**os.environ, "PYTHONPATH": paths, "PYTHONUTF8": "1", "GAITDISC_DATA": str(_data_folder(data))}
     said = folder / SAID

@@ -8,17 +8,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import gaitdisc
+from gaitdisc._version import __version__
 from gaitdisc.batch.chapter_parts import PARTS
 from gaitdisc.batch.chapter_run import NAME as CHAPTER
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError
 from gaitdisc.kinematics.marker_set import shipped_marker_sets
 from gaitdisc.recording import Finding
-from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.reconstruction import Reconstruction
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.saved import load_saved
 from gaitdisc.results.sealed_json import read_sealed
 from gaitdisc.results.variants import VariantRun
@@ -222,11 +223,7 @@ def _of_markers(findings: Iterable[Finding], hip: str | None) -> Iterator[str]:
 @cache
 def entries() -> dict[str, str]:
     """Every entry of `data_schema/methods.bib`, by key."""
-    text = (
-        (schema_folder() / "methods.bib")
-        .read_text(encoding="utf-8")
-        .replace("{VERSION}", f"{{{gaitdisc.__version__}}}")
-    )
+    text = (schema_folder() / "methods.bib").read_text(encoding="utf-8").replace("{VERSION}", f"{{{__version__}}}")
     found = {match[1]: match[0] for match in re.finditer(r"^@\w+\{(\w+),\n.*?^\}", text, re.MULTILINE | re.DOTALL)}
     absent = sorted({key for keys in MENTIONED.values() for key in keys} - set(found))
     if absent:

@@ -15,8 +15,8 @@ from gaitdisc.ingest.study import Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
-from gaitdisc.results import WalkSummary
 from gaitdisc.results.mismatch import Mismatch, Smallest
+from gaitdisc.results.walk_summary import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ
 
 

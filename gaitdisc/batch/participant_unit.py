@@ -15,8 +15,11 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.walk import Walk
-from gaitdisc.results import ParticipantResponse, PooledCycles, Refusal, WalkSummary
+from gaitdisc.results.participant_response import ParticipantResponse
+from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.stores import REFUSED, RESPONSE, WALK, Refused, unit_name
+from gaitdisc.results.walk_summary import WalkSummary
 
 if TYPE_CHECKING:
     from gaitdisc.response.fit_response import ResponseSettings

@@ -15,7 +15,7 @@ from gaitdisc.processing.study_walks import StudyWalks
 from gaitdisc.processing.walk import Walk
 from gaitdisc.recording import Trial
 from gaitdisc.response.samples import gait_samples
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 
 
 def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:

@@ -18,7 +18,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-import gaitdisc
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
@@ -187,7 +186,7 @@ def public_title(study: Study) -> str:
 def package_words() -> frozenset[str]:
     """Words of this package's sentences, of its vocabulary, and of the system's own errors."""
     literals: list[str] = [os.strerror(number) for number in errno.errorcode]
-    for path in Path(gaitdisc.__file__).parent.rglob("*.py"):
+    for path in Path(__file__).parents[1].rglob("*.py"):
         code = _TEXT.sub("", path.read_text(encoding="utf-8"))
         literals += (one or other for one, other in _LITERAL.findall(code))
     with (schema_folder() / "channels.csv").open(newline="", encoding="utf-8") as file:

@@ -8,9 +8,10 @@ from collections.abc import Iterator, Sequence
 from gaitdisc.clinic.contrast import contrast_of
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
+from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.results.response_run import ResponseRun
 
 Sessions = dict[tuple[str, str], tuple[ClinicalReading, ...]]
 

@@ -13,8 +13,7 @@ from gaitdisc.batch.target_walks import STATES
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Study
 from gaitdisc.recording import Samples
-from gaitdisc.results import Refusal
-from gaitdisc.results.provenance import made_now
+from gaitdisc.results.provenance import Refusal, made_now
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct

@@ -11,16 +11,10 @@ from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, resp
 from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
-from gaitdisc.results import (
-    DataQuantity,
-    OverParticipants,
-    PairTests,
-    ParticipantResponse,
-    Provenance,
-    Refusal,
-    ResponseRun,
-)
-from gaitdisc.results.provenance import made_now
+from gaitdisc.results.over_participants import OverParticipants, PairTests
+from gaitdisc.results.participant_response import DataQuantity, ParticipantResponse
+from gaitdisc.results.provenance import Provenance, Refusal, made_now
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.run_store import created_before, save_run
 from gaitdisc.results.stores import QUANTITY
 from gaitdisc.results.unit_folder import damaged_units

@@ -20,7 +20,7 @@ from gaitdisc.ingest.study import Models, Participant, Study
 from gaitdisc.ingest.trial_sets import is_walk
 from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 
 EDGE_S = 0.3  # where a zero-lag filter lacks one side
 STATES = (

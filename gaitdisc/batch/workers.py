@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Participant
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 
 if TYPE_CHECKING:
     from joblib.externals.loky import ProcessPoolExecutor

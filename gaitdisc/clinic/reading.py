@@ -9,10 +9,10 @@ from gaitdisc.clinic.like_controls import like_controls, like_published
 from gaitdisc.clinic.profile import deviation_index, profile_of
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
 from gaitdisc.clinic.rules import outstanding
-from gaitdisc.results import PooledCycles
 from gaitdisc.results.clinical_reading import ClinicalReading
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.leg_curves import FEET, LegCurves, legs_of
+from gaitdisc.results.pooled_cycles import PooledCycles
 
 FEW = 3  # cycles of a leg below which a mean is that of single steps
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"

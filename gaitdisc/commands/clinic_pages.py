@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from gaitdisc.report.clinic.words import PageWords
-    from gaitdisc.results import Provenance, ResponseRun
     from gaitdisc.results.clinical_reading import PersonSession
     from gaitdisc.results.clinical_reference import ClinicalReference
+    from gaitdisc.results.provenance import Provenance
+    from gaitdisc.results.response_run import ResponseRun
 
 REFERENCE = "reference"  # folder of a run, beside its cycles
 WORDS = "words.csv"  # of another language, beside them
@@ -177,7 +178,7 @@ def _pages(
 
 def _with_failed(run: ResponseRun, failed: list[tuple[str, str]], run_folder: Path) -> ResponseRun:
     """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
-    from gaitdisc.results import Refusal
+    from gaitdisc.results.provenance import Refusal
 
     places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
     refusals = []

@@ -13,7 +13,7 @@ from gaitdisc.commands.run_report import claimed
 from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
-    from gaitdisc.results import ResponseRun
+    from gaitdisc.results.response_run import ResponseRun
 
 
 def reference(

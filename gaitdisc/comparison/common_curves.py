@@ -12,7 +12,7 @@ from gaitdisc.channel import Channel, list_names, nearest_word
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
 from gaitdisc.recording.wrapping import turn_of
-from gaitdisc.results import WalkSummary
+from gaitdisc.results.walk_summary import WalkSummary
 
 LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
 SPOILED = ("frozen", "clipped", "dead")  # kinds of findings: what is left of the channel does not move as the joint did

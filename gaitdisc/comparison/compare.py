@@ -14,7 +14,6 @@ from gaitdisc.comparison.alignment import aligned, common_shift
 from gaitdisc.comparison.common_curves import CommonCurves, common_curves
 from gaitdisc.errors import ComparisonError
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results import WalkSummary
 from gaitdisc.results.mismatch import (
     CHANNEL_COLUMNS,
     REGION_COLUMNS,
@@ -24,6 +23,7 @@ from gaitdisc.results.mismatch import (
     Smallest,
 )
 from gaitdisc.results.provenance import Provenance, made_now
+from gaitdisc.results.walk_summary import WalkSummary
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,

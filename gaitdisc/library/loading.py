@@ -9,10 +9,11 @@ from gaitdisc.results.saved import READERS, load_saved
 
 if TYPE_CHECKING:
     from gaitdisc.library.reconstructor import Reconstructor
-    from gaitdisc.results import PooledCycles, ResponseRun
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.results.mismatch import Mismatch
+    from gaitdisc.results.pooled_cycles import PooledCycles
     from gaitdisc.results.reconstruction import Reconstruction
+    from gaitdisc.results.response_run import ResponseRun
     from gaitdisc.results.variants import VariantRun
 
 MODEL = {"model.json": "gaitdisc.library.reconstructor:load_reconstructor"}

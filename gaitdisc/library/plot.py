@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from gaitdisc.library.reconstructor import Reconstructor
-    from gaitdisc.results import ResponseRun
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.results.mismatch import Mismatch
     from gaitdisc.results.reconstruction import Reconstruction
+    from gaitdisc.results.response_run import ResponseRun
 
 STRIDE = "stride [%]"
 __all__ = ["curves", "cycles", "discovery", "latent", "mismatch", "r2", "reconstruction", "recording"]

@@ -37,8 +37,8 @@ from gaitdisc.processing.trial_cycles import (
     without_doubted,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
-from gaitdisc.results import PooledCycles, Refusal
-from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
+from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.signals.contacts import rise_of
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons

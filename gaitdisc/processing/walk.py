@@ -10,8 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
-from gaitdisc.results import WalkSummary
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 
 
 @dataclass(frozen=True, eq=False)

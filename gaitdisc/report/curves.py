@@ -15,8 +15,9 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
-from gaitdisc.results import ResponseRun, WalkSummary
 from gaitdisc.results.pooled_cycles import mean_curve
+from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.walk_summary import WalkSummary
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -28,8 +28,9 @@ from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import provenance_tables, save_table, save_tables
 from gaitdisc.report.walks import findings_table, refusals_table
 from gaitdisc.report.wording import SIDE_WORDS, counted, label, listed, sideless, unit_text, upwards
-from gaitdisc.results import PooledCycles, ResponseRun
 from gaitdisc.results.leg_curves import FEET
+from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.results.response_run import ResponseRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,7 +16,7 @@ from gaitdisc.report.palette import MEASURED, MODELS, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels, panels_for, sheets
 from gaitdisc.report.r2 import r2_by_variable
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
-from gaitdisc.results import ParticipantResponse
+from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, StrideMean, mean_over_strides
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.r2 import held_out_text, models_key
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
-from gaitdisc.results import ResponseRun
+from gaitdisc.results.response_run import ResponseRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import gaitdisc
+from gaitdisc._version import __version__
 from gaitdisc.own_files import under_this_guard
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, as_markdown, save_tables
@@ -33,7 +33,7 @@ def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
 
 def page_text(template: str, shown: Mapping[str, Any]) -> str:
     """Page of a template and what it shows."""
-    return _templates().get_template(f"{template}.html.j2").render(version=gaitdisc.__version__, **shown)
+    return _templates().get_template(f"{template}.html.j2").render(version=__version__, **shown)
 
 
 def _templates() -> jinja2.Environment:

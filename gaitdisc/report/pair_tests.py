@@ -15,8 +15,8 @@ from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, she
 from gaitdisc.report.r2 import held_out_text, lowest_drawn, models_key, r2_numbers, variables
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
-from gaitdisc.results import PairTests, ResponseRun
-from gaitdisc.results.over_participants import FAMILIES, PAIRS
+from gaitdisc.results.over_participants import FAMILIES, PAIRS, PairTests
+from gaitdisc.results.response_run import ResponseRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

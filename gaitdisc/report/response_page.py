@@ -17,7 +17,7 @@ from gaitdisc.report.r2 import held_out_text, not_computed, participants_table, 
 from gaitdisc.report.sentences import participant_sentences, study_sentences
 from gaitdisc.report.table import Table, flattened, provenance_tables, save_table, save_tables
 from gaitdisc.report.walks import dropped_table, findings_table, fits_table, refusals_table, strides_figure, walks_table
-from gaitdisc.results import ResponseRun
+from gaitdisc.results.response_run import ResponseRun
 
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded

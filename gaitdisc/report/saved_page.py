@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results import PooledCycles, Provenance, ResponseRun
-from gaitdisc.results.provenance import code_sha256
+from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.results.provenance import Provenance, code_sha256
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.saved import load_saved
 from gaitdisc.results.sealed_json import OWN, file_sha256, read_sealed, sealed_text
 from gaitdisc.results.variants import QUESTIONS

@@ -16,7 +16,8 @@ from gaitdisc.report.r2 import (
     sample_counts,
 )
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number, plain
-from gaitdisc.results import ParticipantResponse, ResponseRun
+from gaitdisc.results.participant_response import ParticipantResponse
+from gaitdisc.results.response_run import ResponseRun
 
 if TYPE_CHECKING:
     import rich.table

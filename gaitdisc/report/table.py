@@ -11,8 +11,7 @@ from typing import Any
 import pandas as pd
 
 from gaitdisc.recording import Finding
-from gaitdisc.results import Refusal
-from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.spreadsheet import write_csv
 
 

@@ -15,7 +15,7 @@ from gaitdisc.report.palette import DROPPED, KEPT, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.table import Table, left_out_table
 from gaitdisc.report.wording import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
-from gaitdisc.results import ResponseRun
+from gaitdisc.results.response_run import ResponseRun
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from gaitdisc.results import PairTests, ParticipantResponse
-from gaitdisc.results.over_participants import FAMILIES, FAMILY_COLUMNS, PAIRS, TEST_COLUMNS
+from gaitdisc.results.over_participants import FAMILIES, FAMILY_COLUMNS, PAIRS, TEST_COLUMNS, PairTests
+from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by
 from gaitdisc.statistics.signed_rank import signed_rank, smallest_p
 

@@ -13,8 +13,7 @@ from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
 from gaitdisc.response.models import report_share
-from gaitdisc.results import ParticipantResponse
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
 
 LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
 PARTS = ("first", "last")

@@ -15,8 +15,7 @@ from gaitdisc.recording import Samples, Trajectory
 from gaitdisc.response.band import response_bands
 from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network, refitted_network
 from gaitdisc.response.samples import gait_samples
-from gaitdisc.results import HeldOut, ParticipantResponse
-from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS
+from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS, HeldOut, ParticipantResponse
 from gaitdisc.statistics.r2 import r2
 from gaitdisc.statistics.stride_residuals import stride_curves, strides_of_phase
 from gaitdisc.units import rate_unit

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ComparisonError
 from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns, r2_by_participant, too_few
-from gaitdisc.results import OverParticipants, ParticipantResponse
 from gaitdisc.results.over_participants import (
     BASELINE_COLUMNS,
     LENGTH_COLUMNS,
@@ -18,9 +17,10 @@ from gaitdisc.results.over_participants import (
     REDUCTION_TEST_COLUMNS,
     RESPONDER_COLUMNS,
     WHOLE,
+    OverParticipants,
     no_rows,
 )
-from gaitdisc.results.participant_response import BASELINES, MODELS, DataQuantity
+from gaitdisc.results.participant_response import BASELINES, MODELS, DataQuantity, ParticipantResponse
 from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
 from gaitdisc.statistics.groups import Groups, find_groups
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_strides

@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-import gaitdisc
+from gaitdisc._version import __version__
 from gaitdisc.errors import SchemaError
 
 T = TypeVar("T")
@@ -104,7 +104,7 @@ def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
 
 def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
     """Return the refusal of a file that another version of gaitdisc wrote."""
-    do = f"Another version wrote it: install that one to read it, or compute it again with {gaitdisc.__version__}."
+    do = f"Another version wrote it: install that one to read it, or compute it again with {__version__}."
     return damaged(path, f"of format {str(found)[:20]}, not {ours}", do)
 
 

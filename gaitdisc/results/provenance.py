@@ -12,7 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-import gaitdisc
+from gaitdisc._version import __version__
 
 DISTRIBUTIONS = ("numpy", "scipy", "torch", "pandas", "ezc3d")
 
@@ -45,7 +45,7 @@ def made_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, str], s
 
 def installed_versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that compute the numbers."""
-    own = f"{gaitdisc.__version__} (code {code_sha256()[:12]})"
+    own = f"{__version__} (code {code_sha256()[:12]})"
     versions = {"gaitdisc": own, "python": platform.python_version()}
     for name in DISTRIBUTIONS:
         try:
@@ -59,7 +59,7 @@ def installed_versions() -> dict[str, str]:
 def code_sha256() -> str:
     """SHA-256 over the package's own source: results of other code are not taken for those of this one."""
     digest = hashlib.sha256()
-    package = Path(gaitdisc.__file__).parent
+    package = Path(__file__).parents[1]
     for path in sorted(package.rglob("*.py")):
         if package / "studies" not in path.parents:  # in a wheel they lie in the package, in a checkout beside it
             digest.update(path.read_bytes())

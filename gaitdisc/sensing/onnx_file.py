@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-import gaitdisc
+from gaitdisc._version import __version__
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Scale
 from gaitdisc.regression.fourier_ridge import FourierRidge
@@ -72,7 +72,7 @@ def _metadata(model: SensingModel) -> dict[str, str]:
     what = model.reconstructor.sensing
     count = len(what.sensors)
     return {
-        "program": f"gaitdisc {gaitdisc.__version__}",
+        "program": f"gaitdisc {__version__}",
         "kind": model.reconstructor.kind,
         "sensors": json.dumps(what.sensors),
         "sensor_units": json.dumps([channel.unit for channel in model.channels[:count]]),

@@ -14,8 +14,8 @@ from gaitdisc.batch.citations import MENTIONED, OF_MODELS, OF_PARTS, citations_o
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results import Provenance
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, CURVES, REGION_COLUMNS, Exchange, Mismatch
+from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.reconstruction import Reconstruction
 from gaitdisc.results.sealed_json import sealed_text
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST

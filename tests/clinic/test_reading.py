@@ -6,7 +6,7 @@ from made_clinic import made_controls, made_person
 
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.recording import Finding
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 
 
 def test_a_person_beside_a_reference_has_all_of_a_page():

@@ -5,8 +5,8 @@ from unittest.mock import patch
 from made_clinic import SOURCE, made_controls, made_person, made_run, published_table, written_table
 
 from gaitdisc.commands.clinic_pages import keep_reference, kept_reference, write_people
-from gaitdisc.results import Refusal
 from gaitdisc.results.clinical_reference import save_reference
+from gaitdisc.results.provenance import Refusal
 
 
 def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):

@@ -10,8 +10,8 @@ from gaitdisc.cli import app
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Samples
-from gaitdisc.results import ResponseRun
 from gaitdisc.results.provenance import made_now
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.run_store import save_run
 from gaitdisc.results.stores import CYCLES, cycles_name
 from gaitdisc.sensing.model_folder import SensingModel, save_model

@@ -8,8 +8,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.comparison.common_curves import common_curves
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
-from gaitdisc.results import WalkSummary
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 
 NO_STRIDES = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
 

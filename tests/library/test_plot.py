@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
-from gaitdisc.results import Provenance
+from gaitdisc.results.provenance import Provenance
 
 mpl.use("Agg")
 X_AND_PERCENT = np.zeros((5, 1))

@@ -25,8 +25,8 @@ from gaitdisc.errors import WriteError
 from gaitdisc.library.loading import MODEL
 from gaitdisc.own_files import KINDS, LIST
 from gaitdisc.recording import Recording, Source
-from gaitdisc.results import Provenance
 from gaitdisc.results.discovery_folder import load_discovery, save_discovery
+from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.saved import READERS, Saved
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import simulation_of

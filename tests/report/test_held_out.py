@@ -11,7 +11,7 @@ from gaitdisc.report.held_out import (
     residual_figures,
     residual_numbers,
 )
-from gaitdisc.results import HeldOut
+from gaitdisc.results.participant_response import HeldOut
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "emg_sol_r")
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from gaitdisc.recording import Finding
 from gaitdisc.report.response_page import write_report
 from gaitdisc.report.sentences import r2_text
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.spreadsheet import read_csv
 
 NAMES = (

@@ -11,9 +11,9 @@ import pytest
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.recording import Finding
-from gaitdisc.report import response_page, write_report
-from gaitdisc.report.response_page import method_sentences
-from gaitdisc.results import Refusal
+from gaitdisc.report import response_page
+from gaitdisc.report.response_page import method_sentences, write_report
+from gaitdisc.results.provenance import Refusal
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 

@@ -19,8 +19,8 @@ from gaitdisc.report.reconstruction_page import write_reconstruction_report
 from gaitdisc.report.response_page import write_report
 from gaitdisc.report.saved_page import PAGES, draw_saved, page_of
 from gaitdisc.report.variants import write_variants
-from gaitdisc.results import ResponseRun
 from gaitdisc.results.provenance import made_now
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.run_store import save_run
 from gaitdisc.results.saved import READERS, Saved
 from gaitdisc.results.sealed_json import read_sealed, sealed_text

@@ -12,7 +12,7 @@ from gaitdisc.report.table import (
     seen_table,
     words_table,
 )
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 
 
 def test_tables_are_written_without_index(tmp_path):

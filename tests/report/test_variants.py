@@ -21,7 +21,7 @@ from gaitdisc.report.variants import (
     write_variants,
 )
 from gaitdisc.response.modalities import AS_STUDIED, compare_modalities, compare_settings
-from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 VARIABLES = ("knee_angle_r", "ankle_angle_r", "emg_sol_r")

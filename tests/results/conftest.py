@@ -8,8 +8,11 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
-from gaitdisc.results import HeldOut, PairTests, ParticipantResponse, Provenance, Refusal, ResponseRun, WalkSummary
-from gaitdisc.results.over_participants import FAMILY_COLUMNS, TEST_COLUMNS
+from gaitdisc.results.over_participants import FAMILY_COLUMNS, TEST_COLUMNS, PairTests
+from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+from gaitdisc.results.provenance import Provenance, Refusal
+from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.walk_summary import WalkSummary
 
 
 @pytest.fixture

@@ -13,9 +13,9 @@ import pytest
 from resealed import resealed
 
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.results import DataQuantity, OverParticipants, Refusal
-from gaitdisc.results.over_participants import TABLES, no_rows
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS
+from gaitdisc.results.over_participants import TABLES, OverParticipants, no_rows
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.run_store import load_run, save_run
 from gaitdisc.results.stores import (
     OVER,

@@ -2,8 +2,16 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results import OverParticipants, PairTests
-from gaitdisc.results.over_participants import FAMILY_COLUMNS, LENGTH_COLUMNS, TABLES, TEST_COLUMNS, WHOLE, no_rows
+from gaitdisc.results.over_participants import (
+    FAMILY_COLUMNS,
+    LENGTH_COLUMNS,
+    TABLES,
+    TEST_COLUMNS,
+    WHOLE,
+    OverParticipants,
+    PairTests,
+    no_rows,
+)
 
 
 def test_a_table_without_a_column_is_refused():

@@ -1,7 +1,6 @@
 from datetime import UTC, datetime, timedelta
 
-from gaitdisc.results import Refusal
-from gaitdisc.results.provenance import code_sha256, installed_versions, made_now
+from gaitdisc.results.provenance import Refusal, code_sha256, installed_versions, made_now
 
 
 def test_versions_name_what_computes_the_numbers():

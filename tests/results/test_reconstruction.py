@@ -7,7 +7,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SchemaError
-from gaitdisc.results import Provenance
+from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.reconstruction import (
     MEASURES,
     Reconstruction,

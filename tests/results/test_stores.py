@@ -11,8 +11,8 @@ from made_cycles import made_cycles
 from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.results import OverParticipants, Refusal
-from gaitdisc.results.over_participants import TABLES, no_rows
+from gaitdisc.results.over_participants import TABLES, OverParticipants, no_rows
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.stores import (
     CYCLES,
     MISMATCH,

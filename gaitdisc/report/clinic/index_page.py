@@ -9,9 +9,9 @@ from gaitdisc.report.clinic.words import ENGLISH, PageWords, noted_sentences
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import save_tables, words_table
 from gaitdisc.report.wording import NONE, counted, number
-from gaitdisc.results import ResponseRun
 from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.whole_file import write_whole
 
 RANKS = {"red": 0, "amber": 1, "green": 2}

@@ -15,8 +15,8 @@ from gaitdisc.clinic.contrast import contrast_of
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.report.clinic.index_page import write_index
 from gaitdisc.report.clinic.person_page import write_person_page
-from gaitdisc.results import Refusal
 from gaitdisc.results.clinical_reading import PersonSession
+from gaitdisc.results.provenance import Refusal
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 HOSTILE = '<img src=x onerror="document.title=1">'

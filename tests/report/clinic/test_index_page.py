@@ -7,8 +7,8 @@ from made_clinic import made_controls, made_person, made_run
 
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.report.clinic.index_page import write_index
-from gaitdisc.results import Refusal
 from gaitdisc.results.clinical_reading import PersonSession
+from gaitdisc.results.provenance import Refusal
 
 
 def test_refused_first_then_amber_then_green_each_with_why_and_link(tmp_path):

@@ -70,7 +70,7 @@ def test_a_hostile_name_is_words_and_a_page_drawn_again_has_the_same_bytes(tmp_p
 
 
 def test_a_person_without_a_kept_cycle_has_a_page_with_the_reason(tmp_path):
-    from gaitdisc.results import Refusal
+    from gaitdisc.results.provenance import Refusal
 
     person = made_person()
     nothing = made_person(
