@@ -82,7 +82,7 @@ def made_controls(count=20, condition="walk"):
 def made_run(*cycles, refusals=()):
     """Run of cycles and refusals."""
     own = tuple(refusal for one in cycles for refusal in one.refusals)
-    return ResponseRun("A week", "walk", "", (), (), (*refusals, *own), PROVENANCE, cycles=cycles)
+    return ResponseRun("A week", "walk", "", (*refusals, *own), PROVENANCE, {"cycles.json": cycles})
 
 
 def published_table(change=lambda row: row):

@@ -112,3 +112,17 @@ def test_the_report_reads_results_and_computes_none():
         if room == "report" and name.startswith("gaitdisc.") and name.split(".")[1] in (*FLOORS[3], *FLOORS[4])
     ]
     assert not strays, "\n".join(strays)
+
+
+def test_what_saves_and_what_lays_out_knows_no_kind():
+    """Files that every subject saves and draws by import no noun that is saved."""
+    everywhere = ("results/kind", "results/study_run", "results/unit_folder", "results/sealed_json", "results/on_disk")
+    laid_out = ("report/page", "report/table", "report/figure", "report/panels", "report/saved_page")
+    allowed = {"kind", "study_run", "unit_folder", "sealed_json", "on_disk", "provenance"}
+    strays = [
+        f"{file}.py imports {name}"
+        for file in (*everywhere, *laid_out)
+        for name in _imported(PACKAGE / f"{file}.py")
+        if name.startswith("gaitdisc.results.") and name.split(".")[2] not in allowed
+    ]
+    assert not strays, "\n".join(strays)

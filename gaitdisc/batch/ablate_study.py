@@ -16,11 +16,11 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import LENGTHS_S, fit_data_quantity
 from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results.participant_response import DataQuantity
+from gaitdisc.results.over_participants import OVER
+from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.run_store import save_run
-from gaitdisc.results.stores import QUANTITY, RESPONSE
+from gaitdisc.results.study_run import save_run
 from gaitdisc.write_lock import write_lock
 
 
@@ -47,10 +47,10 @@ def ablate_study(
         found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
         quantities = tuple(each for each in found if isinstance(each, DataQuantity))
         run = replace(
-            run,
-            quantities=quantities,
+            run.with_units(QUANTITY, quantities).with_units(
+                OVER, (compare_participants(run.responses, quantities, study.models.seed),)
+            ),
             refusals=(*run.refusals, *(each for each in found if isinstance(each, Refusal))),
-            over=compare_participants(run.responses, quantities, study.models.seed),
         )
         save_run(run, folder)
     return run

@@ -16,11 +16,11 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.kinematics.marker_set import shipped_marker_sets
 from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.kind import load_saved
 from gaitdisc.results.mismatch import Mismatch
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.reconstruction import Reconstruction
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.saved import load_saved
 from gaitdisc.results.sealed_json import read_sealed
 from gaitdisc.results.variants import VariantRun
 
@@ -149,6 +149,12 @@ def methods_of(result: Any) -> Iterator[str]:
         if result.split.startswith("subject"):  # each person was left out in turn
             yield LEFT_OUT
         yield from _of_files(result.provenance.files)
+    else:
+        raise SchemaError(
+            "literature is cited for a result",
+            "the folder holds a fitted model",
+            "Give that of `gaitdisc reconstruct`.",
+        )
 
 
 def _of_part(folder: Path) -> tuple[str, ...]:

@@ -14,8 +14,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial, trial_sets
 from gaitdisc.recording import Trial
-from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.stores import CYCLES, cycles_name
+from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles, cycles_name
 
 
 def computed_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:

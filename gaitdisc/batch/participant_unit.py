@@ -15,17 +15,29 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.walk import Walk
-from gaitdisc.results.participant_response import ParticipantResponse
+from gaitdisc.results.kind import Kind
+from gaitdisc.results.participant_response import RESPONSE, ParticipantResponse
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.stores import REFUSED, RESPONSE, WALK, Refused, unit_name
-from gaitdisc.results.walk_summary import WalkSummary
+from gaitdisc.results.unit_folder import unit_name
+from gaitdisc.results.walk_summary import WALK, WalkSummary
 
 if TYPE_CHECKING:
     from gaitdisc.response.fit_response import ResponseSettings
 
 Progress = Callable[[float], None]
 SHARE_OF_PROCESSING = 0.1
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Why a participant was refused: a run that goes on does not read and process the walks again."""
+
+    refusals: tuple[Refusal, ...]
+    walks: tuple[str, ...]  # conditions whose walk was processed
+
+
+REFUSED = Kind(Refused, "refused.json", ("refusals", "walks"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,24 +10,24 @@ from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
-from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles
+from gaitdisc.results.study_run import StudyRun
 
 Sessions = dict[tuple[str, str], tuple[ClinicalReading, ...]]
 
 
-def readings_of(run: ResponseRun, reference: ClinicalReference | None) -> Sessions:
+def readings_of(run: StudyRun, reference: ClinicalReference | None) -> Sessions:
     """Readings by person and session, the study's first condition before the others."""
     return {key: _readings(own, run, reference) for key, own in _by_session(run).items()}
 
 
-def people_of(run: ResponseRun) -> list[str]:
+def people_of(run: StudyRun) -> list[str]:
     """Title of every person and session, in the order of the study."""
     return [_title(*key) for key in _by_session(run)]
 
 
 def sessions_of(
-    run: ResponseRun, reference: ClinicalReference | None
+    run: StudyRun, reference: ClinicalReference | None
 ) -> Iterator[tuple[str, PersonSession | GaitdiscError]]:
     """Each person and session read, one after the other, or why it could not be; with its title."""
     for key, own in _by_session(run).items():
@@ -42,15 +42,15 @@ def _title(subject: str, session: str) -> str:
     return " ".join(part for part in (subject, session) if part)
 
 
-def _by_session(run: ResponseRun) -> dict[tuple[str, str], list[PooledCycles]]:
+def _by_session(run: StudyRun) -> dict[tuple[str, str], list[PooledCycles]]:
     found: dict[tuple[str, str], list[PooledCycles]] = {}
-    for pooled in run.cycles:
+    for pooled in run.of(CYCLES):
         found.setdefault((pooled.subject, pooled.session), []).append(pooled)
     return found
 
 
 def _readings(
-    own: Sequence[PooledCycles], run: ResponseRun, reference: ClinicalReference | None
+    own: Sequence[PooledCycles], run: StudyRun, reference: ClinicalReference | None
 ) -> tuple[ClinicalReading, ...]:
     # kept before refused, and then the study's first condition before all others
     ordered = sorted(own, key=lambda one: (not len(one.kept), one.condition != run.nominal))

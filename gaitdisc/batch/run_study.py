@@ -11,13 +11,14 @@ from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, resp
 from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
-from gaitdisc.results.over_participants import OverParticipants, PairTests
-from gaitdisc.results.participant_response import DataQuantity, ParticipantResponse
+from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
+from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse
+from gaitdisc.results.pooled_cycles import CYCLES
 from gaitdisc.results.provenance import Provenance, Refusal, made_now
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.run_store import created_before, save_run
-from gaitdisc.results.stores import QUANTITY
+from gaitdisc.results.study_run import created_before, save_run
 from gaitdisc.results.unit_folder import damaged_units
+from gaitdisc.results.walk_summary import WALK
 from gaitdisc.write_lock import write_lock
 
 SECTION = "4.2, Eqs. 4.1-4.5"
@@ -54,16 +55,18 @@ def run_study(
             public_title(study),
             study.conditions.nominal,
             study.conditions.device or "",
-            tuple(walk for unit in units for walk in unit.walks),
-            responses,
             tuple(refusal for unit in units for refusal in unit.refusals),
             _provenance(study, units),
-            tests,
-            quantities,
-            over,
-            renewed,
-            tuple(pooled for unit in units for pooled in unit.cycles),
+            {
+                WALK.file: tuple(walk for unit in units for walk in unit.walks),
+                RESPONSE.file: responses,
+                TESTS.file: tests,
+                QUANTITY.file: quantities,
+                OVER.file: over,
+                CYCLES.file: tuple(pooled for unit in units for pooled in unit.cycles),
+            },
             tuple(Refusal(who.id, "", one.unfitted) for who, one in zip(people, units, strict=True) if one.unfitted),
+            renewed,
         )
         run = created_before(run, folder)
         save_run(run, folder)
@@ -72,14 +75,14 @@ def run_study(
 
 def _compared(
     study: Study, responses: tuple[ParticipantResponse, ...], quantities: tuple[DataQuantity, ...]
-) -> tuple[PairTests | None, OverParticipants | None]:
+) -> tuple[tuple[PairTests, ...], tuple[OverParticipants, ...]]:
     """What the participants say together of the models; nothing where the study compares no device."""
     if study.conditions.device is None:
-        return None, None
+        return (), ()
     from gaitdisc.response.comparison import compare_models
     from gaitdisc.response.over_participants import compare_participants
 
-    return compare_models(responses), compare_participants(responses, quantities, study.models.seed)
+    return (compare_models(responses),), (compare_participants(responses, quantities, study.models.seed),)
 
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:

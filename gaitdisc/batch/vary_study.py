@@ -26,8 +26,7 @@ from gaitdisc.response.data_quantity import shortened
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
 from gaitdisc.response.modalities import Setting, compare_modalities, compare_settings, fit_without, settings_around
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.stores import VARIANTS, save_variant_run
-from gaitdisc.results.variants import QUESTIONS, VARIANT_COLUMNS, VariantRun, Variants
+from gaitdisc.results.variants import QUESTIONS, VARIANT_COLUMNS, VARIANTS, VariantRun, Variants, save_variant_run
 from gaitdisc.write_lock import write_lock
 
 Progress = Callable[[float], None]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.clinical_reading import PersonSession
     from gaitdisc.results.clinical_reference import ClinicalReference
     from gaitdisc.results.provenance import Provenance
-    from gaitdisc.results.response_run import ResponseRun
+    from gaitdisc.results.study_run import StudyRun
 
 REFERENCE = "reference"  # folder of a run, beside its cycles
 WORDS = "words.csv"  # of another language, beside them
@@ -80,14 +80,13 @@ def kept_words(run_folder: Path) -> PageWords:
     return read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
 
 
-def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
+def page_of_run(run: StudyRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
     from gaitdisc.report.saved_page import page_of
+    from gaitdisc.results.kind import find_kind
 
     def drawn() -> Path:
-        from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
-
-        page = write_report(run, run_folder / "report")
+        page = find_kind(run_folder).draw(run, run_folder)
         write_people(run, run_folder)
         return page
 
@@ -95,10 +94,12 @@ def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
 
 
 def write_people(
-    run: ResponseRun, run_folder: Path, pdf: bool = False, progress: Callable[[Path], None] = lambda _: None
+    run: StudyRun, run_folder: Path, pdf: bool = False, progress: Callable[[Path], None] = lambda _: None
 ) -> Path | None:
     """Write pages of each person and session, and `index.html`; None for a run without cycles."""
-    if not run.cycles:
+    from gaitdisc.results.pooled_cycles import CYCLES
+
+    if not run.of(CYCLES):
         return None
     from gaitdisc.batch.read_people import people_of, sessions_of
     from gaitdisc.report.clinic.index_page import write_index
@@ -123,7 +124,7 @@ def write_people(
     return write_index(_with_failed(run, failed, run_folder), written, reference, report, say)
 
 
-def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
+def write_before_after(run: StudyRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
     """Write the page of a person before and after."""
     from gaitdisc.batch.read_people import before_and_after, readings_of
     from gaitdisc.clinic.contrast import contrast_of
@@ -137,14 +138,15 @@ def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: t
     return write_person_page(page, name, reference, run.provenance, run_folder / "report", kept_words(run_folder))
 
 
-def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
+def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
     """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
     from gaitdisc.batch.read_people import people_of, sessions_of
     from gaitdisc.report.clinic.person_page import page_names
+    from gaitdisc.results.pooled_cycles import CYCLES
 
-    own = replace(run, cycles=tuple(one for one in run.cycles if one.subject == person))
-    if not own.cycles:
-        people = ", ".join(dict.fromkeys(one.subject for one in run.cycles)) or "nobody"
+    own = run.with_units(CYCLES, tuple(one for one in run.of(CYCLES) if one.subject == person))
+    if not own.of(CYCLES):
+        people = ", ".join(dict.fromkeys(one.subject for one in run.of(CYCLES))) or "nobody"
         raise SchemaError("a page needs a person of the run", f"{person!r}; there are {people}", "Name one of them.")
     everybody = people_of(run)
     names = dict(zip(everybody, page_names(everybody), strict=True))
@@ -176,7 +178,7 @@ def _pages(
     return [page, write_person_pdf(person, provenance, page.with_suffix(".pdf"), say)]
 
 
-def _with_failed(run: ResponseRun, failed: list[tuple[str, str]], run_folder: Path) -> ResponseRun:
+def _with_failed(run: StudyRun, failed: list[tuple[str, str]], run_folder: Path) -> StudyRun:
     """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
     from gaitdisc.results.provenance import Refusal
 

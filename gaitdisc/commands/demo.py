@@ -34,7 +34,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
-    from gaitdisc.results.run_store import claim_run
+    from gaitdisc.results.study_run import claim_run
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
@@ -63,7 +63,7 @@ def _clinic(folder: Path, jobs: int, quiet: bool) -> None:
     from gaitdisc.commands.clinic_pages import keep_reference, write_people
     from gaitdisc.own_files import claim_folder
     from gaitdisc.results.clinical_reference import save_reference
-    from gaitdisc.results.run_store import claim_run
+    from gaitdisc.results.study_run import claim_run
 
     claim_folder(folder, "planted.json", "reference", "controls", "controls/study.toml", "week", "week/study.toml")
     for part in ("controls", "week"):

@@ -74,7 +74,7 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings
-    from gaitdisc.results.run_store import load_run
+    from gaitdisc.results.response_run import load_run
     from gaitdisc.spreadsheet import write_csv
     from gaitdisc.whole_file import whole_file
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +12,7 @@ from gaitdisc.commands.run_report import claimed
 from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
-    from gaitdisc.results.response_run import ResponseRun
+    from gaitdisc.results.study_run import StudyRun
 
 
 def reference(
@@ -27,19 +26,19 @@ def reference(
     from gaitdisc.clinic.reference import FEWEST, reference_of
     from gaitdisc.own_files import claim_folder
     from gaitdisc.results.clinical_reference import FILE, save_reference
+    from gaitdisc.results.pooled_cycles import CYCLES
 
     claim_folder(out, FILE)
     run = _run_of(controls, jobs)
-    cycles = tuple(one for one in run.cycles if not group or one.group == group)
+    cycles = tuple(one for one in run.of(CYCLES) if not group or one.group == group)
     if not cycles:
-        groups = ", ".join(sorted({one.group or "no group" for one in run.cycles})) or "no cycles"
+        groups = ", ".join(sorted({one.group or "no group" for one in run.of(CYCLES)})) or "no cycles"
         raise SchemaError(
             f"a reference needs controls{f' of group {group!r}' if group else ''} with pooled cycles",
             f"{controls} has {groups}",
             "Name a group of the study, or record walks of several trials.",
         )
-    run = replace(run, cycles=cycles)
-    found = reference_of(run.cycles, run.title, run.provenance)
+    found = reference_of(cycles, run.title, run.provenance)
     path = save_reference(found, out)
     for word in found.legs:
         count = found.people(word)
@@ -50,12 +49,12 @@ def reference(
     typer.echo(f"reference: {path}")
 
 
-def _run_of(controls: Path, jobs: int) -> ResponseRun:
+def _run_of(controls: Path, jobs: int) -> StudyRun:
     """Run of a folder, or of a study, which is computed as far as it is not."""
-    from gaitdisc.results.run_store import load_run
+    from gaitdisc.results.study_run import StudyRun, load_run_as
 
     if (controls / "run.json").is_file():
-        return load_run(controls)
+        return load_run_as(StudyRun, controls)
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
 

@@ -65,8 +65,8 @@ def _people(
     run_folder: Path, named: bool, person: str, pair: tuple[str, str], reference: Path | None, pdf: bool
 ) -> None:
     """Draw pages of a run's people again: all, those of one person, or two sessions or conditions of one."""
-    from gaitdisc.report.saved_page import draw_questions
-    from gaitdisc.results.run_store import load_run
+    from gaitdisc.report.saved_page import draw_beside
+    from gaitdisc.results.response_run import RUN, load_run
 
     run = load_run(run_folder)
     if named and not run.cycles:
@@ -89,7 +89,7 @@ def _people(
         typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")
     else:
         typer.echo(f"report: {page_of_run(run, run_folder)}")
-        for word, page in draw_questions(run_folder).items():
+        for word, page in draw_beside(RUN, run_folder).items():
             typer.echo(f"{word}: {page}")
         if run.cycles:
             typer.echo(f"people: {run_folder / 'report' / 'index.html'}")

@@ -27,7 +27,7 @@ Result = TypeVar("Result")
 def claimed(place: Path, out: Path | None) -> tuple[Study, Path]:
     """A study and the folder of its run, which is held until the command ends."""
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.results.run_store import claim_run
+    from gaitdisc.results.study_run import claim_run
 
     study = load_study(place)
     folder = out or study.folder / "run"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.results.saved import READERS, load_saved
+from gaitdisc.results.kind import load_saved
 
 if TYPE_CHECKING:
     from gaitdisc.library.reconstructor import Reconstructor
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
     from gaitdisc.results.response_run import ResponseRun
     from gaitdisc.results.variants import VariantRun
-
-MODEL = {"model.json": "gaitdisc.library.reconstructor:load_reconstructor"}
 
 
 def load(
@@ -45,4 +43,4 @@ def load(
     >>> import gaitdisc as gd
     >>> gd.load("found").sentence  # doctest: +SKIP
     """
-    return load_saved(Path(folder), READERS | MODEL)
+    return load_saved(Path(folder))

@@ -15,7 +15,7 @@ from gaitdisc.errors import SamplingError, ShapeError, TrainingError
 from gaitdisc.ingest.table import frame_columns, has_times
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.recording.arrays import real_array
-from gaitdisc.results.saved import Saved
+from gaitdisc.results.kind import Kind, Saved
 from gaitdisc.sensing.intervals import half_widths
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
@@ -32,7 +32,7 @@ Trials: TypeAlias = Readings | Sequence[Readings]
 SETTINGS = ("kind", "rate_hz", "history_s", "spacing_s", "ahead_s", "seed")
 
 
-class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor"):
+class Reconstructor(Saved, file="model.json"):
     """Estimate the states of a system from the readings of a few sensors and their history.
 
     Parameters
@@ -305,6 +305,9 @@ def load_reconstructor(folder: Path) -> Reconstructor:
     done = Reconstructor(model.reconstructor.kind, rate, lags.reach / rate, lags.spacing / rate, lags.ahead / rate)
     done._model = model
     return done
+
+
+RECONSTRUCTOR = Kind(Reconstructor, "model.json", write=save_reconstructor, read=load_reconstructor)
 
 
 def _array(given: Any, words: str) -> NDArray[np.float64]:

@@ -15,8 +15,10 @@ from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
 from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted
+from gaitdisc.results.participant_response import RESPONSE
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.walk_summary import WALK
 
 WITHOUT, WITH = "nominal", "exo"
 
@@ -99,7 +101,14 @@ def fit_response(
     made = {**public_settings(study), "fits": asdict(settings)}
     provenance = made_now(made, seed, files, "chapter 4: response to a device")
     responses = (replace(response, participant=person),)
-    return ResponseRun(f"Response of {person}", WITHOUT, WITH, summaries, responses, (), provenance)
+    return ResponseRun(
+        f"Response of {person}",
+        WITHOUT,
+        WITH,
+        (),
+        provenance,
+        {WALK.file: summaries, RESPONSE.file: responses},
+    )
 
 
 def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence[str] | None) -> tuple[str, ...]:

@@ -16,8 +16,8 @@ from gaitdisc.report.palette import RECONSTRUCTED, SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
 from gaitdisc.results.pooled_cycles import mean_curve
-from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.walk_summary import WalkSummary
+from gaitdisc.results.study_run import StudyRun
+from gaitdisc.results.walk_summary import WALK, WalkSummary
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +30,7 @@ LATENT = "latent state of SHRED"
 
 
 @in_style
-def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure]:
+def curves_figures(run: StudyRun, participant: str, name: str) -> list[Figure]:
     """Mean and standard deviation over strides of the walks without and with the device, one panel a channel."""
     numbers = curve_numbers(run, participant)
     if not len(numbers):
@@ -40,7 +40,7 @@ def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure
     return [_figure(run, participant, by_channel.loc[part].reset_index(), sheet) for sheet, part in parts.items()]
 
 
-def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
+def curve_numbers(run: StudyRun, participant: str) -> pd.DataFrame:
     """Mean and standard deviation over strides of every channel and walk on 101 points.
 
     returns: channel, unit, walk (`nominal` or `exo`), percent, n (strides with a value there), mean, sd
@@ -57,10 +57,10 @@ def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
 
 
-def walk_of(run: ResponseRun, participant: str, walk: str) -> WalkSummary | None:
+def walk_of(run: StudyRun, participant: str, walk: str) -> WalkSummary | None:
     """Return the walk of one participant, or None where it could not be processed."""
     condition = run.nominal if walk == "nominal" else run.exo
-    return next((w for w in run.walks if w.subject == participant and w.condition == condition), None)
+    return next((w for w in run.of(WALK) if w.subject == participant and w.condition == condition), None)
 
 
 def sides_together(names: list[str]) -> list[str]:
@@ -92,7 +92,7 @@ def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
         axes.plot(rows["percent"], rows["mean"], color=shade, linestyle=line, linewidth=1.2, zorder=2)
 
 
-def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
+def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("channel", sort=False))
     drawn, cells = panels_for(len(groups), 4, 1.15, Room(left=0.6, across=0.64, down=0.46))
     ranges = _ranges(numbers)
@@ -122,7 +122,7 @@ def _ranges(numbers: pd.DataFrame) -> dict[str, tuple[float, float]]:
     }
 
 
-def walks_key(run: ResponseRun) -> list[Line2D]:
+def walks_key(run: StudyRun) -> list[Line2D]:
     """Handles of the legend of both walks."""
     from matplotlib.lines import Line2D
 
@@ -134,7 +134,7 @@ def walks_key(run: ResponseRun) -> list[Line2D]:
     ]
 
 
-def _caption(run: ResponseRun, participant: str, numbers: pd.DataFrame) -> str:
+def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
     counts = []
     for walk, rows in numbers.groupby("walk", sort=False):
         low, high = int(rows["n"].min()), int(rows["n"].max())
@@ -148,7 +148,7 @@ def _caption(run: ResponseRun, participant: str, numbers: pd.DataFrame) -> str:
     )
 
 
-def _alt(run: ResponseRun, participant: str, numbers: pd.DataFrame) -> str:
+def _alt(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
     ranges = []
     for (channel, walk), rows in numbers.groupby(["channel", "walk"], sort=False):
         if walk == "exo" and len(ranges) < 6:

@@ -25,12 +25,12 @@ from gaitdisc.report.figure import Figure, file_names, largest_inline, save_figu
 from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
-from gaitdisc.report.table import provenance_tables, save_table, save_tables
-from gaitdisc.report.walks import findings_table, refusals_table
+from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.report.wording import SIDE_WORDS, counted, label, listed, sideless, unit_text, upwards
 from gaitdisc.results.leg_curves import FEET
-from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles
+from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.study_run import StudyRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,9 +62,9 @@ COLUMNS, MOST_PANELS = 4, 20
 MOST_FAINT = 25  # cycles that are drawn one by one
 
 
-def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
+def write_cycles_page(run: StudyRun, folder: Path) -> Path:
     """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
-    computed = any(finding.kind == "residual" for one in run.cycles for finding in one.findings)
+    computed = any(finding.kind == "residual" for one in run.of(CYCLES) for finding in one.findings)
     tables = {
         "refusals": refusals_table(run),
         "findings": findings_table(run),
@@ -82,22 +82,29 @@ def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
     return write_page("cycles", shown, folder)
 
 
-def save_cycle_tables(run: ResponseRun, folder: Path) -> None:
+def write_lone_cycles(one: PooledCycles, folder: Path) -> Path:
+    """Write the page of cycles that stand alone, as a run of nothing else has it."""
+    created = "in the run that they come from, whose run.json has settings and date,"
+    made = Provenance({}, 0, one.files, {"gaitdisc": "of the version named there"}, "gait cycles", created)
+    return write_cycles_page(StudyRun(one.name, "", "", one.refusals, made, {CYCLES.file: (one,)}), folder)
+
+
+def save_cycle_tables(run: StudyRun, folder: Path) -> None:
     """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables."""
-    save_table(all_cycles(run.cycles), folder / "tables" / "cycles.csv")
-    save_table(all_means(run.cycles), folder / "tables" / "means.csv")
-    save_table(all_spatiotemporal(run.cycles), folder / "tables" / "spatiotemporal.csv")
+    save_table(all_cycles(run.of(CYCLES)), folder / "tables" / "cycles.csv")
+    save_table(all_means(run.of(CYCLES)), folder / "tables" / "means.csv")
+    save_table(all_spatiotemporal(run.of(CYCLES)), folder / "tables" / "spatiotemporal.csv")
 
 
-def cycles_sentences(run: ResponseRun) -> list[str]:
+def cycles_sentences(run: StudyRun) -> list[str]:
     """Who is reported, with how many cycles; who is not, and what the numbers do not carry."""
-    kept = [one for one in run.cycles if len(one.kept)]
+    kept = [one for one in run.of(CYCLES) if len(one.kept)]
     if not kept:
         return ["No cycle could be kept: see “Left out”."]
     people = list(dict.fromkeys(one.subject for one in kept))
     left = sum(one.counted("l") for one in kept)
     right = sum(one.counted("r") for one in kept)
-    out = sum(len(one.left_out) for one in run.cycles)
+    out = sum(len(one.left_out) for one in run.of(CYCLES))
     sentences = [
         f"{counted(len(people), 'participant')}: {counted(left, 'left cycle')} and {counted(right, 'right cycle')} of "
         f"{counted(sum(one.trials for one in kept), 'trial')} are kept, {out} left out, each with its reason."
@@ -115,18 +122,18 @@ def cycles_sentences(run: ResponseRun) -> list[str]:
     return sentences
 
 
-def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
+def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[SavedBlock]:
     """Part of the page for everybody together, then one for each person, with figures and tables written."""
-    if not run.cycles:
+    if not run.of(CYCLES):
         return []
     unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
     device = "" if run.exo else " The study compares no device, so no models are fitted."
     windows = f"Every cycle lies in one trial; nothing is joined across trials.{device}"
-    first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.cycles),))
-    people = list(dict.fromkeys(one.subject for one in run.cycles))
+    first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.of(CYCLES)),))
+    people = list(dict.fromkeys(one.subject for one in run.of(CYCLES)))
     names = file_names(people)
     each = [
-        ([one for one in run.cycles if one.subject == person], names[person], folder, len(run.cycles))
+        ([one for one in run.of(CYCLES) if one.subject == person], names[person], folder, len(run.of(CYCLES)))
         for person in people
     ]
     return [save_block(first, folder), *drawn_side_by_side(_saved, each, MOST_HERE)]

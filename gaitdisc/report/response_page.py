@@ -15,9 +15,19 @@ from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
 from gaitdisc.report.pair_tests import comparison_figures, comparison_sentences, comparison_tables
 from gaitdisc.report.r2 import held_out_text, not_computed, participants_table, r2_figures, r2_table, study_r2_table
 from gaitdisc.report.sentences import participant_sentences, study_sentences
-from gaitdisc.report.table import Table, flattened, provenance_tables, save_table, save_tables
-from gaitdisc.report.walks import dropped_table, findings_table, fits_table, refusals_table, strides_figure, walks_table
+from gaitdisc.report.table import (
+    Table,
+    findings_table,
+    flattened,
+    provenance_tables,
+    refusals_table,
+    save_table,
+    save_tables,
+)
+from gaitdisc.report.walks import dropped_table, fits_table, strides_figure, walks_table
+from gaitdisc.results.participant_response import RESPONSE
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.walk_summary import WALK
 
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
@@ -82,14 +92,9 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
 
 
 def _of_one(run: ResponseRun, person: str) -> ResponseRun:
-    return replace(
-        run,
-        walks=tuple(walk for walk in run.walks if walk.subject == person),
-        responses=tuple(response for response in run.responses if response.participant == person),
-        tests=None,
-        quantities=(),
-        over=None,
-    )
+    walks = tuple(walk for walk in run.walks if walk.subject == person)
+    responses = tuple(response for response in run.responses if response.participant == person)
+    return replace(run, units={WALK.file: walks, RESPONSE.file: responses})
 
 
 def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> Section:

@@ -12,6 +12,7 @@ import pandas as pd
 
 from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance, Refusal
+from gaitdisc.results.study_run import StudyRun
 from gaitdisc.spreadsheet import write_csv
 
 
@@ -85,6 +86,29 @@ def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Tabl
     """
     rows = [(refusal.participant, refusal.condition or "all", refusal.reason) for refusal in refusals]
     return words_table(name, caption, ("participant", "walk", "reason"), rows)
+
+
+def refusals_table(run: StudyRun) -> Table:
+    """Everybody and everything left out, with the reason."""
+    return left_out_table(run.refusals, "refusals", f"Left out, n = {len(run.refusals)}, and why.")
+
+
+def findings_table(run: StudyRun) -> Table:
+    """Every finding of every walk, the severest first."""
+    numbers = run.findings_table()
+    rows = tuple(
+        (
+            str(row.severity),
+            f"{row.participant} {row.condition}",
+            ", ".join(part for part in (str(row.file), str(row.channel)) if part),
+            f"{row.kind}: {row.what}" + (f" (from-to: {row.spans_s} s)" if row.spans_s else ""),
+            str(row.spoils),
+        )
+        for row in numbers.itertuples(index=False)
+    )
+    headings = ("severity", "walk", "where", "what was seen", "spoils")
+    caption = f"Findings of the reader and of the quality checks, n = {len(rows)}; none is left away."
+    return Table("findings", caption, headings, rows, numbers)
 
 
 def provenance_tables(made: Provenance) -> dict[str, Table]:

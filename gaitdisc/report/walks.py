@@ -13,7 +13,7 @@ from gaitdisc.report.curves import WALKS, walk_of
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import DROPPED, KEPT, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels
-from gaitdisc.report.table import Table, left_out_table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
 from gaitdisc.results.response_run import ResponseRun
 
@@ -178,29 +178,6 @@ def walks_table(run: ResponseRun) -> Table:
         f"samples or channels are spoiled; red: the trial is refused."
     )
     return Table("walks", caption, columns, tuple(rows), pd.DataFrame(records))
-
-
-def refusals_table(run: ResponseRun) -> Table:
-    """Everybody and everything left out, with the reason."""
-    return left_out_table(run.refusals, "refusals", f"Left out, n = {len(run.refusals)}, and why.")
-
-
-def findings_table(run: ResponseRun) -> Table:
-    """Every finding of every walk, the severest first."""
-    numbers = run.findings_table()
-    rows = tuple(
-        (
-            str(row.severity),
-            f"{row.participant} {row.condition}",
-            ", ".join(part for part in (str(row.file), str(row.channel)) if part),
-            f"{row.kind}: {row.what}" + (f" (from-to: {row.spans_s} s)" if row.spans_s else ""),
-            str(row.spoils),
-        )
-        for row in numbers.itertuples(index=False)
-    )
-    headings = ("severity", "walk", "where", "what was seen", "spoils")
-    caption = f"Findings of the reader and of the quality checks, n = {len(rows)}; none is left away."
-    return Table("findings", caption, headings, rows, numbers)
 
 
 def dropped_table(run: ResponseRun, participant: str, name: str) -> Table | None:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
+from gaitdisc.results.kind import Saved
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.saved import Saved
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -144,7 +144,7 @@ class Runs:
 
 
 @dataclass(frozen=True)
-class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
+class Discovery(Saved, file="discovery.json"):
     """What was found that a simulation lacks.
 
     Parameters

@@ -17,6 +17,7 @@ from gaitdisc.results.discovery import (
     Runs,
     Whereabouts,
 )
+from gaitdisc.results.kind import Kind
 from gaitdisc.results.on_disk import damaged, of_another_format
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
@@ -148,3 +149,12 @@ def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:
         augmented,
         names,
     )
+
+
+DISCOVERY = Kind(
+    Discovery,
+    NAME,
+    write=save_discovery,
+    read=load_discovery,
+    page="gaitdisc.report.discovery_page:write_discovery_report",
+)

@@ -15,8 +15,8 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.kind import CSV, Kind, Saved, check_columns
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.saved import Saved, check_columns
 
 AGAIN = "Compare the walks again: `gaitdisc compare`."
 CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
@@ -82,7 +82,7 @@ class Smallest:
 
 
 @dataclass(frozen=True, eq=False)
-class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
+class Mismatch(Saved, file="mismatch.json"):
     """Second minus first, over the stride.
 
     Parameters
@@ -231,3 +231,16 @@ class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
     return [{str(key): value for key, value in row.items()} for row in table.to_dict("records")]
+
+
+MISMATCH = Kind(
+    Mismatch,
+    "mismatch.json",
+    ("first", "second", "channels", "exchange", "alignment", "findings", "provenance"),
+    {"regions": CSV("regions.csv", REGION_COLUMNS, True), "summary": CSV("summary.csv", CHANNEL_COLUMNS, True)},
+    {"curves": dict},
+    lambda mismatch: dict(mismatch.curves),
+    later=False,
+    keyed=False,
+    page="gaitdisc.report.mismatch_page:write_mismatch_report",
+)

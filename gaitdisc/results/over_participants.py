@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from gaitdisc.results.saved import check_columns
+from gaitdisc.results.kind import CSV, Kind, check_columns
 
 PAIRS = (("nominal", "augmented"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "perfect"))
 FAMILIES = ("pair", "all", "variable")
@@ -108,3 +108,21 @@ class OverParticipants:
 def no_rows(name: str) -> pd.DataFrame:
     """Table of that name without any row."""
     return pd.DataFrame(columns=pd.Index(TABLES[name]))
+
+
+TESTS = Kind(
+    PairTests,
+    "tests.json",
+    ("participants", "alpha", "level", "too_few"),
+    {"tests": CSV("tests.csv", TEST_COLUMNS), "families": CSV("families.csv", FAMILY_COLUMNS)},
+    keyed=False,
+    blank=("left_out",),
+)
+OVER = Kind(
+    OverParticipants,
+    "over.json",
+    ("lengths_said", "responders_said"),
+    {name: CSV(f"{name}.csv", columns) for name, columns in TABLES.items()},
+    keyed=False,
+    blank=("left_out",),
+)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import pandas as pd
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.recording import PERCENT
-from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
+from gaitdisc.results.kind import CSV, Kind, keyed_arrays
+from gaitdisc.results.on_disk import Arrays, lies_on_disk, may_lie_on_disk
 
 MODELS = ("nominal", "augmented", "exo")
 BASELINES = ("ridge", "linear", "null")
@@ -121,3 +122,34 @@ class DataQuantity:
         """Median R2 over variables: one row a length, one column a model."""
         chosen = self.table[(self.table["walk"] == walk) & (self.table["kind"] == kind)]
         return chosen.pivot_table(index="length_s", columns="model", values="r2", aggfunc="median")
+
+
+def _held_out(arrays: Arrays) -> HeldOut:
+    predicted, bands = keyed_arrays(arrays, "predicted_"), keyed_arrays(arrays, "band_")
+    return HeldOut(arrays["time"], arrays["phi"], arrays["measured"], predicted, bands)
+
+
+def _predicted(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
+    held = response.held_out
+    every = {"predicted": held.predicted, "band": held.bands, "residual": response.residuals}
+    own = {f"{word}_{model}": values for word, of in every.items() for model, values in of.items()}
+    return {"time": held.time, "phi": held.phi, "measured": held.measured, **own}
+
+
+RESPONSE = Kind(
+    ParticipantResponse,
+    "response.json",
+    ("participant", "inputs", "outputs", "units", "held_out_s"),
+    {"r2": CSV("r2.csv", R2_COLUMNS), "fits": CSV("fits.csv", FIT_COLUMNS)},
+    {"held_out": _held_out, "residuals": partial(keyed_arrays, prefix="residual_")},
+    _predicted,
+    unit=lambda response: response.participant,
+)
+QUANTITY = Kind(
+    DataQuantity,
+    "quantity.json",
+    ("participant", "part", "left_away"),
+    {"table": CSV("quantity.csv", QUANTITY_COLUMNS)},
+    reasons="length_s",
+    unit=lambda quantity: quantity.participant,
+)

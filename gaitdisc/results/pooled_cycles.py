@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 import pandas as pd
@@ -13,9 +14,10 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.kind import CSV, Kind, Saved
 from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.saved import Saved
+from gaitdisc.results.unit_folder import unit_name
 
 CYCLE_COLUMNS = (
     "trial",
@@ -48,7 +50,7 @@ SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
 
 @may_lie_on_disk("curves")
 @dataclass(frozen=True, eq=False)
-class PooledCycles(Saved, by="gaitdisc.results.stores:CYCLES.save"):
+class PooledCycles(Saved, file="cycles.json"):
     """Cycles of one person in one session under one condition.
 
     Parameters
@@ -193,3 +195,28 @@ def mean_curve(curves: NDArray[np.float64], **words: str) -> pd.DataFrame:
         square = np.where(present, (curves - mean) ** 2, 0.0).sum(axis=0)
         spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
     return pd.DataFrame({**words, "percent": PERCENT, "n": count, "mean": mean, "sd": spread})
+
+
+def cycles_name(subject: str, session: str, condition: str) -> str:
+    """Folder name of pooled cycles, another one for every person, session and condition.
+
+    >>> cycles_name("P01", "", "turn"), cycles_name("P01", "after", "turn")
+    ('P01-turn', 'P01-after___turn-c681ddd0')
+    """
+    return unit_name(subject, f"{session} / {condition}" if session else condition)
+
+
+CYCLES = Kind(
+    PooledCycles,
+    "cycles.json",
+    ("subject", "group", "session", "condition", "trials", "detectors", "contact_offset_s", "foot_off_offset_s",
+     "offset_steps", "over_ground", "channels", "findings", "refusals", "files", "leg_m", "age_years"),
+    {"cycles": CSV("cycles.csv", CYCLE_COLUMNS)},
+    {"curves": itemgetter("curves")},
+    lambda cycles: {"curves": cycles.curves},
+    flags=("kinetic", "kept"),
+    blank=("reason", "foot_off_by"),
+    unit=lambda cycles: cycles_name(cycles.subject, cycles.session, cycles.condition),
+    page="gaitdisc.report.cycles_page:write_lone_cycles",
+    page_folder="report",
+)  # fmt: skip

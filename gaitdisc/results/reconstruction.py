@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
+from gaitdisc.results.kind import CSV, Kind, Saved
 from gaitdisc.results.provenance import Provenance, Refusal
-from gaitdisc.results.saved import Saved
 
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
@@ -28,7 +28,7 @@ MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", 
 
 
 @dataclass(frozen=True, eq=False)
-class Reconstruction(Saved, by="gaitdisc.results.stores:RECONSTRUCTION.save"):
+class Reconstruction(Saved, file="reconstruction.json"):
     """All that a report of a reconstruction needs.
 
     Parameters
@@ -161,3 +161,19 @@ def _over(rows: pd.DataFrame) -> pd.Series:
         mean, _, half = mean_over_people(rows[measure].to_numpy(float))
         found |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
     return pd.Series(found)
+
+
+RECONSTRUCTION = Kind(
+    Reconstruction,
+    "reconstruction.json",
+    ("title", "sensors", "states", "split", "history", "models", "recommended", "refusals", "findings", "provenance"),
+    {
+        "errors": CSV("errors.csv", ("participant", "model", "state", "unit", "rmse")),
+        "summary": CSV("summary.csv", ("participant", "model", "strides", "check_loss")),
+        "curves": CSV("curves.csv", ("participant", "model", "state", "percent", "measured", "measured_sd")),
+        "search": CSV("search.csv", None),
+    },
+    keyed=False,
+    words=("participant", "model", "state", "unit"),
+    page="gaitdisc.report.reconstruction_page:write_reconstruction_report",
+)

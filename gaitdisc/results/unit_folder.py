@@ -7,15 +7,14 @@ was changed, by a hand or by a disk, is refused by `load_unit`; who can compute 
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-import pandas as pd
-from jsonschema import Draft202012Validator
 from numpy.typing import NDArray
 
 from gaitdisc.channel import list_names, schema_folder
@@ -24,6 +23,9 @@ from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged, of_ano
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written_together
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 FORMAT = 1
 EARLIER = {"told": "reconstructed"}  # what columns were called in folders saved before
@@ -147,7 +149,7 @@ def read_json(path: Path) -> dict[str, Any]:
 def _read_table(path: Path, words: Sequence[str]) -> pd.DataFrame:
     try:
         return read_csv(path, words).rename(columns=EARLIER)
-    except (OSError, ValueError, pd.errors.ParserError) as error:
+    except (OSError, ValueError) as error:  # what pandas cannot parse is a ValueError
         raise damaged(path, f"not readable as a table ({error})") from error
 
 
@@ -157,5 +159,21 @@ def _schema() -> dict[str, Any]:
 
 
 @cache
-def _validator(part: str) -> Draft202012Validator:
+def _validator(part: str) -> Any:
+    from jsonschema import Draft202012Validator  # not needed where nothing is read
+
     return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": _schema()["$defs"]})
+
+
+def unit_name(subject: str, condition: str) -> str:
+    """Folder name of a unit: letters, digits, `-` and `_` only, another one for every person and condition.
+
+    >>> unit_name("P01", "exo"), unit_name("P01", "no spring"), unit_name("P01", "no_spring")
+    ('P01-exo', 'P01-no_spring-e4cfa24e', 'P01-no_spring')
+    """
+    who = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in subject)
+    plain = "".join(letter if letter.isalnum() or letter == "_" else "_" for letter in condition)
+    if (who, plain) == (subject, condition):
+        return f"{subject}-{condition}"
+    hashed = hashlib.sha256(" ".join((subject, condition)).encode()).hexdigest()[:8]
+    return f"{who}-{plain}-{hashed}"

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.results.kind import CSV, Kind, Saved, plain
 from gaitdisc.results.over_participants import TEST_COLUMNS
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.saved import Saved
+from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 
 QUESTIONS = ("modalities", "sensitivity")
 VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
@@ -40,7 +42,7 @@ class Variants:
 
 
 @dataclass(frozen=True, eq=False)
-class VariantRun(Saved, by="gaitdisc.results.stores:save_whole_variant_run"):
+class VariantRun(Saved, file="variant_run.json"):
     """The variants of a study, over its participants."""
 
     title: str
@@ -61,3 +63,55 @@ class VariantRun(Saved, by="gaitdisc.results.stores:save_whole_variant_run"):
     def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variant, variable, model and kind, one row each."""
         return self.r2_table()
+
+
+VARIANTS = Kind(
+    Variants,
+    "variants.json",
+    ("participant", "question", "left_away"),
+    {"table": CSV("variants.csv", VARIANT_COLUMNS)},
+    reasons="variant",
+)
+
+
+def save_variant_run(run: VariantRun, folder: Path) -> None:
+    """Save what was found over the participants, beside theirs, which were saved as they were computed."""
+    data = {
+        "title": run.title,
+        "exo": run.exo,
+        "question": run.question,
+        "people": [each.participant for each in run.people],
+        "refusals": plain(run.refusals),
+        "held_out_s": list(run.held_out_s),
+    }
+    save_unit(folder, "variant_run.json", data, {"tests.csv": run.tests}, {})
+
+
+def save_whole_variant_run(run: VariantRun, folder: Path) -> None:
+    """Save what was found over the participants, and the variants of each, as they are in memory."""
+    for each in run.people:
+        VARIANTS.save(each, folder / "people" / each.participant)
+    save_variant_run(run, folder)
+
+
+def load_variant_run(folder: Path) -> VariantRun:
+    """Load what was found over the participants."""
+    data, tables, _ = load_unit(folder, "variant_run.json", {"tests.csv": VARIANT_TEST_COLUMNS})
+    return VariantRun(
+        data["title"],
+        data["exo"],
+        data["question"],
+        tuple(VARIANTS.load(folder / "people" / name) for name in data["people"]),
+        with_words(tables["tests.csv"], "left_out"),
+        tuple(Refusal(**one) for one in data["refusals"]),
+        (data["held_out_s"][0], data["held_out_s"][1]),
+    )
+
+
+VARIANT_RUN = Kind(
+    VariantRun,
+    "variant_run.json",
+    write=save_whole_variant_run,
+    read=load_variant_run,
+    page="gaitdisc.report.variants:write_variants",
+)

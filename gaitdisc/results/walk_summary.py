@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,9 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.kind import CSV, Kind
 from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
+from gaitdisc.results.unit_folder import unit_name
 
 STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
 
@@ -50,6 +53,11 @@ class WalkSummary:
         object.__setattr__(self, "curves", read_only(self.curves))
 
     @property
+    def where(self) -> str:
+        """Say where among the walks of a person it stands: its condition."""
+        return self.condition
+
+    @property
     def worst(self) -> str:
         """Return the severest finding: `refused`, `warning`, `note`, or `clean` where there is none."""
         return min(self.findings, key=lambda finding: finding.rank).severity if self.findings else "clean"
@@ -58,3 +66,15 @@ class WalkSummary:
         """Number of strides of each side."""
         chosen = self.strides[self.strides["kept"] == kept]
         return {str(side): int(count) for side, count in chosen["side"].value_counts().sort_index().items()}
+
+
+WALK = Kind(
+    WalkSummary,
+    "walk.json",
+    ("subject", "condition", "duration_s", "rate_hz", "detector", "channels", "findings", "files"),
+    {"strides": CSV("strides.csv", STRIDE_COLUMNS)},
+    {"curves": itemgetter("curves")},
+    lambda walk: {"curves": walk.curves},
+    blank=("reason",),
+    unit=lambda walk: unit_name(walk.subject, walk.condition),
+)

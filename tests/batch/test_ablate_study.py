@@ -3,10 +3,9 @@ import pytest
 from gaitdisc.batch.ablate_study import ablate_study, computed_quantity
 from gaitdisc.batch.participant_unit import response_key, unit_keys
 from gaitdisc.batch.run_study import run_study
-from gaitdisc.results.participant_response import DataQuantity
+from gaitdisc.results.participant_response import QUANTITY, DataQuantity
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.run_store import load_run
-from gaitdisc.results.stores import QUANTITY
+from gaitdisc.results.response_run import load_run
 
 
 @pytest.mark.slow

@@ -7,8 +7,7 @@ from gaitdisc.batch.workers import Workers
 from gaitdisc.errors import SchemaError
 from gaitdisc.response.modalities import ALL, AS_STUDIED
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.stores import load_variant_run
-from gaitdisc.results.variants import Variants
+from gaitdisc.results.variants import Variants, load_variant_run
 
 pytestmark = pytest.mark.usefixtures("trained_briefly")
 

@@ -10,10 +10,10 @@ from gaitdisc.cli import app
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Samples
+from gaitdisc.results.pooled_cycles import CYCLES, cycles_name
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.run_store import save_run
-from gaitdisc.results.stores import CYCLES, cycles_name
+from gaitdisc.results.study_run import save_run
 from gaitdisc.sensing.model_folder import SensingModel, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
 from gaitdisc.sensing.windows import Lags
@@ -51,7 +51,7 @@ def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
     one = made_cycles(each=3, out=1)
     CYCLES.save(one, tmp_path / "run" / "cycles" / "P01-walk", "key")
     made = made_now({}, 0, {}, "4.2")
-    save_run(ResponseRun("t", "walk", "", (), (), (), made, cycles=(one,)), tmp_path / "run")
+    save_run(ResponseRun("t", "walk", "", (), made, {"cycles.json": (one,)}), tmp_path / "run")
     words = ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out")]
     done = CliRunner().invoke(app, words + (["--parquet"] if ending == "parquet" else []))
     assert done.exit_code == 0, done.output
@@ -66,7 +66,7 @@ def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
 def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path):
     one = made_cycles(each=3, out=1, session="visit 1")
     CYCLES.save(one, tmp_path / "run" / "cycles" / cycles_name("P01", "visit 1", "walk"), "key")
-    save_run(ResponseRun("t", "walk", "", (), (), (), made_now({}, 0, {}, "4.2"), cycles=(one,)), tmp_path / "run")
+    save_run(ResponseRun("t", "walk", "", (), made_now({}, 0, {}, "4.2"), {"cycles.json": (one,)}), tmp_path / "run")
     done = CliRunner().invoke(app, ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out"), "--mot"])
     assert done.exit_code == 0, done.output
     means = one.mean_curves()
@@ -81,6 +81,6 @@ def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path):
 
 
 def test_a_run_without_cycles_has_none_to_export(tmp_path):
-    save_run(ResponseRun("t", "walk", "exo", (), (), (), made_now({}, 0, {}, "4.2")), tmp_path)
+    save_run(ResponseRun("t", "walk", "exo", (), made_now({}, 0, {}, "4.2"), {}), tmp_path)
     done = CliRunner().invoke(app, ["export", str(tmp_path), "--out", str(tmp_path / "out")])
     assert "tables of cycles need a run that pooled them" in str(done.exception)

@@ -22,12 +22,12 @@ from gaitdisc.channel import Channel
 from gaitdisc.cli import COMMANDS, main
 from gaitdisc.commands.exit_codes import ENDED, REFUSED
 from gaitdisc.errors import WriteError
-from gaitdisc.library.loading import MODEL
 from gaitdisc.own_files import KINDS, LIST
 from gaitdisc.recording import Recording, Source
+from gaitdisc.results import kind as kinds
 from gaitdisc.results.discovery_folder import load_discovery, save_discovery
+from gaitdisc.results.kind import Saved
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.saved import READERS, Saved
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.whole_file import whole_file, write_whole, written_together
@@ -45,7 +45,7 @@ files = ["w.mot"]
 UNITS = ("run.json", "walks", "responses", "tests", "report/report.html")
 DISCOVERED = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
 WRITE_NOTHING = {"check", "doctor"}
-for _reader in (READERS | MODEL).values():
+for _reader in kinds.KINDS.values():
     import_module(_reader.partition(":")[0])
 
 # command -> words, with OUT where an output stands, and what it writes there: a name in OUT, or OUT itself
@@ -144,7 +144,7 @@ def test_a_file_of_somebody_else_is_left_as_it_is(lab, monkeypatch, capsys, name
         mine /= "notes.txt"
     if name == "export RUN":
         shutil.rmtree("run")
-        gd.ResponseRun("", "", "", (), (), (), Provenance({}, 0, {}, {}, "", ""), cycles=(made_cycles(),)).save("run")
+        gd.ResponseRun("", "", "", (), Provenance({}, 0, {}, {}, "", ""), {"cycles.json": (made_cycles(),)}).save("run")
     mine.parent.mkdir(parents=True, exist_ok=True)
     mine.write_text(MINE)
     before = contents(lab)
@@ -219,7 +219,7 @@ def wave():
 
 
 def test_each_kind_of_result_has_its_json_file():
-    assert {*READERS, *MODEL} == set(KINDS)
+    assert set(kinds.KINDS) == set(KINDS)
 
 
 @pytest.mark.parametrize("kind", Saved.__subclasses__(), ids=lambda kind: kind.__name__)
@@ -229,7 +229,8 @@ def test_save_replaces_nothing_that_save_did_not_write(tmp_path, monkeypatch, ki
         write_whole(folder / "table.csv", "new")
         write_whole(folder / name, "{}")
 
-    monkeypatch.setattr("gaitdisc.results.saved._function", lambda _: write)
+    monkeypatch.setitem(kinds.KINDS, kind._file, "planted:KIND")
+    monkeypatch.setattr(kinds, "load_word", lambda _: kinds.Kind(kind, name, write=write))
     result = object.__new__(kind)
     for _ in range(2):
         result.save(tmp_path / "own")

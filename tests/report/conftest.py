@@ -167,7 +167,14 @@ def make_run(
         "4.2",
         "2026-01-01T00:00:00+00:00",
     )
-    return ResponseRun(title, "natural", "spring", tuple(walks), tuple(responses), tuple(refusals), provenance)
+    return ResponseRun(
+        title,
+        "natural",
+        "spring",
+        tuple(refusals),
+        provenance,
+        {"walk.json": tuple(walks), "response.json": tuple(responses)},
+    )
 
 
 REFUSAL = Refusal(
@@ -213,7 +220,8 @@ def make_tested(participants=11, outputs=("hip_flexion_r", "ankle_angle_l", "emg
         responses.append(response)
     run = make_run(0, outputs=outputs)
     over = compare_participants(responses)
-    return replace(run, responses=tuple(responses), tests=compare_models(responses), over=over)
+    units = {"response.json": tuple(responses), "tests.json": (compare_models(responses),), "over.json": (over,)}
+    return replace(run, units={**run.units, **units})
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,7 @@ from gaitdisc.report.curves import (
     walk_of,
 )
 from gaitdisc.report.palette import SIDES
+from gaitdisc.results.walk_summary import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "pelvis_tilt")
 
@@ -34,7 +35,7 @@ def test_missing_strides_lower_n_not_the_mean(run_maker):
     run = run_maker(outputs=OUTPUTS)
     holed = np.array(run.walks[1].curves)
     holed[5:, :, 0] = np.nan
-    run = replace(run, walks=(run.walks[0], replace(run.walks[1], curves=holed)))
+    run = run.with_units(WALK, (run.walks[0], replace(run.walks[1], curves=holed)))
     numbers = curve_numbers(run, "P01")
     rows = numbers[(numbers["channel"] == "hip_flexion_r") & (numbers["walk"] == "exo")]
     np.testing.assert_allclose(rows["mean"], holed[:5, :, 0].mean(0))
@@ -68,16 +69,16 @@ def test_left_and_right_of_a_joint_stand_together_on_one_scale(run_maker):
 
 def test_a_walk_that_is_missing(run_maker):
     run = run_maker(outputs=OUTPUTS)
-    alone = replace(run, walks=run.walks[:1])
+    alone = run.with_units(WALK, run.walks[:1])
     assert set(curve_numbers(alone, "P01")["walk"]) == {"nominal"}
     assert len(curves_figures(alone, "P01", "P01")) == 1
-    assert curves_figures(replace(run, walks=()), "P01", "P01") == []
+    assert curves_figures(run.with_units(WALK, ()), "P01", "P01") == []
 
 
 @pytest.mark.parametrize("empty", [np.empty((0, 101, 3)), np.full((2, 101, 3), np.nan)])
 def test_a_walk_without_strides(run_maker, empty):
     run = run_maker(outputs=OUTPUTS)
-    run = replace(run, walks=tuple(replace(walk, curves=empty) for walk in run.walks))
+    run = run.with_units(WALK, tuple(replace(walk, curves=empty) for walk in run.walks))
     assert len(curves_figures(run, "P01", "P01")) == (1 if len(empty) else 0)
 
 

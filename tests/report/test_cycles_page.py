@@ -24,9 +24,8 @@ pytestmark = pytest.mark.usefixtures("unpainted")
 
 def _run(*cycles, exo="", unfitted=()):
     refusals = tuple(refusal for one in cycles for refusal in one.refusals)
-    return ResponseRun(
-        "walks", "walk", exo, (), (), refusals, made_now({}, 0, {}, "4.2"), cycles=cycles, unfitted=unfitted
-    )
+    made = made_now({}, 0, {}, "4.2")
+    return ResponseRun("walks", "walk", exo, refusals, made, {"cycles.json": cycles}, unfitted)
 
 
 def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):

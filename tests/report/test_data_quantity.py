@@ -12,7 +12,8 @@ from gaitdisc.report.data_quantity import (
 )
 from gaitdisc.report.response_page import write_report
 from gaitdisc.response.over_participants import compare_lengths
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.results.over_participants import OVER
+from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, DataQuantity
 
 ONE = ("hip_flexion_r",)  # what else the page shows is drawn of one variable
 
@@ -31,7 +32,7 @@ def quantity(participant, rises):
 @pytest.fixture
 def run(run_maker):
     rises = {1.0: 0.2, 10.0: 0.8, 30.0: 0.894, 52.2: 0.9}
-    return replace(run_maker(2, outputs=ONE), quantities=(quantity("P01", rises), quantity("P02", rises)))
+    return run_maker(2, outputs=ONE).with_units(QUANTITY, (quantity("P01", rises), quantity("P02", rises)))
 
 
 def test_numbers_are_medians_over_the_variables_of_a_group(run):
@@ -93,7 +94,7 @@ def ablated(tested):
     def made(lower_at_1=0.05, people=11):
         quantities = tuple(quantity_length(i, lower_at_1) for i in range(people))
         over = replace(tested.over, lengths=compare_lengths(quantities))
-        return replace(tested, quantities=quantities, over=over)
+        return tested.with_units(QUANTITY, quantities).with_units(OVER, (over,))
 
     return made
 
@@ -118,7 +119,7 @@ def test_what_is_enough_is_said_with_n(ablated):
 
 def test_too_few_get_a_reason(ablated):
     few = ablated(people=5)
-    few = replace(few, over=replace(few.over, lengths_said="5 participants are too few"))
+    few = few.with_units(OVER, (replace(few.over, lengths_said="5 participants are too few"),))
     assert length_table(few) is None
     assert length_sentences(few) == ["Training lengths are not tested: 5 participants are too few."]
 

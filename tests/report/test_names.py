@@ -11,7 +11,9 @@ from rich.console import Console
 from gaitdisc.recording import Finding
 from gaitdisc.report.response_page import write_report
 from gaitdisc.report.sentences import r2_text
+from gaitdisc.results.participant_response import RESPONSE
 from gaitdisc.results.provenance import Refusal
+from gaitdisc.results.walk_summary import WALK
 from gaitdisc.spreadsheet import read_csv
 
 NAMES = (
@@ -60,7 +62,8 @@ def named(run, name):
         for walk in run.walks
     )
     made = replace(run.provenance, settings={name: name}, files={name: "ab" * 32})
-    return replace(run, title=name, exo=name, walks=walks, refusals=(Refusal("P09", name, name),), provenance=made)
+    run = run.with_units(WALK, walks)
+    return replace(run, title=name, exo=name, refusals=(Refusal("P09", name, name),), provenance=made)
 
 
 @pytest.fixture(scope="module")
@@ -90,8 +93,8 @@ def test_a_page_its_tables_and_its_figures_show_a_name_as_it_is(plain, tags, tmp
 @pytest.mark.parametrize("name", NAMES)
 def test_a_terminal_shows_a_name_as_it_is(plain, name):
     responses = tuple(replace(r, participant=name, held_out=r.held_out) for r in plain.responses)
-    refused = replace(plain, responses=(), refusals=(Refusal(name, name, name),))
-    for shown in (replace(plain, responses=responses), refused):
+    refused = replace(plain, units={}, refusals=(Refusal(name, name, name),))
+    for shown in (plain.with_units(RESPONSE, responses), refused):
         console = Console(width=300, force_terminal=False)
         with console.capture() as capture:
             console.print(r2_text(shown))

@@ -13,6 +13,8 @@ from gaitdisc.report.over_participants import (
     responder_table,
 )
 from gaitdisc.response.over_participants import compare_participants
+from gaitdisc.results.over_participants import OVER
+from gaitdisc.results.participant_response import RESPONSE
 
 
 def test_the_blocks_that_have_something_to_say(tested, run):
@@ -24,15 +26,15 @@ def test_none_is_said_with_n_and_with_what_it_is_worth(tested):
     none = replace(
         tested.over, responders=tested.over.responders.assign(group=0), responders_said="No sub-groups (n = 11)"
     )
-    said = responder_sentences(replace(tested, over=none))
+    said = responder_sentences(tested.with_units(OVER, (none,)))
     assert said[0] == "No sub-groups (n = 11)."
     assert "no proof of one kind" in said[1]
-    assert responder_table(replace(tested, over=none)) is None
+    assert responder_table(tested.with_units(OVER, (none,))) is None
 
 
 def test_groups_are_listed_by_participant(tested):
     groups = tested.over.responders.assign(group=[1 + i % 2 for i in range(11)])
-    table = responder_table(replace(tested, over=replace(tested.over, responders=groups)))
+    table = responder_table(tested.with_units(OVER, (replace(tested.over, responders=groups),)))
     assert table.rows[0] == ("1", "P01, P03, P05, P07, P09, P11")
     assert "n = 11" in table.caption
 
@@ -67,7 +69,8 @@ def test_what_is_said_names_the_least_and_the_most(tested):
 
 
 def test_five_participants_have_medians_and_no_test(tested):
-    few = replace(tested, responses=tested.responses[:5], over=compare_participants(tested.responses[:5]))
+    few = tested.with_units(RESPONSE, tested.responses[:5])
+    few = few.with_units(OVER, (compare_participants(few.responses),))
     table = reduction_table(few)
     assert "median over participants, no test with so few" in table.caption
     assert "[" not in table.rows[0][2]
@@ -77,7 +80,7 @@ def test_nothing_without_numbers(tested, run):
     assert reduction_figure(run) is None
     assert reduction_table(run) is None
     none = tested.over.reductions.assign(rms_reduction=np.nan, peak_to_peak_reduction=np.nan)
-    bare = replace(tested, over=replace(tested.over, reductions=none))
+    bare = tested.with_units(OVER, (replace(tested.over, reductions=none),))
     assert reduction_figure(bare) is None
     assert reduction_sentences(bare) == []
 
@@ -92,7 +95,7 @@ def test_each_variable_and_model_has_its_baselines(tested):
 
 def test_a_network_that_beats_everything_is_said_to(tested):
     every = tested.over.baselines.assign(different=True, rank_biserial=1.0)
-    said = baseline_sentences(replace(tested, over=replace(tested.over, baselines=every)))
+    said = baseline_sentences(tested.with_units(OVER, (replace(tested.over, baselines=every),)))
     assert said[2] == "The Exo network beats every baseline in all."
 
 
@@ -101,7 +104,7 @@ def test_where_it_does_not_the_variables_are_named(tested):
     mine = (tests["model"] == "exo") & (tests["first"] == "ridge")
     tests.loc[mine & (tests["variable"] == "ankle_angle_l"), "different"] = False
     tests.loc[mine & (tests["variable"] == "emg_sol_r"), "rank_biserial"] = -1.0
-    said = baseline_sentences(replace(tested, over=replace(tested.over, baselines=tests)))
+    said = baseline_sentences(tested.with_units(OVER, (replace(tested.over, baselines=tests),)))
     assert said[2] == (
         "The Exo network is not shown to beat ridge with phase harmonics (in ankle angle, left; EMG soleus, right)."
     )

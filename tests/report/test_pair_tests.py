@@ -6,6 +6,8 @@ import pytest
 
 from gaitdisc.report.pair_tests import PLACES, comparison_figures, comparison_sentences, comparison_tables, p_text
 from gaitdisc.report.palette import MODELS
+from gaitdisc.results.over_participants import TESTS
+from gaitdisc.results.participant_response import RESPONSE
 
 
 def test_a_table_a_pair_and_one_of_the_families(tested):
@@ -45,15 +47,15 @@ def test_what_is_said(tested):
 
 def test_a_model_that_is_worse_is_said_to_be_worse(tested):
     worse = replace(tested.tests, tests=tested.tests.tests.assign(rank_biserial=-1.0))
-    said = comparison_sentences(replace(tested, tests=worse))
+    said = comparison_sentences(tested.with_units(TESTS, (worse,)))
     assert said[0].startswith("Augmented against Nominal: it explains less in 3 of 3 variables")
 
 
 def test_no_difference_is_said_plainly(tested):
     none = replace(tested.tests, tests=tested.tests.tests.assign(different=False))
-    said = comparison_sentences(replace(tested, tests=none))
+    said = comparison_sentences(tested.with_units(TESTS, (none,)))
     assert said[2] == "Exo against Augmented: no difference is shown in any of 3 variables."
-    row = comparison_tables(replace(tested, tests=none))[0].rows[0]
+    row = comparison_tables(tested.with_units(TESTS, (none,)))[0].rows[0]
     assert "not shown" in row
 
 
@@ -74,7 +76,7 @@ def test_a_variable_that_was_not_tested_says_so(tested_maker):
         )
 
     responses = (*(without_soleus(one) for one in run.responses[:2]), *run.responses[2:])
-    run = replace(run, responses=responses, tests=compare_models(responses))
+    run = run.with_units(RESPONSE, responses).with_units(TESTS, (compare_models(responses),))
     table = comparison_tables(run)[0]
     assert table.rows[2][3:5] == ("4", "not tested")
     assert "Holm-Sidak over 2 tests" in table.caption

@@ -23,6 +23,7 @@ from gaitdisc.report.r2 import (
     study_r2_table,
     variables,
 )
+from gaitdisc.results.walk_summary import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 
@@ -182,7 +183,7 @@ def test_a_number_that_is_missing_says_so_and_why(run_maker):
     response.r2.loc[rows, "n"] = 0
     assert not_computed(run, response) == ["ankle angle, left: no usable sample in the held-out part (n = 0)"]
     dead = Finding("warning", "dead", "a.mot", "constant 0 deg", "this channel", "ankle_angle_l")
-    run = replace(run, walks=(replace(run.walks[0], findings=(dead,)),))
+    run = run.with_units(WALK, (replace(run.walks[0], findings=(dead,)),))
     assert not_computed(run, response) == [
         "ankle angle, left: warning: a.mot, ankle_angle_l: dead: constant 0 deg; spoils this channel"
     ]

@@ -13,7 +13,9 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.recording import Finding
 from gaitdisc.report import response_page
 from gaitdisc.report.response_page import method_sentences, write_report
+from gaitdisc.results.participant_response import RESPONSE
 from gaitdisc.results.provenance import Refusal
+from gaitdisc.results.walk_summary import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 
@@ -80,7 +82,8 @@ def test_hostile_words_are_only_words(run_maker, tmp_path):
     evil = '<script>alert(1)</script> $\\frac{x}$ "quoted" {{ 7 * 7 }}'
     run = run_maker(outputs=("hip_flexion_r",), title=evil, refusals=(Refusal(evil, evil, evil),))
     walks = tuple(replace(walk, subject=evil) for walk in run.walks)
-    run = replace(run, nominal="natural", walks=walks, responses=(replace(run.responses[0], participant=evil),))
+    run = replace(run, nominal="natural").with_units(WALK, walks)
+    run = run.with_units(RESPONSE, (replace(run.responses[0], participant=evil),))
     text = write_report(run, tmp_path).read_text(encoding="utf-8")
     assert "<script" not in text
     assert "&lt;script&gt;alert(1)" in text
@@ -98,7 +101,7 @@ def test_everybody_refused(run_maker, refusal, tmp_path):
 
 @pytest.mark.usefixtures("unpainted")
 def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
-    run = replace(run_maker(outputs=("hip_flexion_r",), refusals=(refusal,)), responses=())
+    run = run_maker(outputs=("hip_flexion_r",), refusals=(refusal,)).with_units(RESPONSE, ())
     text = write_report(run, tmp_path).read_text(encoding="utf-8")
     assert "No model was fitted for this participant" in text
     assert text.count("<img") == 2
@@ -163,7 +166,7 @@ def test_a_run_of_before_there_were_tests_has_no_such_section(run_maker, tmp_pat
 def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_path):
     run = run_maker(3, outputs=("hip_flexion_r",))
     write_report(run, tmp_path / "all")
-    first = replace(run, walks=run.walks[:2], responses=run.responses[:1])
+    first = run.with_units(WALK, run.walks[:2]).with_units(RESPONSE, run.responses[:1])
     write_report(first, tmp_path / "one")
     alone = sorted(path for path in (tmp_path / "one" / "figures").iterdir() if "P01" in path.name)
     assert len(alone) >= 4 * 3
@@ -200,7 +203,7 @@ def test_five_sentences_name_the_equations(run):
 def test_walks_whose_angles_are_of_markers_are_counted(run):
     first, *others = run.walks
     said = Finding("note", "marker set", "P01 natural, file 1", "plug_in_gait: ...", "")
-    some = replace(run, walks=(replace(first, findings=(*first.findings, said)), *others))
+    some = run.with_units(WALK, (replace(first, findings=(*first.findings, said)), *others))
     sentences = method_sentences(some)
     assert len(sentences) == 6
     assert sentences[0].startswith(f"Joint angles of 1 of {len(run.walks)} walks are computed from markers")

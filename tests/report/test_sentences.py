@@ -7,6 +7,7 @@ import pytest
 from rich.console import Console
 
 from gaitdisc.report.sentences import participant_sentences, r2_text, study_sentences
+from gaitdisc.results.participant_response import RESPONSE
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
 
@@ -152,7 +153,7 @@ def test_one_participant_fits_a_terminal_of_80_columns(run_maker):
 
 def test_several_participants_and_markup_in_names(run_maker):
     run = run_maker(3, outputs=OUTPUTS_PRINTED)
-    run = replace(run, responses=(*run.responses[:2], replace(run.responses[2], participant="[red]P03")))
+    run = run.with_units(RESPONSE, (*run.responses[:2], replace(run.responses[2], participant="[red]P03")))
     text = printed(run)
     assert all(name in text for name in ("P01", "P02", "[red]P03", "median", "n = 3 participants"))
 

@@ -5,16 +5,9 @@ import pandas as pd
 import pytest
 
 from gaitdisc.report.r2 import study_r2_table
-from gaitdisc.report.walks import (
-    dropped_table,
-    findings_table,
-    fits_table,
-    reason_kind,
-    refusals_table,
-    stride_numbers,
-    strides_figure,
-    walks_table,
-)
+from gaitdisc.report.table import findings_table, refusals_table
+from gaitdisc.report.walks import dropped_table, fits_table, reason_kind, stride_numbers, strides_figure, walks_table
+from gaitdisc.results.walk_summary import WALK
 
 STRIDES = pd.DataFrame(
     [
@@ -31,7 +24,7 @@ STRIDES = pd.DataFrame(
 
 def test_like_reasons_have_one_letter(run_maker):
     run = run_maker(outputs=("hip_flexion_r",))
-    run = replace(run, walks=tuple(replace(walk, strides=STRIDES) for walk in run.walks))
+    run = run.with_units(WALK, tuple(replace(walk, strides=STRIDES) for walk in run.walks))
     numbers = stride_numbers(run, "P01")
     assert list(numbers["code"]) == ["", "A", "", "B", "", "A"] * 2
     np.testing.assert_allclose(numbers["duration_s"][:3], [1.0, 1.9, 1.0])
@@ -56,14 +49,14 @@ def test_every_stride_is_drawn(run_maker):
 def test_nobody_and_no_strides(run_maker):
     run = run_maker(outputs=("hip_flexion_r",))
     assert strides_figure(run, "P99", "P99") is None
-    run = replace(run, walks=tuple(replace(walk, strides=STRIDES[:0]) for walk in run.walks))
+    run = run.with_units(WALK, tuple(replace(walk, strides=STRIDES[:0]) for walk in run.walks))
     assert strides_figure(run, "P01", "P01") is None
 
 
 def test_all_dropped(run_maker):
     run = run_maker(outputs=("hip_flexion_r",))
     dropped = STRIDES.assign(kept=False, reason="")
-    run = replace(run, walks=tuple(replace(walk, strides=dropped) for walk in run.walks))
+    run = run.with_units(WALK, tuple(replace(walk, strides=dropped) for walk in run.walks))
     figure = strides_figure(run, "P01", "P01")
     assert "natural: 0 kept, 6 dropped" in figure.caption
     assert set(figure.numbers["code"]) == {"A"}
@@ -89,7 +82,7 @@ def test_refusals_findings_and_drops(run_maker, refusal):
     assert len(findings.rows) == 3
     dropped = dropped_table(run, "P01", "P01")
     assert sum(int(row[3]) for row in dropped.rows) == len(dropped.numbers)
-    clean = replace(run, walks=tuple(replace(w, strides=w.strides.assign(kept=True)) for w in run.walks))
+    clean = run.with_units(WALK, tuple(replace(w, strides=w.strides.assign(kept=True)) for w in run.walks))
     assert dropped_table(clean, "P01", "P01") is None
 
 

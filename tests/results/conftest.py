@@ -67,7 +67,12 @@ def response() -> ParticipantResponse:
 def run(walk, response) -> ResponseRun:
     provenance = Provenance({"order": 4}, 0, {"walk.mot": "ab"}, {"numpy": "2"}, "4.2", "2026-01-01T00:00:00+00:00")
     return ResponseRun(
-        "a study", "natural", "exo", (walk,), (response,), (Refusal("P02", "exo", "missing"),), provenance
+        "a study",
+        "natural",
+        "exo",
+        (Refusal("P02", "exo", "missing"),),
+        provenance,
+        {"walk.json": (walk,), "response.json": (response,)},
     )
 
 

@@ -5,33 +5,30 @@ import json
 import os
 import random
 import shutil
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
 from resealed import resealed
 
+from gaitdisc.batch.participant_unit import REFUSED, Refused
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.results.over_participants import TABLES, OverParticipants, no_rows
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.results.over_participants import OVER, TABLES, TESTS, OverParticipants, no_rows
+from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.run_store import load_run, save_run
-from gaitdisc.results.stores import (
-    OVER,
-    QUANTITY,
-    REFUSED,
-    RESPONSE,
-    TESTS,
+from gaitdisc.results.response_run import load_run
+from gaitdisc.results.study_run import save_run
+from gaitdisc.results.unit_folder import damaged_units, unit_name
+from gaitdisc.results.variants import (
+    VARIANT_COLUMNS,
+    VARIANT_TEST_COLUMNS,
     VARIANTS,
-    WALK,
-    Refused,
+    VariantRun,
+    Variants,
     load_variant_run,
     save_variant_run,
-    unit_name,
 )
-from gaitdisc.results.unit_folder import damaged_units
-from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
+from gaitdisc.results.walk_summary import WALK
 
 SEED, MUTATIONS = 11, 20
 DEEP = "[" * 20_000
@@ -72,7 +69,9 @@ def folder(everything, run, pair_tests, tmp_path):
         VARIANTS.save(variants, everything / "modalities" / "people" / "P01", "key")
         save_variant_run(varied, everything / "modalities")
         OVER.save(over, everything / "over")
-        save_run(replace(run, tests=pair_tests, over=over, quantities=(quantity,)), everything)
+        save_run(
+            run.with_units(TESTS, (pair_tests,)).with_units(OVER, (over,)).with_units(QUANTITY, (quantity,)), everything
+        )
     return shutil.copytree(everything, tmp_path / "run")
 
 

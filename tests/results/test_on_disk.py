@@ -6,7 +6,7 @@ import pytest
 from gaitdisc.errors import SchemaError
 from gaitdisc.results import on_disk
 from gaitdisc.results.on_disk import lies_on_disk
-from gaitdisc.results.stores import RESPONSE
+from gaitdisc.results.participant_response import RESPONSE
 
 
 @pytest.fixture

@@ -5,8 +5,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import SchemaError, ShapeError
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
-from gaitdisc.results.stores import QUANTITY
+from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, DataQuantity
 
 
 def test_r2_of(response):

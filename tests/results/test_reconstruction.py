@@ -10,11 +10,11 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.reconstruction import (
     MEASURES,
+    RECONSTRUCTION,
     Reconstruction,
     enough_sensors,
     mean_over_people,
 )
-from gaitdisc.results.stores import RECONSTRUCTION
 
 
 @pytest.fixture

@@ -6,4 +6,4 @@ def test_tables(run):
     assert table["participant"].tolist() == ["P01", "P01"]
     findings = run.findings_table()
     assert findings.loc[0, "spans_s"] == "1.00-1.10"
-    assert list(replace(run, responses=()).r2_table().columns) == list(table.columns)
+    assert list(replace(run, units={}).r2_table().columns) == list(table.columns)

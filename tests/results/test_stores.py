@@ -8,27 +8,26 @@ import pytest
 from driven_walker import DrivenWalker
 from made_cycles import made_cycles
 
+from gaitdisc.batch.participant_unit import REFUSED, Refused
 from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.results.over_participants import TABLES, OverParticipants, no_rows
+from gaitdisc.results.mismatch import MISMATCH
+from gaitdisc.results.over_participants import OVER, TABLES, TESTS, OverParticipants, no_rows
+from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.pooled_cycles import CYCLES, cycles_name
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.stores import (
-    CYCLES,
-    MISMATCH,
-    OVER,
-    REFUSED,
-    RESPONSE,
-    TESTS,
+from gaitdisc.results.unit_folder import unit_name
+from gaitdisc.results.variants import (
+    VARIANT_COLUMNS,
+    VARIANT_TEST_COLUMNS,
     VARIANTS,
-    WALK,
-    Refused,
-    cycles_name,
+    VariantRun,
+    Variants,
     load_variant_run,
     save_variant_run,
-    unit_name,
 )
-from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
+from gaitdisc.results.walk_summary import WALK
 
 
 def test_a_walk_comes_back_as_it_was(walk, tmp_path):

@@ -11,7 +11,7 @@ from gaitdisc.report.table import save_tables, words_table
 from gaitdisc.report.wording import NONE, counted, number
 from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.study_run import StudyRun
 from gaitdisc.whole_file import write_whole
 
 RANKS = {"red": 0, "amber": 1, "green": 2}
@@ -20,7 +20,7 @@ HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]"
 
 
 def write_index(
-    run: ResponseRun,
+    run: StudyRun,
     sessions: Sequence[tuple[PersonSession, str]],
     reference: ClinicalReference | None,
     folder: Path,

@@ -5,8 +5,12 @@ import pytest
 from resealed import resealed
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.run_store import created_before, load_run, save_run
-from gaitdisc.results.stores import RESPONSE, WALK, unit_name
+from gaitdisc.results.over_participants import TESTS
+from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.response_run import load_run
+from gaitdisc.results.study_run import created_before, save_run
+from gaitdisc.results.unit_folder import unit_name
+from gaitdisc.results.walk_summary import WALK
 
 
 def test_a_run_comes_back_as_it_was(run, tmp_path):
@@ -22,7 +26,7 @@ def test_a_run_comes_back_as_it_was(run, tmp_path):
 def saved(run, pair_tests, tmp_path):
     WALK.save(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
     RESPONSE.save(run.responses[0], tmp_path / "responses" / "P01", "key")
-    save_run(replace(run, tests=pair_tests), tmp_path)
+    save_run(run.with_units(TESTS, (pair_tests,)), tmp_path)
     return tmp_path
 
 
