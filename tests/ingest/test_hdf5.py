@@ -15,7 +15,7 @@ def test_the_signature_tells(tmp_path):
     (tmp_path / "b.nc").write_bytes(b"CDF\x01")
     assert is_hdf5(tmp_path / "a.h5")
     assert not is_hdf5(tmp_path / "b.nc")
-    with pytest.raises(ReadError, match=r"absent.nc is to be read; No such file"):
+    with pytest.raises(ReadError, match=r"absent.nc"):
         is_hdf5(tmp_path / "absent.nc")
 
 
@@ -99,5 +99,5 @@ def test_a_text_of_variable_length_is_read_beside_and_within_a_time(tmp_path, mo
         worker.write_text("import sys, time; sys.stdin.readline(); time.sleep(60)")
         monkeypatch.setattr("gaitdisc.ingest.hdf5.TEXT_LIMIT_S", 0.1)
         monkeypatch.setattr("gaitdisc.ingest.reader_process.WORKER", worker)
-        with pytest.raises(ReadError, match=r"'units' of 't' cannot be read: it had not finished after 0\.6 s\."):
+        with pytest.raises(ReadError, match=r"'units'.*'t'.*after 0\.6 s"):
             attributes(file, "t", path, ("units",))

@@ -124,7 +124,7 @@ def test_bad_parquet_is_refused(tmp_path):
         with pytest.raises(ReadError, match=words):
             read_table(path)
     path.write_bytes(b"PAR1 something else PAR1")
-    with pytest.raises(ReadError, match=r"walk\.parquet should be a Parquet table"):
+    with pytest.raises(ReadError, match=r"walk\.parquet"):
         read_table(path)
 
 
@@ -176,5 +176,5 @@ def test_a_line_of_units_below_the_header(tmp_path):
     np.testing.assert_allclose(trial.stream("emg")["emg_sol_r"], [1e-3, 2e-3])
     assert trial.stream("signals").names == ("foot",) and trial.stream("signals").rate_hz == 100.0
     path.write_text("time,knee_angle_r\ns,left\n0,1\n0.01,2\n")
-    with pytest.raises(ReadError, match=r"a number is needed in line 2"):
+    with pytest.raises(ReadError, match=r"number is needed.*line 2"):
         read_table(path)

@@ -98,5 +98,5 @@ def test_wrong_counts_that_do_no_harm_are_reported(tmp_path):
 
 
 def test_a_header_without_markers_is_refused():
-    with pytest.raises(ReadError, match="names of its markers in line 4; there are none"):
+    with pytest.raises(ReadError, match=r"of its markers.*line 4"):
         parsed_trc_header([*TEXT.split("\n")[:3], "Frame#\tTime\t\t"], "a.trc")

@@ -58,8 +58,7 @@ def test_delays_that_have_a_meaning_are_read(what):
 def test_a_delay_as_long_as_the_shortest_trial_is_refused(what):
     simulation = simulation_of(late(what))
     refuse_delays(simulation)
-    with pytest.raises(SimulationError, match=r"\[equations\] x: a delay is shorter than every trial; the shortest, "
-                       r"'b', lasts 8 s; 'delay.*' is .* s.* Write seconds, or leave the trial out"):  # fmt: skip
+    with pytest.raises(SimulationError, match=r"\[equations\].*shorter.*'b'.*8 s"):  # fmt: skip
         refuse_delays(simulation, 8.0, "b")
 
 
