@@ -51,7 +51,7 @@ def test_a_whole_rate_is_found_behind_the_digits():
 @pytest.mark.parametrize("digits", [2, 3, 8])
 def test_one_missing_sample_is_not_taken_for_rounding(digits):
     time = np.delete(np.round(np.arange(1000) / 100, digits), 500)
-    with pytest.raises(SamplingError, match=r"line 511.*line 512.*0.02 s.*= 4.99 s\)"):
+    with pytest.raises(SamplingError, match=r"line 511.*line 512.*0\.02 s.*4\.99 s"):
         even_time(time, 10.0**-digits, "a.mot", np.arange(12, 12 + 999))
 
 

@@ -40,7 +40,7 @@ def test_one_file_gives_several_streams_on_one_base():
 def test_nan_in_a_force_is_refused_with_sample_and_time(name):
     values = np.ones((5, 1))
     values[2:4] = np.nan
-    with pytest.raises(ReadError, match=rf"{name} needs.*2 of 5.*sample 3.*= 0\.02 s"):
+    with pytest.raises(ReadError, match=rf"{name} .*2 of 5 .*sample 3 .*0\.02 s"):
         _trial(name, values=values)
 
 
@@ -63,7 +63,7 @@ def test_milliseconds_under_the_name_of_seconds_are_refused(tmp_path, rate_hz):
     knee = 30 * np.sin(6 * time)
     rows = "\n".join(f"{1000 * t:g},{value}" for t, value in zip(time, knee, strict=True))
     (tmp_path / "walk.csv").write_text(f"time,knee_angle_r [deg]\n{rows}\n")
-    said = rf"knee_angle_r of a walk needs a sample every 0.2 s .*; times are {1000 / rate_hz:g} s apart, and 400"
+    said = rf"knee_angle_r .*0\.2 s .* {1000 / rate_hz:g} s apart, and 400"
     with pytest.raises(SamplingError, match=said):
         read_trial(tmp_path / "walk.csv")
     (tmp_path / "walk.csv").write_text(f"time [ms],knee_angle_r [deg]\n{rows}\n")
