@@ -11,7 +11,7 @@ JOBS   ?= 2
 PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
 BESIDE := -n $(JOBS) --dist worksteal
 
-.PHONY: demo test elsewhere slow lint format bench docs release clean
+.PHONY: demo test elsewhere slow lint format approve bench docs release clean
 
 demo: $(VENV)/.base
 	$(BIN)/gaitdisc demo $(DEMO)
@@ -38,6 +38,10 @@ lint: $(VENV)/.dev
 format: $(VENV)/.dev
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+# Texts that differ from those in tests/approved; make approve YES=--yes approves them.
+approve: $(VENV)/.dev
+	$(BIN)/python tests/approve.py $(YES)
 
 bench: $(VENV)/.dev
 	$(BIN)/python benchmarks/read_c3d.py

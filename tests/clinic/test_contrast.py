@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 from made_clinic import made_person
+from texts import says
 
 from gaitdisc.clinic.contrast import contrast_of
 from gaitdisc.clinic.reading import read_beside
@@ -28,4 +29,4 @@ def test_where_the_knee_bends_more_after_is_found_and_nothing_on_the_other_side(
 def test_few_cycles_are_not_tested_and_the_reason_is_said():
     found = contrast_of(_reading("before", each=2), _reading("after", each=2))
     assert found.spans == () and found.tested == {}
-    assert "needs 6 units or more in a set; found 2" in found.untested["l"]
+    assert says(found.untested["l"], "6 units", "more", "2")

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 from made_clinic import ANKLE, made_controls, made_person
+from texts import says
 
 from gaitdisc.clinic.rules import outstanding, rules_in
 from gaitdisc.recording import PERCENT
@@ -50,4 +51,4 @@ def test_what_is_beyond_the_limits_by_less_than_matters_is_not_spoken_of():
 def test_too_few_controls_say_nothing_in_words():
     numbers, why = outstanding(legs_of(made_person()), made_controls(4).of("walk"))
     assert numbers == ()
-    assert why == "limits need a reference of 5 people or more; it has 4 people who walked so"
+    assert says(why, "5 people", "more", "4 people")

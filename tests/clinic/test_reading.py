@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from made_clinic import made_controls, made_person
+from texts import says
 
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.recording import Finding
@@ -21,7 +22,7 @@ def test_a_person_beside_a_reference_has_all_of_a_page():
 def test_without_a_reference_and_for_another_condition_the_reason_is_said():
     assert "there is no reference" in read_beside(made_person(), None).silent
     other = read_beside(made_person(condition="turn"), made_controls(6))
-    assert other.silent == other.no_profile == "nobody of the reference walked 'turn'; it has 'walk'"
+    assert other.silent == other.no_profile and says(other.silent, "'turn'", "'walk'")
     assert other.bands == {}
 
 

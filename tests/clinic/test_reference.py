@@ -34,7 +34,7 @@ def test_the_first_session_of_a_person_counts_and_no_pseudonym_is_kept():
     assert {leg.person for leg in found.of("walk")} == {1, 2}
     assert found.of("turn") == ()
     assert found.without(1).people("walk") == 1
-    with pytest.raises(SchemaError, match="a reference needs kept cycles of controls; found none in 0"):
+    with pytest.raises(SchemaError, match=r"controls.*none.*0"):
         reference_of([], "controls", PROVENANCE)
 
 

@@ -49,7 +49,7 @@ def test_a_rule_takes_its_number_and_none_where_it_cannot():
     [{"least": 0.0}, {"least": 5}, {"variable": "elbow"}, {"part": "start"}, {"less": ""}, {"value": "speed_m_per_s"}],
 )
 def test_a_rule_that_cannot_be_applied_is_refused(wrong):
-    with pytest.raises(SchemaError, match="a rule needs name, least > 0"):
+    with pytest.raises(SchemaError, match=r"rule needs name, least.*0"):
         rules_in({"rules": [{**GOOD, **wrong}]})
     with pytest.raises(SchemaError, match="a name of its own"):
         rules_in({"rules": [GOOD, GOOD]})

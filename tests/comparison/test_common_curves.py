@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.comparison.common_curves import common_curves
@@ -26,15 +27,15 @@ def test_channels_that_one_lacks_and_other_units_are_left_out_and_said():
     found = common_curves((one, other))
     assert [c.name for c in found.channels] == ["hip_flexion_r"]
     said = [finding.line() for finding in found.findings]
-    assert any("measured: not compared: no knee_angle_r, which the other has" in line for line in said)
-    assert any("ankle_angle_r_moment: unit: given in 'N m' and in 'N m/kg'" in line for line in said)
+    assert any(says(line, "measured: not", "no knee_angle_r") for line in said)
+    assert any(says(line, "ankle_angle_r_moment", "'N m'", "'N m/kg'") for line in said)
 
 
 def test_nothing_in_common_is_refused_in_words():
     one, other = summary("sim", units={"hip_flexion_r": "deg"}), summary("measured", units={"knee_angle_r": "deg"})
-    with pytest.raises(ChannelError, match="sim and measured have 1 and 1 channels, none of that kind"):
+    with pytest.raises(ChannelError, match=r"sim.*measured.*1.*1 channels, none"):
         common_curves((one, other))
-    with pytest.raises(ChannelError, match="'hip_flexion_r' is to be compared; measured lacks it"):
+    with pytest.raises(ChannelError, match=r"'hip_flexion_r'.*to be compared; measured"):
         common_curves((one, other), ("hip_flexion_r",))
 
 
@@ -47,10 +48,8 @@ def test_locked_and_repeated_channels_are_left_out():
         walks.append(replace(walk, curves=curves))
     found = common_curves(walks)
     assert [c.name for c in found.channels] == ["hip_flexion_r"]
-    assert [f.what.split(":")[0] for f in found.findings] == [
-        "mtp_angle_r do not move in any walk",
-        "knee_angle_r repeat another channel, number by number",
-    ]
+    still, repeated = (f.what for f in found.findings)
+    assert says(still, "mtp_angle_r") and says(repeated, "knee_angle_r", "repeat")
 
 
 def test_frozen_channels_are_compared_only_when_asked_for():
@@ -69,7 +68,7 @@ def test_a_stride_with_a_gap_is_left_out_and_a_channel_full_of_gaps_too():
     found = common_curves((replace(walk, curves=curves), summary("b", 7, seed=1)))
     assert [c.name for c in found.channels] == ["hip_flexion_r"]
     assert [len(c) for c in found.curves] == [9, 7]
-    assert any("8 of 10 strides have gaps" in f.what for f in found.findings)
+    assert any(says(f.what, "8 of 10 strides") for f in found.findings)
 
 
 def test_headings_on_either_side_of_180_deg_are_neighbours():

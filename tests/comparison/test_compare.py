@@ -76,7 +76,7 @@ def test_dependent_strides_are_gathered_into_blocks():
 
 
 def test_too_few_strides_are_refused_in_words():
-    with pytest.raises(ComparisonError, match=r"measured is what is compared with.*it has 1, sim has 30") as refused:
+    with pytest.raises(ComparisonError, match=r"measured.*1, sim.*30") as refused:
         compare_walks(walk("sim", 30, 1), walk("measured", 1, 2))
     assert "periodic simulation, is named first" in refused.value.remedy
 
@@ -92,7 +92,7 @@ def test_people_are_units_and_paired():
     assert (found.exchange.first, found.exchange.permutations, found.exchange.exact) == (8, 128, True)
     assert found.ordered() == ["ankle_angle_r"]
     assert found.curves["sd_second"].mean() == pytest.approx(1.5, abs=0.3)
-    with pytest.raises(ComparisonError, match=r"6 participants or more; 5 have both"):
+    with pytest.raises(ComparisonError, match=r"6 participants.*more; 5.*both"):
         compare_people(pairs[:5])
 
 

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from budget import CHECKOUT, read_rooms
 
-LONG_LINES, MANY_BRANCHES, MANY_ARGUMENTS = 40, 12, 7
+LONG_LINES, MANY_BRANCHES, MANY_ARGUMENTS, MANY_WORDS = 40, 12, 7, 6
 ORDINARY = (-1, 0, 1, 2)  # numbers that need no reason
 BRANCHES = (ast.If, ast.For, ast.While, ast.ExceptHandler, ast.IfExp, ast.BoolOp, ast.comprehension, ast.match_case)
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
@@ -74,6 +74,13 @@ def count_numbers(tree: ast.Module) -> int:
         and id(node) not in indexed
         for node in ast.walk(tree)
     )
+
+
+def pins_a_text(test: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    """Whether a test holds a text of six words or more, its docstring and what it is parametrised with apart."""
+    said = test.body[1:] if ast.get_docstring(test) else test.body
+    leaves = (leaf for statement in said for leaf in ast.walk(statement))
+    return any(isinstance(one, ast.Constant) and len(str(one.value).split()) >= MANY_WORDS for one in leaves)
 
 
 def count_private_used_once(trees: list[ast.Module]) -> int:
@@ -163,6 +170,7 @@ def count_house() -> tuple[dict[str, int], list[str]]:
     upward = list_upward_imports(modules, rooms)
     names = [function.name for function in functions]
     odd = [n for n in names if n.endswith("_of") or (PARTICIPLE.match(n) and not NOT_PARTICIPLES.match(n))]
+    tests = [f for path in CHECKOUT.glob("tests/**/*.py") for f in list_functions(ast.parse(path.read_text("utf-8")))]
     tables = [path for path in CHECKOUT.joinpath("gaitdisc").rglob("*") if path.suffix in (".toml", ".csv")]
     return {
         "files": len(files),
@@ -180,6 +188,9 @@ def count_house() -> tuple[dict[str, int], list[str]]:
         "numbers in tables": sum(len(re.findall(r"(?<![\w.])-?\d+(?:\.\d+)?", path.read_text())) for path in tables),
         "functions named by a participle or _of": len(odd),
         "imports upwards": len(upward),
+        f"tests with a text of {MANY_WORDS} words or more": sum(
+            t.name.startswith("test") and pins_a_text(t) for t in tests
+        ),
     }, upward
 
 

@@ -132,14 +132,12 @@ def test_objects_are_never_unpickled(tmp_path, monkeypatch):
     np.savez(path, knee=np.array([_Bomb()], dtype=object))
     called = []
     monkeypatch.setattr(pickle, "load", lambda *_, **__: called.append(1))
-    with pytest.raises(
-        ReadError, match=r"'knee' is to be an array of numbers; it holds Python objects, which are never"
-    ):
+    with pytest.raises(ReadError, match=r"'knee'.*holds Python objects"):
         open_arrays(path).numbers("knee")
     bare = tmp_path / "b.npz"
     with zipfile.ZipFile(bare, "w") as packed:
         packed.writestr("knee.npy", pickle.dumps(_Bomb()))
-    with pytest.raises(ReadError, match=r"b.npz is to be read as an .npz file; it cannot be"):
+    with pytest.raises(ReadError, match=r"b.npz.*file; it cannot"):
         open_arrays(bare).numbers("knee")
     assert not called
 
@@ -171,7 +169,7 @@ def _cut_and_read(path, whole, name, expected):
 @pytest.mark.parametrize("name", ["a.mat", "a.npz"])
 def test_what_is_no_such_file(tmp_path, name):
     (tmp_path / name).write_bytes(b"time,knee\n0,1\n" * 40)
-    with pytest.raises(ReadError, match=rf"{name} is to be read as an? \.\w+ file; it cannot be"):
+    with pytest.raises(ReadError, match=rf"{name}.*an? \.\w+ file"):
         open_arrays(tmp_path / name)
 
 
@@ -183,7 +181,7 @@ def test_what_claims_too_much_is_refused_before_it_is_unpacked(tmp_path, ending)
         savemat(path, {"trial": {"force": zeros}}, do_compression=True)
     else:
         np.savez_compressed(path, trial=zeros)
-    with pytest.raises(ReadError, match=r"at most 7[0-9.]+ MiB is unpacked from a file of its size; 'trial' claims 96"):
+    with pytest.raises(ReadError, match=r"7[0-9.]+ MiB.*'trial'.*96"):
         open_arrays(path).numbers("trial")
     if ending == ".mat":
         savemat(path, {"trial": {"force": zeros}})
@@ -197,7 +195,7 @@ def test_a_header_that_lies_about_its_array_meets_the_cap(tmp_path):
     np.lib.format.write_array_header_1_0(held, {"descr": "<f8", "fortran_order": False, "shape": (10**11,)})
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
         packed.writestr("knee.npy", held.getvalue() + bytes(4 * 2**20))
-    with pytest.raises(ReadError, match=r"lies.npz is to be read as an .npz file; it cannot be: its reader says: it "):
+    with pytest.raises(ReadError, match=r"lies.npz"):
         open_arrays(path).numbers("knee")
 
 
@@ -206,7 +204,7 @@ def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(mat5, m
     worker.write_text("import os, signal, sys; sys.stdin.readline(); os.kill(os.getpid(), signal.SIGSEGV)")
     with monkeypatch.context() as patch, closing(ReaderProcess()) as process:
         patch.setattr(reader_process, "WORKER", worker)
-        with pytest.raises(ReadError, match=r"walk.mat is to be read as a .mat file; .* crashed \(exit code -11\)"):
+        with pytest.raises(ReadError, match=r"walk.mat.*-11\)"):
             open_arrays(mat5, process)
         patch.undo()
         np.testing.assert_array_equal(open_arrays(mat5, process).numbers("data.knee"), KNEE)

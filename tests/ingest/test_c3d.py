@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d import read_c3d
@@ -73,7 +74,7 @@ def test_more_than_65535_frames(tmp_path, write_c3d, reader):
 
 def test_more_than_65535_frames_whose_number_nobody_says(tmp_path, write_c3d, reader):
     path = write_c3d(tmp_path / "a.c3d", np.full((3, 1, 70_000), 900.0))
-    with pytest.raises(ReadError, match=r"a\.c3d has room for 700\d\d, says 65535"):
+    with pytest.raises(ReadError, match=r"a\.c3d.*700\d\d.*65535"):
         reader.read(path)
 
 
@@ -97,17 +98,15 @@ def test_a_rate_that_is_no_multiple_is_reported(tmp_path, write_c3d, some_points
     at = content.index(np.float32(1000).tobytes())
     path.write_bytes(content[:at] + np.float32(1003).tobytes() + content[at + 4 :])
     trial = reader.read(path)
-    said = [finding.what for finding in trial.findings if finding.kind == "analog rate"]
-    assert said == [
-        "ANALOG:RATE 1003 Hz is 10.03 times POINT:RATE 100 Hz, the file holds 10 samples a frame; read at 1000 Hz"
-    ]
+    (said,) = (finding.what for finding in trial.findings if finding.kind == "analog rate")
+    assert says(said, "1003 Hz", "10.03 times", "100 Hz", "10 samples a frame", "1000 Hz")
     assert trial.stream("signals").rate_hz == 1000
 
 
 def test_no_rate_is_refused(tmp_path, write_c3d, some_points, reader):
     path = write_c3d(tmp_path / "a.c3d", some_points)
     path.write_bytes(path.read_bytes().replace(np.float32(100).tobytes(), bytes(4)))
-    with pytest.raises(SamplingError, match=r"a trial needs a rate; a\.c3d gives POINT:RATE 0\.0 Hz"):
+    with pytest.raises(SamplingError, match=r"a\.c3d.*POINT:RATE 0\.0 Hz"):
         reader.read(path)
 
 
@@ -169,7 +168,7 @@ def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkey
         return {"said": f"no {request.path}"}, []
 
     monkeypatch.setattr(reader.process, "read", both_fail)
-    with pytest.raises(ReadError, match=r"a reader that finds them; ezc3d: no a\.c3d; c3d: no a\.c3d"):
+    with pytest.raises(ReadError, match=r"ezc3d.*a\.c3d; c3d.*a\.c3d"):
         reader.read(write_c3d(tmp_path / "a.c3d", some_points))
 
 
@@ -180,7 +179,7 @@ def test_a_file_that_vanishes_is_refused_in_words(tmp_path, write_c3d, some_poin
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
     monkeypatch.setattr("gaitdisc.ingest.c3d.read_c3d_parameters", vanishing)
-    with pytest.raises(ReadError, match=r"a\.c3d: the system says: No such file or directory"):
+    with pytest.raises(ReadError, match=r"a\.c3d.*file or directory"):
         reader.read(path)
 
 

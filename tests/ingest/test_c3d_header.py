@@ -41,7 +41,7 @@ def test_what_is_no_c3d_file_is_named(tmp_path):
         "short": "has 52 bytes",
         "picture": "is a PNG picture",
         "folder": "is a folder",
-        "zeros": "begins with bytes 0 and 0",
+        "zeros": "bytes 0 and 0",
         "processor": "has 0",
         "missing": "is not there",
     }

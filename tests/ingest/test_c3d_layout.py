@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d_layout import expected_layout
@@ -32,7 +33,7 @@ def test_an_ordinary_file(file):
 @pytest.mark.parametrize("lost", [400, 5000, 9000])
 def test_a_truncated_file_is_refused_with_its_numbers(file, lost):
     header = replace(file[0], size=file[0].size - lost)
-    with pytest.raises(ReadError, match=r"needs 11936 bytes; a.c3d has \d+ and ends within frame \d+: it is truncated"):
+    with pytest.raises(ReadError, match=r"11936 bytes; a.c3d.*frame"):
         expected_layout(header, file[1])
 
 
@@ -42,7 +43,7 @@ def test_contradicting_counts_are_settled_by_the_length_of_the_file(file):
     assert "frames as 50 and" in findings[0].what
     layout, findings = expected_layout(file[0], _with(file[1], POINT__USED=900))
     assert layout.points == 3
-    assert "points as 900 and 3; read as 3" in findings[0].what
+    assert says(findings[0].what, "points as 900", "3", "3")
 
 
 def test_more_frames_than_16_bits_hold(file):
@@ -57,22 +58,22 @@ def test_more_frames_than_16_bits_hold(file):
 
 
 def test_a_header_that_misses_the_data_is_refused(file):
-    with pytest.raises(ReadError, match=r"says block 3, POINT:DATA_START and the length of the file say 4"):
+    with pytest.raises(ReadError, match=r"block 3, POINT:DATA_START.*4"):
         expected_layout(replace(file[0], data_block=3), file[1])
 
 
 @pytest.mark.parametrize(("header", "parameter"), [(-0.1, 0.1), (0.1, -0.1), (0.1, 0.2)])
 def test_contradicting_scales_are_refused(file, header, parameter):
-    with pytest.raises(ReadError, match=rf"a\.c3d has {header} and {parameter}\. .* every length would be wrong"):
+    with pytest.raises(ReadError, match=rf"a\.c3d.*{header}.*{parameter}"):
         expected_layout(replace(file[0], scale=header), _with(file[1], POINT__SCALE=parameter))
 
 
 def test_frames_that_no_count_covers_are_reported(file):
     _, findings = expected_layout(replace(file[0], size=file[0].size + 3000), file[1])
-    assert "bytes follow the last of 50 frames, room for 1" in findings[0].what
+    assert says(findings[0].what, "50 frames", "1")
 
 
 def test_a_file_without_anything_is_refused(file):
     header = replace(file[0], points=0, analog_values=0)
-    with pytest.raises(ReadError, match="at least one frame of points or analog"):
+    with pytest.raises(ReadError, match="points or analog"):
         expected_layout(header, _with(file[1], POINT__USED=0, ANALOG__USED=0))

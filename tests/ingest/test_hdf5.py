@@ -15,14 +15,14 @@ def test_the_signature_tells(tmp_path):
     (tmp_path / "b.nc").write_bytes(b"CDF\x01")
     assert is_hdf5(tmp_path / "a.h5")
     assert not is_hdf5(tmp_path / "b.nc")
-    with pytest.raises(ReadError, match=r"absent.nc is to be read; No such file"):
+    with pytest.raises(ReadError, match=r"absent.nc"):
         is_hdf5(tmp_path / "absent.nc")
 
 
 def test_a_damaged_file_is_refused(tmp_path):
     pytest.importorskip("h5py")
     (tmp_path / "cut.h5").write_bytes(SIGNATURE + b"\0" * 100)
-    said = r"cut.h5 is to be read as HDF5; it cannot be: .* Fetch the file again"
+    said = r"cut.h5 .*HDF5"
     with pytest.raises(ReadError, match=said), hdf5_file(tmp_path / "cut.h5"):
         pass
 
@@ -79,10 +79,10 @@ def test_what_is_no_data_set_of_numbers_is_refused(tmp_path):
         file.create_dataset("huge", (2**20, 2**20), np.float32, chunks=(1, 1024))
     with hdf5_file(tmp_path / "a.h5") as file:
         for name, said in (
-            ("group", r"a\.h5: 'group' is to be a data set of numbers; it is none"),
-            ("words", r"a\.h5: 'words' is to be a data set of numbers; it is of another type"),
-            ("huge", r"a\.h5: a data set of at most 4294967296 bytes is read; 'huge' claims 4398046511104"),
-            ("absent", r"a\.h5 is to be read as HDF5; it cannot be: .*absent"),
+            ("group", r"a\.h5: 'group' .*none"),
+            ("words", r"a\.h5: 'words' .*another type"),
+            ("huge", r"a\.h5: .*4294967296 bytes.*'huge' claims 4398046511104"),
+            ("absent", r"a\.h5 .*HDF5.*absent"),
         ):
             with pytest.raises(ReadError, match=said):
                 data_set(file, name, tmp_path / "a.h5")
@@ -99,5 +99,5 @@ def test_a_text_of_variable_length_is_read_beside_and_within_a_time(tmp_path, mo
         worker.write_text("import sys, time; sys.stdin.readline(); time.sleep(60)")
         monkeypatch.setattr("gaitdisc.ingest.hdf5.TEXT_LIMIT_S", 0.1)
         monkeypatch.setattr("gaitdisc.ingest.reader_process.WORKER", worker)
-        with pytest.raises(ReadError, match=r"'units' of 't' cannot be read: it had not finished after 0\.6 s\."):
+        with pytest.raises(ReadError, match=r"'units'.*'t'.*after 0\.6 s"):
             attributes(file, "t", path, ("units",))

@@ -9,10 +9,10 @@ from gaitdisc.ingest.trc import read_trc
 
 
 def test_millimetres_called_metres_and_the_other_way_round_are_refused():
-    with pytest.raises(UnitError, match=r"markers in m are less than 15 m .* are 1500 away, which looks like mm"):
+    with pytest.raises(UnitError, match=r"15 m.*1500 away.*mm"):
         refuse_other_unit("m", 1500.0, "a.trc", "Units in line 3")
-    for metres in (1.5, 7.0):  # a walkway may be long, or lie far from the origin
-        words = rf"markers in mm are more than 15 mm .* are {metres:g} away, .* Correct Units in line 3"
+    for metres in (0.5, 1.5, 7.0):  # a walkway may be long, or lie far from the origin
+        words = rf"in mm .* 15 mm .* {metres:g} away, .*Units in line 3"
         with pytest.raises(UnitError, match=words):
             refuse_other_unit("mm", metres, "a.trc", "Units in line 3")
     refuse_other_unit("mm", 1500.0, "a.trc", "")

@@ -6,6 +6,7 @@ import csv
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import QUANTITIES, Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
@@ -39,7 +40,7 @@ def test_each_quantity_has_a_range(channel, sound, absurd):
     np.testing.assert_array_equal(kept["kinematics"].values[:, 0], [sound, np.nan, sound])
     assert (finding.severity, finding.file, finding.channel) == ("warning", "walk.mot", channel.name)
     unit = "" if channel.unit == "1" else f" {channel.unit}"
-    assert finding.what.startswith(f"{absurd:.6g}{unit} in frame 2 (t = 0.01 s) is beyond what it can be")
+    assert says(finding.what, f"{absurd:.6g}{unit}", "frame 2", "= 0.01 s")
     assert finding.spans == ((0.01, 0.02),)
 
 
@@ -53,14 +54,14 @@ def test_one_absurd_cell_of_emg_is_missing(unit, sound, absurd):
 
 def test_a_ground_force_that_cannot_be_is_refused_as_a_missing_one_is():
     force = vocabulary().named("ground_force_r_vy")
-    with pytest.raises(ReadError, match=r"walk\.mot: ground_force_r_vy needs .* 1e\+09 N in frame 3 \(t = 0\.02 s\)"):
+    with pytest.raises(ReadError, match=r"walk\.mot: ground_force_r_vy.*1e\+09 N .*frame 3 .*0\.02 s"):
         without_impossible({"forces": _of(force, 700.0, 0.0, 1e9)})
 
 
 def test_a_channel_beyond_its_range_throughout_has_a_wrong_unit():
     _, (finding,) = without_impossible({"markers": _of(Channel("RHEE.x", "marker", "m"), 2047.0, 2046.0, 2047.0)})
-    assert "as are 2 more of 3 frames" in finding.what
-    assert finding.spoils.startswith("the unit or the name of the channel")
+    assert says(finding.what, "2 more", "3 frames")
+    assert says(finding.spoils, "of the channel")
 
 
 def test_emg_in_counts_of_a_converter_is_left_and_named():
@@ -68,7 +69,7 @@ def test_emg_in_counts_of_a_converter_is_left_and_named():
     kept, (finding,) = without_impossible({"emg": counts})
     np.testing.assert_array_equal(kept["emg"].values, counts.values)
     assert (finding.severity, finding.kind, finding.channel) == ("warning", "unit", "emg_ta_r")
-    assert finding.what == "reaches 2047 V; EMG in V is within 15, so it looks like mV, or these may be counts"
+    assert says(finding.what, "2047 V; EMG", "15", "mV")
 
 
 def test_the_table_of_ranges_uses_known_words():
@@ -140,7 +141,7 @@ def test_a_frozen_or_zero_stretch_of_an_angle_is_a_gap(held):
     assert np.flatnonzero(np.isnan(kept["kinematics"].values[:, 0])).tolist() == list(range(100, 130))
     assert (finding.severity, finding.kind, finding.channel) == ("warning", "frozen", "knee_angle_r")
     value = f"{x[100]:.4g}" if held else "0"
-    assert finding.what.startswith(f"stands still at {value} deg from 1.000 to 1.300 s; ")
+    assert says(finding.what, f"{value} deg", "1.000", "1.300 s")
 
 
 def test_a_marker_is_frozen_where_all_its_coordinates_are():
@@ -164,7 +165,7 @@ def test_a_force_that_drops_to_zero_under_a_standing_foot_is_a_gap_and_one_that_
     values = np.array(forces.values)
     values[300:450] = 0.0
     kept, (finding,) = without_frozen({"forces": forces.with_values(values)})
-    assert finding.what.startswith("stands still at 0 N from 0.300 to 0.450 s") and finding.channel == "plate_1_fz"
+    assert says(finding.what, "0 N", "0.300", "0.450 s") and finding.channel == "plate_1_fz"
     assert np.flatnonzero(np.isnan(kept["forces"].values).all(axis=1)).tolist() == list(range(300, 450))
 
 
@@ -180,5 +181,5 @@ def test_a_plate_does_not_pull(least_n, is_read):
     if is_read:
         assert not without_impossible({"forces": force})[1]
         return
-    with pytest.raises(ReadError, match=r"-1810 N in frame 1 .* beyond what it can be, -100 to 20000 N"):
+    with pytest.raises(ReadError, match=r"-1810 N.*frame 1.*-100.*20000 N"):
         without_impossible({"forces": force})

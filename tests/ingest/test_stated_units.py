@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from texts import says
 
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
@@ -34,20 +35,18 @@ def test_walking_is_recognised_and_mistakes_are_refused(hip, knee):
 
 
 def test_the_words_name_channel_and_number():
-    with pytest.raises(
-        UnitError, match=r"inDegrees=no\), so no joint angle may exceed 6\.28; knee_angle_r reaches 60,"
-    ):
+    with pytest.raises(UnitError, match=r"inDegrees=no\).*6\.28; knee_angle_r.*60"):
         plausible_unit(TIME, _walk_deg(), NAMES, "rad", "a.mot")
-    with pytest.raises(UnitError, match=r"a\.mot states degrees, .* range over more than 2\.5; .* is 1\.04 and"):
+    with pytest.raises(UnitError, match=r"a\.mot.*2\.5.*1\.04"):
         plausible_unit(TIME, np.radians(_walk_deg()), NAMES, "deg", "a.mot")
 
 
 def test_a_silent_header_is_reported_and_standing_still_is_refused():
     finding = plausible_unit(TIME, _walk_deg(), NAMES, None, "a.mot")[1]
-    assert finding is not None and "taken as deg (largest joint angle 60)" in finding.what
-    with pytest.raises(UnitError, match="header is silent and the largest joint angle is 0"):
+    assert finding is not None and says(finding.what, "(largest joint angle 60)")
+    with pytest.raises(UnitError, match=r"largest joint angle.*0"):
         plausible_unit(TIME, np.zeros((200, 4)), NAMES, None, "a.mot")
-    with pytest.raises(UnitError, match="no joint angle that would show it"):
+    with pytest.raises(UnitError, match="angle that would"):
         plausible_unit(TIME, _walk_deg()[:, :1], NAMES[:1], None, "a.mot")
 
 

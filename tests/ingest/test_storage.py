@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
@@ -47,7 +48,7 @@ def test_radians_paths_and_a_wrong_count_of_a_moco_file(gait_data):
     assert walk["hip_flexion_r"][0] == pytest.approx(np.degrees(0.3965801380677928))
     assert walk["pelvis_tx"][0] == 0.00987536
     np.testing.assert_allclose(walk["knee_angle_r_beta"], walk["knee_angle_r"], atol=0.01)  # in degrees in this one
-    assert any("claims 40 columns, 32 are there" in finding.what for finding in trial.findings)
+    assert any(says(finding.what, "40 columns, 32") for finding in trial.findings)
 
 
 def test_simm_header_trailing_tabs_and_capital_time_of_an_emg_file(gait_data):
@@ -160,7 +161,7 @@ def test_a_silent_header_is_inferred_or_refused(tmp_path):
     trial = read_storage(_written(tmp_path, silent + BODY))
     assert any(finding.kind == "unit inferred" and "taken as deg" in finding.what for finding in trial.findings)
     still = "time\tknee_angle_r\tpelvis_tx\n" + "".join(f"{i / 100}\t0.5\t0\n" for i in range(60))
-    with pytest.raises(UnitError, match=r"walk\.mot must state degrees or radians"):
+    with pytest.raises(UnitError, match=r"walk\.mot"):
         read_storage(_written(tmp_path, silent + still))
 
 
@@ -196,10 +197,10 @@ def test_a_last_number_that_was_cut_is_refused_where_all_lines_are_of_one_width(
     rows = "".join(f"{i / 100:12.8f}\t{40 * np.sin(i):14.8f}\n" for i in range(60))
     text = "Coordinates\ninDegrees=yes\nendheader\ntime\tknee_angle_r\n" + rows
     read_storage(_written(tmp_path, text[:-1]))
-    with pytest.raises(ReadError, match=r"every line has 27 characters; the last one, line 64, stops after 24"):
+    with pytest.raises(ReadError, match=r"27 characters.*line 64.*after 24"):
         read_storage(_written(tmp_path, text[:-4]))
 
 
 def test_more_rows_than_the_header_claims_are_reported(tmp_path):
     trial = read_storage(_written(tmp_path, (HEAD + BODY).replace("nRows=60", "nRows=50")))
-    assert [finding.what for finding in trial.findings] == ["the header claims 50 rows, 60 are there"]
+    assert len(trial.findings) == 1 and says(trial.findings[0].what, "50 rows", "60")

@@ -40,9 +40,7 @@ def test_one_file_gives_several_streams_on_one_base():
 def test_nan_in_a_force_is_refused_with_sample_and_time(name):
     values = np.ones((5, 1))
     values[2:4] = np.nan
-    with pytest.raises(
-        ReadError, match=rf"{name} needs a number .*; 2 of 5 are missing, first in sample 3 at t = 0\.02 s\. Exp"
-    ):
+    with pytest.raises(ReadError, match=rf"{name} .*2 of 5 .*sample 3 .*0\.02 s"):
         _trial(name, values=values)
 
 
@@ -55,7 +53,7 @@ def test_gaps_elsewhere_stay_for_the_quality_checks():
 
 
 def test_two_columns_of_one_channel_are_refused():
-    with pytest.raises(ChannelError, match=r"walk\.mot has 'sync' in columns 2 and 4"):
+    with pytest.raises(ChannelError, match=r"walk\.mot.*'sync'.*columns 2.*4"):
         sorted_trial(SOURCE, TIME, np.ones((5, 3)), [Channel(n, "signal", "1") for n in ("sync", "a", "sync")])
 
 
@@ -65,7 +63,7 @@ def test_milliseconds_under_the_name_of_seconds_are_refused(tmp_path, rate_hz):
     knee = 30 * np.sin(6 * time)
     rows = "\n".join(f"{1000 * t:g},{value}" for t, value in zip(time, knee, strict=True))
     (tmp_path / "walk.csv").write_text(f"time,knee_angle_r [deg]\n{rows}\n")
-    said = rf"knee_angle_r of a walk needs a sample every 0.2 s .*; times are {1000 / rate_hz:g} s apart, and 400"
+    said = rf"knee_angle_r .*0\.2 s .* {1000 / rate_hz:g} s apart, and 400"
     with pytest.raises(SamplingError, match=said):
         read_trial(tmp_path / "walk.csv")
     (tmp_path / "walk.csv").write_text(f"time [ms],knee_angle_r [deg]\n{rows}\n")

@@ -39,7 +39,7 @@ def test_both_conditions_nominal_first():
 def test_one_condition_is_a_study_and_has_no_pair_to_compare():
     alone = Study(conditions=Conditions(nominal="natural"), participants=(ONE,))
     assert alone.conditions.words == ("natural",) and alone.one_condition_only() == ()
-    with pytest.raises(SchemaError, match=r"needs two conditions, nominal and device.*the study has 'natural' and no"):
+    with pytest.raises(SchemaError, match="'natural'"):
         _ = alone.conditions.both
 
 
@@ -60,7 +60,7 @@ def test_one_line_names_all_trials_whose_condition_is_unknown():
 
 def test_the_held_out_part_may_be_given_in_seconds():
     assert HeldOut(seconds=20.0).length_s(240.0) == 20.0
-    with pytest.raises(ValidationError, match="either 'seconds' or 'share'; both are there"):
+    with pytest.raises(ValidationError, match=r"'seconds'.*'share'"):
         HeldOut(seconds=20.0, share=0.2)
 
 
@@ -73,7 +73,7 @@ def test_who_lacks_a_condition_is_listed_and_not_refused():
 
 def test_a_participant_is_found_or_refused_with_the_list():
     assert _study(BOTH, ONE).participant("P02") == ONE
-    with pytest.raises(SchemaError, match=r"'P09' is none\. Use one of: P01, P02"):
+    with pytest.raises(SchemaError, match=r"'P09'.*P01, P02"):
         _study(BOTH, ONE).participant("P09")
 
 
@@ -82,7 +82,7 @@ def test_missing_files_are_all_named(tmp_path):
     study = _study(BOTH, OUT).placed(tmp_path)
     assert study.path_of("exo.mot") == tmp_path / "exo.mot"
     assert study.missing_files() == ("natural.mot", "exo2.mot")
-    with pytest.raises(SchemaError, match=r"2 missing: natural\.mot, exo2\.mot\. Correct the names"):
+    with pytest.raises(SchemaError, match=r"2 missing: natural\.mot, exo2\.mot"):
         study.check_files()
 
 

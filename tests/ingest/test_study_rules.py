@@ -116,8 +116,9 @@ def test_own_channels_are_allowed_and_near_ones_if_they_state_a_unit():
     ],
 )
 def test_model_variables(parts, message):
-    with pytest.raises(PydanticCustomError, match=message):
+    with pytest.raises(PydanticCustomError, match=message) as refusal:
         check_variables(Models(**parts), {})
+    assert (refusal.value.context or {})["place"][:2] == ("models", *parts)
 
 
 def test_names_of_the_map_are_known():

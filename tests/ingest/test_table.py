@@ -116,7 +116,7 @@ def test_bad_parquet_is_refused(tmp_path):
     path = tmp_path / "walk.parquet"
     for frame, words in [
         (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' holds others"),
-        (pd.DataFrame({"knee_angle_r": [0.0, 1.0]}), r"needs a column 'time \[s\]'.*its columns are knee_angle_r"),
+        (pd.DataFrame({"knee_angle_r": [0.0, 1.0]}), r"'time \[s\]'.*columns are knee_angle_r"),
         (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' is infinite"),
         (pd.DataFrame({"time": [], "knee_angle_r": []}, dtype=float), "found no row"),
     ]:
@@ -124,7 +124,7 @@ def test_bad_parquet_is_refused(tmp_path):
         with pytest.raises(ReadError, match=words):
             read_table(path)
     path.write_bytes(b"PAR1 something else PAR1")
-    with pytest.raises(ReadError, match=r"walk\.parquet should be a Parquet table"):
+    with pytest.raises(ReadError, match=r"walk\.parquet"):
         read_table(path)
 
 
@@ -161,7 +161,7 @@ def test_a_named_time_in_parquet_and_in_milliseconds(tmp_path):
 
 
 def test_a_table_without_a_time_says_how_to_name_it(tmp_path):
-    with pytest.raises(ReadError, match=r"line 1 is 'Subject,S07'.*\"Frame time\" = \"time \[s\]\""):
+    with pytest.raises(ReadError, match=r"line 1 .*'Subject,S07'.*\"Frame time\" = \"time"):
         _read(tmp_path, LEADING)
     far = "\n".join(["Comment,x"] * 60) + "\ntime [s],knee_angle_r\n0.0,1\n0.01,2\n"
     with pytest.raises(ReadError, match="line 1 is 'Comment,x'"):
@@ -176,5 +176,5 @@ def test_a_line_of_units_below_the_header(tmp_path):
     np.testing.assert_allclose(trial.stream("emg")["emg_sol_r"], [1e-3, 2e-3])
     assert trial.stream("signals").names == ("foot",) and trial.stream("signals").rate_hz == 100.0
     path.write_text("time,knee_angle_r\ns,left\n0,1\n0.01,2\n")
-    with pytest.raises(ReadError, match=r"a number is needed in line 2"):
+    with pytest.raises(ReadError, match=r"number is needed.*line 2"):
         read_table(path)

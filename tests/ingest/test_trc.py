@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.trc import parsed_trc_header, read_trc
@@ -91,12 +92,10 @@ def test_bad_files_are_refused_in_words(tmp_path, old, new, kind, words):
 
 def test_wrong_counts_that_do_no_harm_are_reported(tmp_path):
     trial = _read(tmp_path, TEXT.replace("\t10\t2\t", "\t9\t3\t"))
-    assert [f.what for f in trial.findings if f.kind == "wrong count"] == [
-        "the header claims 9 frames, 10 are there",
-        "the header claims 3 markers, 2 are there",
-    ]
+    frames, markers = (f.what for f in trial.findings if f.kind == "wrong count")
+    assert says(frames, "9 frames", "10") and says(markers, "3 markers", "2")
 
 
 def test_a_header_without_markers_is_refused():
-    with pytest.raises(ReadError, match="names of its markers in line 4; there are none"):
+    with pytest.raises(ReadError, match=r"of its markers.*line 4"):
         parsed_trc_header([*TEXT.split("\n")[:3], "Frame#\tTime\t\t"], "a.trc")

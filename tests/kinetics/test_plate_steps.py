@@ -30,6 +30,22 @@ def foot(side, x=0.2, heel_y=0.25, start=0.5, end=1.2):
     return FootPath(side, FRAMES, heel, np.add(heel, [0.0, 0.18, 0.0]))
 
 
+def test_a_foot_swings_while_it_is_faster_forwards_than_one_that_bears_load_whenever_the_record_begins():
+    standing = foot("r")
+    late = FootPath("r", FRAMES + 10.0, standing.heel, standing.toe)
+    (first, second), shifted = standing.swings(), late.swings()
+    assert (*first, *second) == pytest.approx((0.0, 0.48, 1.2, 1.99), abs=0.025)
+    assert np.array(shifted) == pytest.approx(np.array([first, second]) + 10.0)
+
+
+def test_a_belt_carries_the_foot_backwards_while_it_stands():
+    stands, y = (FRAMES > 0.5) & (FRAMES < 1.2), np.cumsum(np.where((FRAMES > 0.5) & (FRAMES < 1.2), -1.2, 3.0)) / 100
+    rolls = np.where(stands, 0.02 * np.sin(40 * FRAMES), 0.0)  # the toes beside the heel
+    heel, toe = (np.stack([np.zeros(200), y + part, np.zeros(200)], 1) for part in (0.0, 0.18 + rolls))
+    spans = FootPath("r", FRAMES, heel, toe).swings()
+    assert np.ravel(spans) == pytest.approx([0.0, 0.5, 1.2, 1.99], abs=0.04)
+
+
 AWAY = foot("l", x=0.2, heel_y=-0.6, start=-1.0, end=0.6)
 
 

@@ -52,6 +52,13 @@ def test_what_an_empty_plate_shows_is_no_force_on_a_foot():
     assert smooth.force[800] == pytest.approx(plate.wrench.force[800], rel=0.01)
 
 
+def test_samples_a_second_and_the_last_of_a_span_are_counted():
+    (plate,) = platforms(plate_trial(stance()))
+    assert plate.rate_hz == pytest.approx(1000.0, rel=1e-9)
+    cut = plate.smoothed(np.inf, [(TIME[600], TIME[800])])
+    assert np.flatnonzero(cut.force[:, 2])[[0, -1]].tolist() == [600, 800]
+
+
 def test_a_plate_upside_down_in_the_file_is_the_same_plate():
     trial = plate_trial(stance())
     flipped = replace(trial, surfaces=(Surface("plate_1", CORNERS[::-1]),))

@@ -44,6 +44,14 @@ def test_smoothing_keeps_slow_turns_and_takes_tremor_away():
     assert np.abs(np.swapaxes(smooth.rotation, 1, 2) @ smooth.rotation - np.eye(3)).max() < 1e-12
 
 
+def test_a_body_that_falls_accelerates_by_g():
+    origin = np.outer(-0.5 * 9.81 * TIME**2, [0.0, 1.0, 0.0])
+    poses = {"foot_r": Pose(origin, np.tile(np.eye(3), (400, 1, 1)))}
+    moving = segment_motions(poses, TIME, np.inf, ["foot_r", "foot_l"])
+    assert list(moving) == ["foot_r"]
+    assert moving["foot_r"].acceleration[2:-2, 1] == pytest.approx(-9.81, rel=1e-6)
+
+
 def test_a_mirror_image_is_made_a_rotation():
     assert np.linalg.det(nearest_rotations(np.diag([1.0, 1.0, -0.1])[None]))[0] == pytest.approx(1.0)
 

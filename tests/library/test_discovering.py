@@ -75,9 +75,9 @@ def test_files_are_kept_in_what_the_answer_rests_on(given, tmp_path):
 
 
 def test_data_of_no_kind_or_without_a_column_are_refused(given):
-    with pytest.raises(SimulationError, match="a table, a file or recordings; found int"):
+    with pytest.raises(SimulationError, match="file or recordings"):
         gd.discover(cooling, 3)  # pyright: ignore[reportArgumentType]
-    with pytest.raises(ChannelError, match="a measured column 'temperature'; the table has time, temprature, trial"):
+    with pytest.raises(ChannelError, match=r"a measured column 'temperature'.*temprature"):
         gd.discover(cooling, table().rename(columns={"temperature": "temprature"}))
 
 
@@ -92,7 +92,7 @@ def test_a_signal_without_a_unit_is_taken_as_it_is_and_another_unit_is_converted
 
 
 def test_a_tracked_walk_takes_the_file_of_its_angles_and_nothing_else(tracked_walk, monkeypatch):
-    with pytest.raises(SchemaError, match=r"walk.toml is tracked by a file of its angles.*found DataFrame"):
+    with pytest.raises(SchemaError, match=r"walk.toml.*found DataFrame"):
         gd.discover(tracked_walk, table())
     given = {}
 

@@ -45,19 +45,17 @@ def test_an_envelope_of_an_array_is_that_of_its_recording():
 
 
 def test_what_cannot_be_filtered_is_refused():
-    with pytest.raises(
-        SamplingError, match=r"an array, or a table without times, is filtered at its rate; no rate_hz.*rate_hz=100"
-    ):
+    with pytest.raises(SamplingError, match=r"no rate_hz.*rate_hz=100"):
         gd.lowpass(X)
     with pytest.raises(SamplingError, match="rate_hz is -1"):
         gd.lowpass(X, rate_hz=-1.0)
-    with pytest.raises(SamplingError, match="the first or the second; order is 3"):
+    with pytest.raises(SamplingError, match=r"the second; order.*3"):
         gd.differentiate(X, 3, rate_hz=100.0)
-    with pytest.raises(ChannelError, match=r'one stream of a trial.*has kinematics.*stream\("kinematics"\)'):
+    with pytest.raises(ChannelError, match=r"stream of a.*kinematics"):
         gd.lowpass(gd.Trial("walk", {"kinematics": RECORDING}))
-    with pytest.raises(ShapeError, match="a Recording, a DataFrame or an array of numbers; found str"):
+    with pytest.raises(ShapeError, match=r"DataFrame.*array of numbers"):
         gd.lowpass("walk.csv", rate_hz=100.0)
-    with pytest.raises(ReadError, match="columns need numbers; column 'who' holds others"):
+    with pytest.raises(ReadError, match=r"columns need numbers.*'who'"):
         gd.lowpass(pd.DataFrame({"time": T, "who": "me"}))
 
 
@@ -82,7 +80,7 @@ def test_a_table_without_times_is_filtered_at_a_rate_under_its_own_labels():
 @pytest.mark.parametrize("signal", [RECORDING, pd.DataFrame({"time": T, "a": X[:, 0]})], ids=["recording", "table"])
 def test_a_rate_that_the_times_contradict_is_refused(signal):
     assert gd.lowpass(signal, rate_hz=RATE_HZ) is not None
-    with pytest.raises(SamplingError, match=r"its times give 120 samples a second, rate_hz is 200"):
+    with pytest.raises(SamplingError, match=r"120 samples.*rate_hz.*200"):
         gd.lowpass(signal, rate_hz=200)
 
 
@@ -95,5 +93,5 @@ def test_an_array_on_its_side_is_refused(shape):
 def test_a_rate_and_a_cut_off_are_numbers():
     with pytest.raises(SamplingError, match="rate_hz is '100'"):
         gd.lowpass(X, rate_hz="100")
-    with pytest.raises(SamplingError, match=r"one cut-off.*\[20, 40\].*highpass and then lowpass"):
+    with pytest.raises(SamplingError, match=r"\[20, 40\]"):
         gd.lowpass(X, [20, 40], rate_hz=RATE_HZ)

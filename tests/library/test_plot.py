@@ -70,7 +70,7 @@ def test_a_discovery_is_drawn_in_degrees_with_what_is_left_and_after_loading(tmp
     assert ax.get_ylabel() == "theta [deg]"
     left = gd.plot.discovery(found, "theta", left=True)
     assert left.get_title() == "theta: what is left" and "simulated" in left.get_legend().get_texts()[0].get_text()
-    with pytest.raises(ChannelError, match="the result has theta, the nearest is 'theta'"):
+    with pytest.raises(ChannelError, match="theta, the nearest is 'theta'"):
         gd.plot.discovery(found, "thta")
 
 

@@ -50,13 +50,13 @@ def test_named_readings_are_found_by_name_and_recordings_at_their_rate():
     model = gd.Reconstructor(rate_hz=50.0, history_s=0.4).fit(two, Y)
     turned = two.assign(more=1.0)[["still", "more", "a"]]
     np.testing.assert_array_equal(model.predict(turned), model.predict(two))
-    with pytest.raises(ShapeError, match="the model is of the columns a, still; 'still' is not among a, more"):
+    with pytest.raises(ShapeError, match=r"still; 'still'.*not.*more"):
         model.predict(turned[["a", "more"]])
-    with pytest.raises(ShapeError, match=r"a state is none of the sensors; 'a' is in both\. Leave it out"):
+    with pytest.raises(ShapeError, match=r"none.*'a'.*both"):
         gd.Reconstructor(rate_hz=50.0).fit(two, two[["a"]])
     channels = tuple(gd.Channel(name, "signal", "1") for name in two)
     np.testing.assert_array_equal(model.predict(gd.Recording(T, two.to_numpy(), channels)), model.predict(two))
-    with pytest.raises(SamplingError, match=r"the model reads 50 samples a second; the recording has 25"):
+    with pytest.raises(SamplingError, match=r"50 samples.*25"):
         model.predict(gd.Recording(2 * T, two.to_numpy(), channels))
 
 
@@ -72,13 +72,13 @@ def test_it_is_saved_and_loaded(tmp_path):
 def test_what_does_not_fit_is_refused():
     with pytest.raises(TrainingError, match="fit was not called"):
         gd.Reconstructor().predict(X)
-    with pytest.raises(ShapeError, match=r"x\[:, None\] for one of them"):
+    with pytest.raises(ShapeError, match=r"x\[:, None\] for"):
         gd.Reconstructor().fit(X[:, 0], Y)
-    with pytest.raises(ShapeError, match=r"readings \(2000, 1\) and states \(1999, 2\)"):
+    with pytest.raises(ShapeError, match=r"\(2000, 1\).*\(1999, 2\)"):
         gd.Reconstructor(rate_hz=50.0).fit(X, Y[1:])
-    with pytest.raises(ShapeError, match="as many trials of states as of readings; found 2 of readings, 1 of states"):
+    with pytest.raises(ShapeError, match=r"trials of states.*2.*1"):
         gd.Reconstructor(rate_hz=50.0).fit([X, X], [Y])
-    with pytest.raises(ShapeError, match="reads 1 sensors; found 2 columns"):
+    with pytest.raises(ShapeError, match=r"1 sensors.*2 columns"):
         fitted().predict(Y)
 
 
@@ -93,7 +93,7 @@ def test_times_of_a_table_are_no_sensor_and_have_the_rate_of_the_model():
     for given in (TABLE, TABLE.assign(time=T)[["time", "knee", "hip"]], TABLE.set_index(pd.Index(T, name="time"))):
         np.testing.assert_array_equal(model.predict(given), plain.predict(TABLE))
     assert model.score(TABLE, STATES[["toe", "ankle"]]) == plain.score(TABLE.assign(time=T), STATES)
-    with pytest.raises(SamplingError, match="reads 50 samples a second; the table has 25"):
+    with pytest.raises(SamplingError, match=r"50 samples.*25"):
         model.predict(TABLE.assign(time=2 * T))
 
 
@@ -143,5 +143,5 @@ def test_complex_readings_are_refused_everywhere():
     ):
         with pytest.raises(ShapeError, match=said):
             work()
-    with pytest.raises(ReadError, match=r"columns need numbers; column 'knee_angle_r' holds others \(complex128\)"):
+    with pytest.raises(ReadError, match=r"'knee_angle_r'.*\(complex128\)"):
         gd.read(pd.DataFrame({"time": T, "knee_angle_r": X[:, 0] * 1j}))

@@ -114,9 +114,7 @@ def test_an_engine_runs_its_model_and_what_the_mapping_adds(engine_pendulum):
     stiff = gd.simulate(engine_pendulum, time, {"drive": drive}, start)
     np.testing.assert_allclose(stiff["pivot"], swing(6.0, time, drive), atol=0.05)
     write_simulation(mapping.with_effect(gd.Term("pivot_moment", "port", "push", "-6*sin(t)")), engine_pendulum)
-    with pytest.raises(
-        SchemaError, match=r"pendulum.toml has besides: .* at pivot_moment.*write it into the model by hand"
-    ):
+    with pytest.raises(SchemaError, match=r"pendulum.toml.*pivot_moment.*write it into"):
         gd.simulate(engine_pendulum, time, {"drive": drive}, start)
 
 
@@ -135,7 +133,7 @@ def test_a_table_with_times_is_read_at_the_times_of_the_run():
 
 
 def test_inputs_without_names_and_a_span_in_place_of_times_are_refused():
-    with pytest.raises(SimulationError, match=r"given as ndarray, without names.*inputs=\{'u': values\}"):
+    with pytest.raises(SimulationError, match=r"ndarray, without names.*inputs=\{'u'"):
         gd.simulate(driven, TIME, np.sin(TIME), start=[0.5])
     for time in ((0.0, 5.0), 5.0):
         with pytest.raises(ShapeError, match=r"three or more.*np\.linspace"):
@@ -143,7 +141,5 @@ def test_inputs_without_names_and_a_span_in_place_of_times_are_refused():
 
 
 def test_a_walk_whose_motion_is_prescribed_is_not_simulated(tracked_walk):
-    with pytest.raises(
-        SchemaError, match=r"walk.toml holds .tracked.: its motion is prescribed.*Run gaitdisc discover"
-    ):
+    with pytest.raises(SchemaError, match=r"walk.toml.*Run gaitdisc discover"):
         gd.simulate(tracked_walk, TIME)

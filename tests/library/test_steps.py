@@ -41,7 +41,7 @@ def test_a_cycle_with_a_gap_in_what_is_cut_is_dropped(walk):
 
 
 def test_a_side_without_contacts_is_refused(walk):
-    with pytest.raises(StrideError, match=r"cycles of side 'right'.*contacts were found of side l, r"):
+    with pytest.raises(StrideError, match=r"'right'.*contacts were found"):
         gd.cycles(walk, "right")
 
 
@@ -57,7 +57,7 @@ def test_contacts_that_are_known_are_used_as_they_are_given(walk):
 
 
 def test_contacts_in_frames_and_unknown_detectors_are_refused(walk):
-    with pytest.raises(StrideError, match=r"one is at 1000 s, and W01_nominal ends at .*numbers of frames"):
+    with pytest.raises(StrideError, match=r"1000 s.*W01_nominal"):
         gd.cycles(walk, contacts=[100, 1000])
     for detector in ("heel", np.array([0.5, 1.5])):
         with pytest.raises(StrideError, match=r"auto, force, events, markers, angles.*contacts=times"):

@@ -30,7 +30,7 @@ def test_tables_of_one_channel_go_too_and_an_empty_answer_has_its_columns():
 
 
 def test_sets_that_do_not_fit_are_refused():
-    with pytest.raises(ShapeError, match=r"as many rows in pairs; found \(12, 101, 2\) and \(11, 101, 2\)"):
+    with pytest.raises(ShapeError, match=r"\(12, 101, 2\).*\(11, 101, 2\)"):
         gd.permutation_clusters(NOISE[0], NOISE[1][:11], paired=True)
     with pytest.raises(ShapeError, match="with 1 names of channels"):
         gd.permutation_clusters(*NOISE, channels=("hip",))
@@ -87,9 +87,9 @@ def test_participants_are_paired_by_name_and_who_misses_a_number_is_named():
 
 
 def test_tables_of_others_are_refused():
-    with pytest.raises(ShapeError, match="the same participants, once each; 'P11' is in one of them"):
+    with pytest.raises(ShapeError, match=r"same participants, once.*'P11'"):
         gd.paired_tests(BEFORE, AFTER.iloc[:10])
-    with pytest.raises(ShapeError, match="the same variables, once each; 'hip' is in one of them"):
+    with pytest.raises(ShapeError, match=r"same variables, once.*'hip'"):
         gd.paired_tests(BEFORE, AFTER.assign(hip=0.0))
     twice = BEFORE.rename({"P02": "P01"})
     with pytest.raises(ShapeError, match="'P01' stands twice"):

@@ -46,7 +46,7 @@ def test_streams_come_from_the_channels_and_marks_stay(walks):
 
 
 def test_what_is_no_walk_is_refused():
-    with pytest.raises(ReadError, match="a walk is read from files or DataFrames; found ndarray"):
+    with pytest.raises(ReadError, match=r"read from files.*DataFrames"):
         gd.contacts(np.zeros((10, 2)))
-    with pytest.raises(ReadError, match=r"the table needs times \[s\] in a column"):
+    with pytest.raises(ReadError, match=r"table needs times \[s\]"):
         gd.read(pd.DataFrame({"knee_angle_r": [1.0, 2.0]}))

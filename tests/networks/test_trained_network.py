@@ -70,11 +70,11 @@ def test_inputs_that_did_not_vary_weigh_nothing_and_are_named():
 def test_a_damaged_file_and_another_kind_of_network_are_refused(tmp_path):
     path = tmp_path / "nominal.npz"
     save_network(network(), path)
-    with pytest.raises(SchemaError, match=r"nominal\.npz .* its weights do not fit a FeedForward"):
+    with pytest.raises(SchemaError, match=r"nominal\.npz.*not.*FeedForward"):
         load_network(path, partial(FeedForward, nodes=32))
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(SchemaError, match=r"nominal\.npz is to be read as a trained network"):
+    with pytest.raises(SchemaError, match=r"nominal\.npz.*a trained network"):
         load_network(path, FeedForward)
     with pytest.raises(SchemaError, match=r"absent\.npz"):
         load_network(tmp_path / "absent.npz", FeedForward)

@@ -110,25 +110,25 @@ def test_a_constant_input_weighs_nothing(swing, quick):
 
 
 def test_too_few_samples(swing, quick):
-    with pytest.raises(TrainingError, match=r"3 inputs to 2 outputs needs 50 samples; the recording has 49 usable"):
+    with pytest.raises(TrainingError, match=r"3 inputs.*2 outputs.*50 samples.*49 usable"):
         train(swing.rows(slice(0, 49)), FeedForward, quick)
     sparse = replace(swing.rows(slice(0, 50)), time=np.full(50, 0.1))
-    with pytest.raises(TrainingError, match=r"needs 20 samples; the recording has 0 usable"):
+    with pytest.raises(TrainingError, match=r"20 samples.*0 usable"):
         train(sparse, FeedForward, quick)
 
 
 def test_constant_outputs_and_missing_numbers(swing, quick):
-    with pytest.raises(TrainingError, match="b is 3 in all 2000 samples"):
+    with pytest.raises(TrainingError, match=r"3.*2000 samples"):
         train(swing.with_outputs(np.column_stack([swing.y[:, 0], np.full(2000, 3.0)])), FeedForward, quick)
     hole = swing.x.copy()
     hole[70, 1] = np.nan
-    with pytest.raises(TrainingError, match=r"v has 1 missing or infinite samples of 2000, the first at 0\.700 s"):
+    with pytest.raises(TrainingError, match=r"1 missing.*2000.*0\.700 s"):
         train(replace(swing, x=hole), FeedForward, quick)
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="a GPU is there")
 def test_a_gpu_that_is_not_there(swing, quick):
-    with pytest.raises(TrainingError, match="run on 'cuda'; torch sees no GPU, only the CPU"):
+    with pytest.raises(TrainingError, match=r"'cuda'.*no GPU.*CPU"):
         train(swing, FeedForward, replace(quick, device="cuda"))
     assert chosen_device("auto").type == "cpu"
 

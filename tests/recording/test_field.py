@@ -43,30 +43,30 @@ def test_snapshots_and_quantities_are_kept_as_asked():
     sea = field().snapshots(slice(1, None)).selected(["v"])
     assert (len(sea), sea.quantities, sea.units) == (2, ("v",), ("m/s",))
     assert sea.values[0, 0, 0] == 9.0
-    with pytest.raises(ChannelError, match=r"has the quantities u, v; requested: w"):
+    with pytest.raises(ChannelError, match="quantities u, v"):
         field().selected(["w"])
 
 
 def test_a_missing_value_is_named_with_its_place():
     values = np.zeros((3, 4, 2))
     values[1, 3, 1] = np.nan
-    with pytest.raises(ShapeError, match=r"lacks 1 values, the first of v at lat -10 deg, lon 7 deg in snapshot 2"):
+    with pytest.raises(ShapeError, match=r"1 values.*-10 deg.*7 deg.*snapshot 2"):
         field(values=values)
 
 
 def test_uneven_time_is_refused_by_number():
-    with pytest.raises(SamplingError, match=r"snapshot 3 comes 3 month after the one before, usually 1"):
+    with pytest.raises(SamplingError, match=r"snapshot 3.*3 month.*1"):
         field(time=(0.0, 1.0, 4.0, 5.0, 6.0))
     with pytest.raises(SamplingError, match=r"advance evenly"):
         field(time=(0.0, 1.0, 0.5))
 
 
 def test_shapes_that_do_not_fit_are_refused():
-    with pytest.raises(ShapeError, match=r"here \(3, 4, 2\), and a unit for each quantity; found \(3, 5, 2\)"):
+    with pytest.raises(ShapeError, match=r"\(3, 4, 2\).*\(3, 5, 2\)"):
         field(values=np.zeros((3, 5, 2)))
-    with pytest.raises(ShapeError, match=r"mask of the shape of its grid, \(3, 2\)"):
+    with pytest.raises(ShapeError, match=r"of the shape.*\(3, 2\)"):
         field(mask=np.zeros((3, 2), bool))
-    with pytest.raises(ShapeError, match=r"axis 'lat' has 3 that do not"):
+    with pytest.raises(ShapeError, match=r"'lat'.*3 that do not"):
         Axis("lat", np.array([0.0, 1.0, 0.5]))
 
 

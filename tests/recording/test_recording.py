@@ -58,9 +58,7 @@ def test_between_is_half_open():
 
 
 def test_missing_channel_names_the_nearest():
-    with pytest.raises(
-        ChannelError, match=r"'ankle_ang_r' is needed; walk.mot has 2 channels: the nearest is 'ankle_angle_r'"
-    ):
+    with pytest.raises(ChannelError, match=r"'ankle_ang_r'.*walk.mot.*2 channels.*'ankle_angle_r'"):
         walk()["ankle_ang_r"]
 
 
@@ -72,7 +70,7 @@ def test_a_doubled_name_is_refused():
 def test_a_rate_that_is_not_constant_names_the_step():
     time = np.arange(10) / 100
     time[6:] += 0.05
-    with pytest.raises(SamplingError, match=r"step of 0.06 s after sample 5 \(t = 0.05 s\)"):
+    with pytest.raises(SamplingError, match=r"0.06 s.*sample 5.*= 0.05 s\)"):
         Recording(time, np.zeros((10, 1)), (KNEE,))
 
 
@@ -104,10 +102,10 @@ def test_a_channel_is_taken_by_its_name_and_one_name_is_one_channel():
     )
     assert walk.selected("RHEE.y").names == ("RHEE.y",)
     assert "RHEE.z" in walk and "RHEE" not in walk and 0 not in walk
-    with pytest.raises(ChannelError, match=r"the marker is RHEE.x, RHEE.y, RHEE.z"):
+    with pytest.raises(ChannelError, match=r"marker.*RHEE.x, RHEE.y, RHEE.z"):
         walk["RHEE"]
     for other in (["RHEE.x"], slice(0, 10), 0):
-        with pytest.raises(ChannelError, match=f"taken by its name; found {type(other).__name__}"):
+        with pytest.raises(ChannelError, match=rf"taken by its name; found {type(other).__name__}"):
             walk[other]
 
 

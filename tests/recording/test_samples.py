@@ -26,7 +26,7 @@ def test_rows_and_other_outputs():
 
 
 def test_shapes():
-    with pytest.raises(ShapeError, match=r"samples need y of shape \(10, 1\); found \(9, 1\)"):
+    with pytest.raises(ShapeError, match=r"samples need y.*\(10, 1\).*\(9, 1\)"):
         samples().with_outputs(np.zeros((9, 1)))
 
 
@@ -36,17 +36,17 @@ def test_the_seam_before_the_last_block_is_left_away():
 
 
 def test_too_few_samples_to_fit():
-    with pytest.raises(TrainingError, match=r"2 inputs to 1 outputs needs 50 samples; the recording has 10 usable"):
+    with pytest.raises(TrainingError, match=r"2 inputs.*1 outputs.*50 samples.*10 usable"):
         samples().trainable(50)
 
 
 def test_missing_numbers_are_not_fitted():
     hole = samples().with_outputs(np.where(np.arange(10) == 3, np.nan, np.arange(10.0))[:, None])
-    with pytest.raises(TrainingError, match=r"c has 1 missing or infinite samples of 10, the first at 0\.030 s"):
+    with pytest.raises(TrainingError, match=r"1 missing.*10.*0\.030 s"):
         hole.trainable(5)
 
 
 def test_constant_outputs_are_not_fitted():
-    with pytest.raises(TrainingError, match=r"c is 2\.5 in all 10 samples"):
+    with pytest.raises(TrainingError, match=r"2\.5.*10 samples"):
         samples().with_outputs(np.full((10, 1), 2.5)).trainable(5)
     assert len(samples().trainable(10)) == 10

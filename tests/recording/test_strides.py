@@ -67,7 +67,7 @@ def test_between_takes_whole_strides():
 
 
 def test_order_and_shape():
-    with pytest.raises(StrideError, match="ends before it starts or overlaps"):
+    with pytest.raises(StrideError, match="starts or overlaps"):
         Strides(np.array([0.0, 0.5]), np.array([1.0, 1.5]), "r", "force")
     with pytest.raises(ShapeError, match="as many ends as starts"):
         Strides(np.array([0.0, 0.5]), np.array([1.0]), "r", "force")
@@ -88,7 +88,7 @@ def test_a_table_is_cut_as_its_recording_is():
     for recording in (table, table.set_index("time")):
         np.testing.assert_allclose(one.normalised(recording)[0, :, 0], 0.5 + np.arange(101) / 100)
     for other, words in ((time, "found ndarray"), (table[["knee"]], "found DataFrame without it")):
-        with pytest.raises(ShapeError, match=f"times \\[s\\] in a column 'time'; {words}"):
+        with pytest.raises(ShapeError, match=rf"\[s\].*'time'; {words}"):
             one.normalised(other)
 
 
@@ -99,5 +99,5 @@ def test_no_warning_of_numpy_where_nothing_is_known():
         warnings.simplefilter("error")
         one = strides.normalised(Recording(np.array([0.5]), np.ones((1, 1)), (knee,)))
     assert one.shape == (2, 101, 1) and np.isnan(one).all()
-    with pytest.raises(StrideError, match=r"one of the 2 strides of side 'r' .* or has no time"):
+    with pytest.raises(StrideError, match=r"2 strides.*'r'"):
         Strides(np.array([0.0, np.nan]), np.array([1.0, 2.0]), "r", "force")

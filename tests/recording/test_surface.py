@@ -32,7 +32,7 @@ def test_a_marker_that_is_missing_is_nowhere():
 
 @pytest.mark.parametrize("corners", [TILTED[:3], np.zeros((4, 3)), TILTED * np.nan])
 def test_corners_that_span_nothing_are_refused(corners):
-    with pytest.raises(ShapeError, match=r"four corners \(4, 3\) that span an area; plate_3 has"):
+    with pytest.raises(ShapeError, match=r"corners \(4, 3\).*plate_3"):
         Surface("plate_3", corners)
 
 

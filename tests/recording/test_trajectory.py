@@ -24,9 +24,7 @@ def test_the_dissertation_holds_out_30_of_240_s():
 
 
 def test_a_held_out_part_longer_than_the_trial():
-    with pytest.raises(
-        SamplingError, match=r"last 30 s \(and 0.3 s before it\) needs a longer trial; P01  lasts 10.00 s"
-    ):
+    with pytest.raises(SamplingError, match=r"30 s.*0.3 s.*longer.*P01.*10.00 s"):
         trajectory(1000).split(30.0)
     with pytest.raises(SamplingError):
         trajectory(1000).split(0.0)

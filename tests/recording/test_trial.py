@@ -32,12 +32,12 @@ def test_one_base_is_the_common_span_at_the_rate_asked_for():
 
 
 def test_streams_without_common_time():
-    with pytest.raises(SamplingError, match=r"begins at 5.000 s, the first to end stops at 1.000 s"):
+    with pytest.raises(SamplingError, match=r"5.000 s.*1.000 s"):
         trial(start=5.0).on_one_base(100.0)
 
 
 def test_a_stream_that_is_not_there():
-    with pytest.raises(ChannelError, match="read for its emg; it has kinematics, forces"):
+    with pytest.raises(ChannelError, match=r"emg.*has kinematics, forces"):
         trial().stream("emg")
 
 

@@ -51,7 +51,7 @@ def test_same_seed_same_model_and_a_missing_input_gives_a_missing_output(curve):
 
 
 def test_without_a_check_part(curve):
-    with pytest.raises(TrainingError, match="needs a check part, by which its penalty is chosen"):
+    with pytest.raises(TrainingError, match="penalty is chosen"):
         fit_fourier_ridge(curve, curve.rows(slice(0, 0)))
 
 
@@ -83,7 +83,7 @@ def test_what_is_loaded_equals_what_was_saved(model, tmp_path):
 
 def test_a_damaged_or_missing_file(model, tmp_path):
     path = tmp_path / "m.npz"
-    with pytest.raises(SchemaError, match=r"m\.npz is to be read as a ridge regression"):
+    with pytest.raises(SchemaError, match=r"m\.npz.*a ridge regression"):
         load_ridge(path)
     save_ridge(model, path)
     path.write_bytes(path.read_bytes()[:-200])

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from made_cycles import made_cycles
+from texts import says
 
 from gaitdisc.recording import Finding
 from gaitdisc.report.cycles_page import (
@@ -32,8 +33,8 @@ def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
     run = _run(made_cycles(), made_cycles("P02", condition="turn"))
     page = write_report(run, tmp_path).read_text()
     assert "Gait cycles pooled over trials" in page and "Response to a device" not in page
-    assert "2 participants: 8 left cycles and 8 right cycles of 4 trials are kept, 4 left out" in page
-    assert "a cycle needs two contacts; found one. Add trials." in page
+    assert says(page, "2 participants: 8 left cycles", "8 right cycles", "4 trials", "4 left")
+    assert says(page, "needs two contacts")
     cycles = pd.read_csv(tmp_path / "tables" / "cycles.csv")
     assert len(cycles) == 20
     assert len(pd.read_csv(tmp_path / "tables" / "means.csv")) > 100
@@ -53,8 +54,8 @@ def test_a_page_of_computed_angles_says_how_and_others_do_not(tmp_path):
 def test_the_offset_and_few_cycles_are_said():
     moved = made_cycles(detectors={"markers": 1}, contact_offset_s=0.06, offset_steps=1, each=2)
     said = " ".join(cycles_sentences(_run(moved)))
-    assert "Contacts from markers or angles were moved: P01 walk +60 ms (1 step" in said
-    assert "Fewer than 3 cycles of a foot in a session and condition: P01." in said
+    assert says(said, "markers", "P01", "+60 ms (1")
+    assert says(said, "Fewer", "3 cycles", "P01")
     assert "Fewer" not in " ".join(cycles_sentences(_run(made_cycles(each=4))))
     assert cycles_sentences(_run(made_cycles(each=0))) == ["No cycle could be kept: see “Left out”."]
 
@@ -62,7 +63,7 @@ def test_the_offset_and_few_cycles_are_said():
 def test_why_no_models_are_fitted_is_said(tmp_path):
     why = Refusal("P01", "", "a comparison needs one trial of 'walk' and one of 'exo'; P01 has 2 of 'walk'. Correct.")
     first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
-    assert any("No models are fitted to P01: a comparison needs one trial" in sentence for sentence in first.sentences)
+    assert any(says(sentence, "models are fitted", "P01") for sentence in first.sentences)
     assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
 
 
@@ -87,8 +88,8 @@ def test_both_feet_lie_over_each_other_with_every_cycle_and_foot_off():
     curves = [line for line in knee.lines if len(line.get_xdata()) == 101]
     assert len(curves) == 2 * (4 + 1)  # four cycles and their mean, of each foot
     assert any(np.allclose(line.get_xdata(), 60.0) for line in knee.lines if len(line.get_xdata()) == 2)
-    assert "4 cycles left and 4 cycles right, pooled over 2 trials" in figure.caption
-    assert "one plate" not in figure.caption and "a plate carried this foot alone: 1 left, 1 right" in figure.caption
+    assert says(figure.caption, "4 cycles left", "4 cycles right", "2 trials")
+    assert "one plate" not in figure.caption and says(figure.caption, "1 left, 1 right")
     assert figure.alt.startswith("Mean cycles of P01, walk: ")
 
 

@@ -33,6 +33,12 @@ def test_bins_with_few_samples_are_left_out():
     assert table["mean"].tolist() == [3.0]
 
 
+def test_each_bin_has_its_own_mean_and_spread():
+    table = binned(np.repeat([0.1, 0.9], 8), np.r_[np.ones(8), np.tile([4.0, 6.0], 4)], np.array([0.0, 0.5, 1.0]))
+    assert table["mean"].tolist() == [1.0, 5.0] and table["n"].tolist() == [8, 8]
+    assert table["sd"].tolist() == pytest.approx([0.0, np.sqrt(8 / 7)])
+
+
 def test_where_numbers_were_fitted_within_their_bounds_the_figure_says_so():
     moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
     said = "simulated as read, its numbers fitted within their bounds (orange, dashed)"

@@ -5,6 +5,7 @@ from html import unescape
 
 import pytest
 from manufactured_discovery import manufactured
+from texts import says
 
 from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.discovery_page import write_discovery_report
@@ -30,4 +31,4 @@ def test_a_page_says_how_its_own_answer_was_made(tmp_path, unpainted, section, s
 
 def test_an_answer_that_says_nothing_of_itself_is_of_a_simulation():
     found = replace(manufactured(), provenance=None)
-    assert method_of(found).sentences[0].startswith("Trials were cut into short runs.")
+    assert says(method_of(found).sentences[0], "into short runs")

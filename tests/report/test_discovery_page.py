@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from manufactured_discovery import CUBIC, manufactured
+from texts import says
 
 from gaitdisc.report.discovery_page import (
     VERDICTS,
@@ -83,14 +84,14 @@ def test_a_rival_outside_its_bounds_is_said_to_lie_there():
     found = {"value": Estimate(1.817, 1.7, 1.9, "N m/rad")}
     rival = FoundEffect("parameter", "strength", "wrong_parameter", "", found, bounds=(0.3, 1.7))
     (row,) = rivals_table(manufactured(rivals=(rival,))).rows
-    assert row[2].endswith(", outside its bounds, 0.3 to 1.7 N m/rad")
+    assert says(row[2], "0.3", "1.7 N m/rad")
 
 
 def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
     table = gap_table(manufactured(verdict="no_gap", effects=(), held_out=size))
-    assert "over pieces of the runs (held out: 9 pieces" in table.caption
-    assert table.caption.endswith("Where nothing is named, p is that of cubic stiffness at the ankle_moment port.")
+    assert says(table.caption, "9 pieces")
+    assert says(table.caption, "nothing", "of cubic stiffness", "ankle_moment")
     assert "Where nothing is named" not in gap_table(manufactured()).caption
 
 
@@ -139,7 +140,7 @@ def test_every_table_lies_beside_the_page(tmp_path):
 def test_no_gap_is_a_page_too(tmp_path):
     empty = manufactured(verdict="no_gap", where=(), effects=(), rivals=(), findings=(), provenance=None)
     text = write_discovery_report(empty, tmp_path).read_text(encoding="utf-8")
-    assert "no gap: nothing is added to the simulation" in text
+    assert says(text, "no", "nothing", "to the simulation")
     assert "What else it could be" not in text
 
 

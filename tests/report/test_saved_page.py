@@ -9,6 +9,7 @@ import pytest
 from driven_walker import DrivenWalker
 from made_cycles import made_cycles
 from manufactured_discovery import manufactured
+from texts import says
 
 from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.errors import SchemaError
@@ -74,8 +75,8 @@ def test_a_saved_result_is_drawn_as_it_was_in_memory(kind, request, tmp_path):
 def test_cycles_that_stand_alone_are_drawn_and_claim_no_date(tmp_path):
     made = made_cycles()
     text = draw_saved(made.save(tmp_path))["report"].read_text()
-    assert "4 left cycles and 4 right cycles of 2 trials are kept" in text
-    assert "Computed in the run that they come from, whose run.json has settings and date" in text
+    assert says(text, "4 left cycles", "4 right cycles", "2 trials", "kept")
+    assert says(text, "run.json", "settings and date")
     assert pd.read_csv(tmp_path / "report" / "tables" / "cycles.csv")["kept"].sum() == 8
 
 
@@ -90,17 +91,17 @@ def test_a_folder_of_a_newer_version_is_refused_in_words_and_nothing_is_drawn(tm
     for made, file in ((manufactured(), "discovery.json"), (made_cycles(), "cycles.json")):
         place = made.save(tmp_path / file) / file
         place.write_text(sealed_text(read_sealed(place) | {"format": 2}))
-        with pytest.raises(SchemaError, match=r"is of format 2, not 1\. Another version wrote it: install that one"):
+        with pytest.raises(SchemaError, match="format 2, not 1"):
             draw_saved(place.parent)
         assert not list(tmp_path.rglob("*.html"))
 
 
 def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
     (tmp_path / "study.toml").write_text("")
-    with pytest.raises(SchemaError, match=r"a saved result is a folder with one of run.json.* holds study.toml"):
+    with pytest.raises(SchemaError, match=r"a saved result.*run.json.*study.toml"):
         draw_saved(tmp_path)
     (tmp_path / "discovery.json").write_text(json.dumps({"verdict": "no_gap"}))
-    with pytest.raises(SchemaError, match="without a hash of its own"):
+    with pytest.raises(SchemaError, match="without a hash"):
         draw_saved(tmp_path)
 
 

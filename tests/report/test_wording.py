@@ -2,7 +2,18 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from gaitdisc.report.wording import counted, direction_words, label, listed, number, plain, sideless, unit_text, upwards
+from gaitdisc.report.wording import (
+    counted,
+    direction_words,
+    label,
+    listed,
+    number,
+    p_words,
+    plain,
+    sideless,
+    unit_text,
+    upwards,
+)
 
 
 def test_sides_of_known_and_unknown_channels():
@@ -20,6 +31,10 @@ def test_upwards_is_the_sign_word_without_its_footnote():
     assert upwards("ankle_angle_r") == "dorsiflexion"
     assert upwards("pelvis_tilt") == "pelvis rotates backwards"
     assert upwards("unknown") == ""
+
+
+def test_a_p_of_one_in_a_thousand_is_printed():
+    assert [p_words(p) for p in (0.00099, 0.001, 0.00105)] == ["p < .001", "p = .001", "p = .001"]
 
 
 @pytest.mark.parametrize(

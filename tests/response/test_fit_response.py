@@ -136,7 +136,7 @@ def test_missing_samples_are_missing_in_the_residual(exo, settings):
 
 
 def test_walks_that_do_not_belong_together(nominal, exo, settings):
-    with pytest.raises(ChannelError, match="two walks of one participant; found P01 and P02"):
+    with pytest.raises(ChannelError, match=r"one participant; found P01.*P02"):
         fit_response(nominal, replace(exo, subject="P02"), settings)
     renamed = replace(exo, channels=(exo.channels[0], exo.channels[1].renamed("subtalar_angle_r")))
     with pytest.raises(ChannelError, match="apart in ankle_angle_r, subtalar_angle_r"):
@@ -144,14 +144,12 @@ def test_walks_that_do_not_belong_together(nominal, exo, settings):
 
 
 def test_walks_that_are_too_short_or_unusable_at_the_end(nominal, exo, settings):
-    with pytest.raises(SamplingError, match=r"holding out the last 60 s"):
+    with pytest.raises(SamplingError, match=r"holding out the.*60 s"):
         fit_response(nominal, exo, replace(settings, held_out_s=60.0))
     usable = exo.usable.copy()
     usable[-800:, 1] = False
     short = ResponseSettings(settings.outputs, training=settings.training)
-    with pytest.raises(
-        TrainingError, match=r"tested on 50 held-out samples at least; .*750 of ankle_angle_r not usable"
-    ):
+    with pytest.raises(TrainingError, match=r"50.*least.*750.*ankle_angle_r not"):
         fit_response(nominal, replace(exo, usable=usable), short)
 
 

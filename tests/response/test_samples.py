@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.response.samples import gait_samples
@@ -42,18 +43,15 @@ def test_what_is_left_away_is_counted_with_its_reason(nominal):
     samples, dropped = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
     assert len(samples) == dropped.kept == 5750
     assert np.isfinite(samples.phi).all()
-    assert dropped.finding().line() == (
-        "note: P01 nominal: samples left away: 250 of 6000 samples left away: 200 outside of strides, "
-        "50 of knee_angle_r not usable"
+    assert says(
+        dropped.finding().line(), "P01", "left", "250 of 6000 samples left", "200 outside", "50", "knee_angle_r not"
     )
     usable[:3000] = False
     assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].finding().severity == "warning"
 
 
 def test_an_output_that_is_not_there(nominal):
-    with pytest.raises(
-        ChannelError, match=r"'ankle_angl_r' is to be predicted; P01 nominal has 2 channels, the nearest is"
-    ):
+    with pytest.raises(ChannelError, match=r"'ankle_angl_r'.*P01.*2 channels"):
         gait_samples(nominal, ("ankle_angl_r",))
-    with pytest.raises(ChannelError, match="at least one channel to predict"):
+    with pytest.raises(ChannelError, match=r"least.*channel to predict"):
         gait_samples(nominal, ())

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from resealed import resealed
+from texts import says
 
 from gaitdisc.batch.participant_unit import REFUSED, Refused
 from gaitdisc.errors import GaitdiscError, SchemaError
@@ -116,7 +117,7 @@ def test_damaged_bytes_are_refused_in_words(folder, place):
             try:
                 read(folder, place)
             except SchemaError as error:
-                assert f"{file.name} is " in str(error) and "`gaitdisc run` keeps what is whole" in str(error)
+                assert f"{file.name} is " in str(error) and says(str(error), "`gaitdisc run` keeps")
                 assert len(damaged_units(folder)) == 1
             else:  # of the JSON file, blanks between its words alone
                 assert json.loads(content) == json.loads(whole)
@@ -168,10 +169,10 @@ def test_a_run_of_before_the_hash_says_so(folder):
         data = json.loads(file.read_text())
         del data["own_sha256"]
         file.write_text(json.dumps(data))
-    with pytest.raises(SchemaError, match=r"run\.json is without a hash of its own: an older version of gaitdisc"):
+    with pytest.raises(SchemaError, match=r"run\.json.*version of gaitdisc"):
         load_run(folder)
     [line] = damaged_units(folder)
-    assert line.startswith("modalities/people/P01/variants.json, ") and " and 5 more: without a hash" in line
+    assert line.startswith("modalities/people/P01/variants.json, ") and says(line, "5 more: without a hash")
 
 
 def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(folder):
@@ -184,5 +185,5 @@ def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(folder):
 def test_arrays_that_change_after_the_unit_was_loaded_are_refused(folder):
     walk, _ = WALK.load_keyed(folder / "walks" / "P01-exo")
     np.savez(folder / "walks" / "P01-exo" / "arrays.npz", curves=np.zeros((4, 101, 2)))
-    with pytest.raises(SchemaError, match=r"arrays\.npz is changed since it was saved"):
+    with pytest.raises(SchemaError, match=r"arrays\.npz.*changed since it was"):
         _ = walk.curves

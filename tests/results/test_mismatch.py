@@ -72,7 +72,7 @@ def test_the_smallest_difference_that_is_named():
 
 
 def test_wrong_shapes_and_columns_are_refused_in_words():
-    with pytest.raises(ShapeError, match=r"needs 'first' of shape \(101, 2\); found \(50, 2\)"):
+    with pytest.raises(ShapeError, match=r"'first'.*\(101, 2\).*\(50, 2\)"):
         mismatch(curves={name: np.zeros((50, 2)) for name in CURVES})
     with pytest.raises(SchemaError, match="regions lacks p"):
         mismatch(regions=pd.DataFrame(columns=pd.Index(REGION_COLUMNS[:-1])))

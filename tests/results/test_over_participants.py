@@ -16,7 +16,7 @@ from gaitdisc.results.over_participants import (
 
 def test_a_table_without_a_column_is_refused():
     whole = pd.DataFrame(columns=list(FAMILY_COLUMNS))
-    with pytest.raises(SchemaError, match=r"in tests; tests lacks p_adjusted\. Compare the models again"):
+    with pytest.raises(SchemaError, match=r"p_adjusted\. Compare the models"):
         PairTests(8, 0.05, 0.95, "", pd.DataFrame(columns=[c for c in TEST_COLUMNS if c != "p_adjusted"]), whole)
 
 

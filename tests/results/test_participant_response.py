@@ -14,7 +14,7 @@ def test_r2_of(response):
 
 
 def test_columns_fit_the_outputs(response):
-    with pytest.raises(ShapeError, match=r"as many columns in residuals\[nominal\]; found 2 for P01"):
+    with pytest.raises(ShapeError, match=r"residuals\[nominal\].*2.*P01"):
         replace(response, residuals={"nominal": np.zeros((3, 101, 2))})
     with pytest.raises(ShapeError, match="101 points a stride"):
         replace(response, residuals={"nominal": np.zeros((3, 51, 1))})

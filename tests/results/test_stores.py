@@ -135,7 +135,7 @@ def test_comparisons_come_back_to_the_last_digit(over, tmp_path):
 def test_a_changed_table_is_reported(over, tmp_path):
     OVER.save(over, tmp_path)
     (tmp_path / "baselines.csv").write_text("model\n")
-    with pytest.raises(SchemaError, match=r"baselines\.csv is changed since it was saved"):
+    with pytest.raises(SchemaError, match=r"baselines\.csv.*changed since it was"):
         OVER.load(tmp_path)
 
 
@@ -203,5 +203,5 @@ def test_saved_is_loaded(mismatch, tmp_path):
 def test_a_changed_table_of_a_mismatch_is_reported(mismatch, tmp_path):
     MISMATCH.save(mismatch, tmp_path)
     (tmp_path / "regions.csv").write_text("channel\n")
-    with pytest.raises(SchemaError, match=r"regions\.csv is changed since it was saved"):
+    with pytest.raises(SchemaError, match=r"regions\.csv.*changed since it was"):
         MISMATCH.load(tmp_path)

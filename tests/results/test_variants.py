@@ -8,7 +8,7 @@ TABLE = pd.DataFrame([("EMG", "knee_angle_r", "exo", "network", 0.9, 99)], colum
 
 
 def test_a_table_without_a_column_is_refused():
-    with pytest.raises(SchemaError, match=r"the table of P01 lacks variant\. Compute it again: `gaitdisc modalities`"):
+    with pytest.raises(SchemaError, match=r"P01.*variant"):
         Variants("P01", "modalities", TABLE.drop(columns="variant"), {})
 
 

@@ -61,5 +61,5 @@ def test_the_penalty_is_rehearsed_on_another_person(pair, fitted):
 
 
 def test_too_few_strides_are_refused_in_words(pair):
-    with pytest.raises(StrideError, match="calibration needs 500 strides, and more to test it on; P01 has"):
+    with pytest.raises(StrideError, match=r"500 strides.*more.*P01"):
         first_strides(pair.parts.training, 500, pair.what.reach_s)

@@ -45,18 +45,18 @@ def test_a_network_is_loaded_with_its_kind(pair, tmp_path):
 
 def test_refusals(pair, saved, tmp_path):
     r = pair.recording
-    with pytest.raises(SamplingError, match=r"reads its sensors at 100 Hz; the recording has 50 Hz"):
+    with pytest.raises(SamplingError, match=r"100 Hz.*50 Hz"):
         saved(replace(r, time=r.time * 2))
     other = (Channel("a", "angle", "rad"), r.channels[1])
-    with pytest.raises(UnitError, match="the model reads a in deg; the recording has it in rad"):
+    with pytest.raises(UnitError, match=r"deg; the recording.*rad"):
         saved(Recording(r.time, r.values, other))
     with pytest.raises(ChannelError, match="'a' is needed"):
         saved(r.selected(["late"]))
-    with pytest.raises(SchemaError, match=r"model\.json is to be read as a model of gaitdisc"):
+    with pytest.raises(SchemaError, match=r"model\.json.*model of gaitdisc"):
         load_model(tmp_path / "nothing")
     save_model(saved, tmp_path)
     resealed(tmp_path / "model.json", lambda data: data.update(format=9))
-    with pytest.raises(SchemaError, match="it has format 9, this version reads 1"):
+    with pytest.raises(SchemaError, match=r"format 9.*1"):
         load_model(tmp_path)
 
 
@@ -77,24 +77,20 @@ def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
     save_model(saved, tmp_path)
     whole = (tmp_path / "weights.npz").read_bytes()
     (tmp_path / "weights.npz").write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(
-        SchemaError, match=r"model of gaitdisc; .*weights\.npz is changed since it was saved.*Run `gait"
-    ):
+    with pytest.raises(SchemaError, match=r"model of gaitdisc.*weights\.npz.*changed"):
         load_model(tmp_path)
     (tmp_path / "weights.npz").unlink()
-    with pytest.raises(SchemaError, match=r"model of gaitdisc; .*weights\.npz is missing"):
+    with pytest.raises(SchemaError, match=r"model of gaitdisc.*weights\.npz.*missing"):
         load_model(tmp_path)
     static = fit_reconstructor("linear", pair.what, pair.parts.fitted(), pair.parts.checked())
     save_model(SensingModel(static, pair.channels, np.ones(1)), tmp_path / "static")
     (tmp_path / "weights.npz").write_bytes((tmp_path / "static" / "weights.npz").read_bytes())
     sha256 = file_sha256(tmp_path / "weights.npz")
     resealed(tmp_path / "model.json", lambda data: data["sha256"].update({"weights.npz": sha256}))
-    with pytest.raises(
-        SchemaError, match=r"the weights read 1 numbers and estimate late, the model has 11 and late.*Both f"
-    ):
+    with pytest.raises(SchemaError, match=r"1 numbers.*11"):
         load_model(tmp_path)
     (tmp_path / "model.json").write_text("{")
-    with pytest.raises(SchemaError, match=r"model\.json is to be read as a model of gaitdisc; .*not readable as JSON"):
+    with pytest.raises(SchemaError, match=r"model\.json.*not.*JSON"):
         load_model(tmp_path)
 
 
@@ -122,12 +118,10 @@ def test_a_model_that_was_edited_or_is_of_before_it_had_a_hash_is_refused(saved,
     whole = file.read_text()
     file.write_text(whole.replace('"rate_hz": 100.0', '"rate_hz": 999.0'))
     assert file.read_text() != whole
-    with pytest.raises(
-        SchemaError, match=r"model\.json is changed since it was saved.*Run `gaitdisc reconstruct` again"
-    ):
+    with pytest.raises(SchemaError, match=r"model\.json.*changed.*`gaitdisc reconstruct` again"):
         load_model(tmp_path)
     data = json.loads(whole)
     data.pop("own_sha256")
     file.write_text(json.dumps(data))
-    with pytest.raises(SchemaError, match=r"model\.json is without a hash of its own: an older version"):
+    with pytest.raises(SchemaError, match=r"model\.json.*without a hash"):
         load_model(tmp_path)

@@ -83,6 +83,6 @@ def test_the_file_says_what_it_reads_and_tells(pair, untrained, tmp_path):
 
 def test_without_onnx_it_is_one_sentence(pair, untrained, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "onnx", None)
-    with pytest.raises(SchemaError, match=r"by the package onnx; it is not installed\. .*gaitdisc\[onnx\]"):
+    with pytest.raises(SchemaError, match=r"onnx.*not.*gaitdisc\[onnx\]"):
         write_onnx(as_saved(untrained("shred"), pair), tmp_path / "model.onnx")
     assert not (tmp_path / "model.onnx").exists()

@@ -15,9 +15,9 @@ def test_states_are_what_no_sensor_measures():
 
 
 def test_refusals(pair):
-    with pytest.raises(ChannelError, match="needs a state that no sensor measures; a: all of them are sensors"):
+    with pytest.raises(ChannelError, match="no sensor measures; a"):
         sensing(("a",), ("a",), Lags(), 100.0)
-    with pytest.raises(ChannelError, match="needs sensors, each once; found none"):
+    with pytest.raises(ChannelError, match=r"sensors, each once.*none"):
         sensing(("a",), (), Lags(), 100.0)
     with pytest.raises(ChannelError, match="each once; found a, a"):
         sensing(("a", "b"), ("a", "a"), Lags(), 100.0)
@@ -72,7 +72,7 @@ def test_a_network_takes_the_gpu_where_there_is_one():
 
     assert fitting_device(tuple(KINDS), "cpu") == "cpu"
     assert fitting_device(tuple(KINDS), "auto") == ("cuda" if torch.cuda.is_available() else "cpu")
-    with pytest.raises(TrainingError, match=r"training is to run on 'gpu'; torch sees .*Use device 'auto'"):
+    with pytest.raises(TrainingError, match=r"training is to.*'gpu'.*'auto'"):
         fitting_device(("linear",), "gpu")
 
 
@@ -86,5 +86,5 @@ def test_the_latent_state_decoded_is_what_the_model_estimates(pair, untrained, k
 
 def test_a_model_without_a_recurrent_network_has_no_latent_state(pair):
     ridge = fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
-    with pytest.raises(TrainingError, match="the model is 'delay ridge', which has none"):
+    with pytest.raises(TrainingError, match=r"the model is 'delay ridge'.*none"):
         latent_states(ridge, pair.parts.tested())

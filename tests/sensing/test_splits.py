@@ -54,7 +54,7 @@ def test_trials_left_out():
 def test_refusals():
     with pytest.raises(SchemaError, match="'shuffled' is none"):
         split_within([walk()], "shuffled", REACH_S)
-    with pytest.raises(SamplingError, match="needs windows in all three parts; none is left for check"):
+    with pytest.raises(SamplingError, match=r"needs windows in.*none.*left"):
         split_within([walk(5.0)], "temporal", REACH_S)
     with pytest.raises(SamplingError, match="at least three people"):
         split_by_subject([[walk()], [walk()]], 0)

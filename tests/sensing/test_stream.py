@@ -78,5 +78,5 @@ def test_a_masked_model_has_learnt_to_do_without(pair):
 
 
 def test_a_reading_with_too_many_values(fitted):
-    with pytest.raises(ShapeError, match=r"one value for each of a; found an array of shape \(2,\)"):
+    with pytest.raises(ShapeError, match=r"found an array.*\(2,\)"):
         Stream(fitted["linear"]).update([1.0, 2.0])

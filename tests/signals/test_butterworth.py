@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
@@ -83,20 +84,20 @@ def test_a_run_too_short_is_left_out_and_said():
     x[130:150] = np.nan
     assert np.isnan(lowpassed(recording(x)).values[120:130, 0]).all()
     (finding,) = short_run_findings(recording(x))
-    assert finding.what == "1 stretch(es) between gaps shorter than 18 samples (0.180 s)"
+    assert says(finding.what, "1 stretch(es)", "shorter", "18 samples (0.180 s)")
     assert "needs 18 samples" in finding.spoils
     assert finding.spans == ((1.2, 1.3),)
 
 
 def test_a_recording_too_short_is_refused():
     assert needed_samples(6.0, 100.0) == 18
-    with pytest.raises(SamplingError, match=r"6 Hz needs 18 samples or more; walk\.mot has 17\. Record longer"):
+    with pytest.raises(SamplingError, match=r"6 Hz.*18 samples.*walk\.mot.*17.*longer"):
         lowpassed(recording(np.zeros(17)))
 
 
 @pytest.mark.parametrize("cutoff", [50.0, 80.0, 0.0, -1.0])
 def test_a_cutoff_outside_of_the_band_is_refused(cutoff):
-    with pytest.raises(SamplingError, match=r"between 0 Hz and half the rate, 50 Hz; .* walk\.mot has 100 samples"):
+    with pytest.raises(SamplingError, match=r"0 Hz.*50 Hz.*walk\.mot.*100 samples"):
         lowpassed(recording(np.zeros(500)), cutoff)
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.signals.contact_movement import angle_contacts
@@ -24,19 +25,19 @@ def test_without_a_knee_the_hip_stands_in(made):
     walk, contacts = made.walk(20)
     found = angle_contacts(walk.selected(["hip_flexion_r"]), ("r",))["r"]
     percent = np.array([(np.interp(t, contacts, np.arange(21)) * 100) % 100 for t in found.time[1:-1]])
-    assert found.note.startswith("hip flexion peak, at about 86 %")
+    assert says(found.note, "hip flexion peak", "86 %")
     assert np.all((percent > 80) & (percent < 95))
 
 
 def test_no_hip_is_refused(made):
     walk, _ = made.walk(5)
-    with pytest.raises(ChannelError, match=r"walk\.mot has 1 channels, no 'hip_flexion_r'\. Map the column"):
+    with pytest.raises(ChannelError, match=r"walk\.mot.*1 channels.*'hip_flexion_r'"):
         angle_contacts(walk.selected(["knee_angle_r"]))
 
 
 def test_a_hip_that_does_not_swing_is_refused(made):
     walk, _ = made.walk(5)
-    with pytest.raises(StrideError, match=r"swings 5 deg or more and repeats; walk\.mot, hip_flexion_r: 0\.\d deg"):
+    with pytest.raises(StrideError, match=r"5 deg.*walk\.mot, hip_flexion_r: 0\.\d deg"):
         angle_contacts(walk.with_values(walk.values / 100))
 
 

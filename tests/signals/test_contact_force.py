@@ -77,7 +77,7 @@ def test_loadings_are_whole():
 
 def test_a_plate_without_a_side_is_refused():
     plate = Recording(np.arange(10) / RATE, np.zeros((10, 1)), (Channel("Fz1", "vertical_force", "N"),))
-    with pytest.raises(ChannelError, match=r"the recording has Fz1\. Say which plate or belt is which foot"):
+    with pytest.raises(ChannelError, match=r"Fz1.*plate or belt"):
         force_contacts(plate)
 
 
@@ -96,7 +96,7 @@ def test_the_leading_heel_tells_the_foot():
     assert found["r"].time == pytest.approx([1.005], abs=1e-3)
     assert found["l"].time == pytest.approx([1.605], abs=1e-3)
     heels[:, 3] = np.nan
-    with pytest.raises(StrideError, match=r"plate1: contact at 1\.005 s, heel missing there"):
+    with pytest.raises(StrideError, match=r"plate1.*1\.005 s"):
         plate_contacts(plates, Recording(slow, heels, channels), {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
 
 

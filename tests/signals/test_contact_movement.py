@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import StrideError
@@ -33,7 +34,7 @@ def test_contacts_are_where_the_heel_is_farthest_in_front(speed):
     found = marker_contacts(walker(speed), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
     assert len(found) == len(CONTACTS)
     assert np.abs(found.time - CONTACTS).max() < 0.006
-    assert found.note == "RHEE farthest in front of SACR; given"
+    assert says(found.note, "RHEE", "SACR")
 
 
 @pytest.mark.parametrize("turn_deg", [90.0, -180.0])
@@ -88,5 +89,5 @@ def test_a_gap_at_contact_gives_none():
 
 def test_a_heel_that_does_not_swing_is_refused():
     walk = walker()
-    with pytest.raises(StrideError, match=r"heel RHEE to swing 0\.1 m .*: 0\.000 m along the direction"):
+    with pytest.raises(StrideError, match=r"RHEE.*0\.1 m.*0\.000 m"):
         marker_contacts(walk, {"r": "RHEE"}, ["SACR"], given_direction((0, 1, 0)))

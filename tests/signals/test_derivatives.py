@@ -38,7 +38,7 @@ def test_gaps_and_ends_have_no_derivative():
 
 
 def test_too_few_samples_are_refused():
-    with pytest.raises(SamplingError, match="a derivative needs 5 samples; found 4"):
+    with pytest.raises(SamplingError, match=r"5 samples.*4"):
         differentiated(np.zeros((4, 1)), 100.0)
 
 

@@ -72,7 +72,7 @@ def test_markers_that_are_never_there_are_named():
     walk = walker((1, 0, 0))
     values = walk.values.copy()
     values[:, walk.index("SACR.x")] = np.nan
-    with pytest.raises(StrideError, match=r"a frame with a heel and the pelvis; .*none has RHEE, LHEE and SACR\. Fill"):
+    with pytest.raises(StrideError, match=r"RHEE, LHEE.*SACR"):
         walking_direction(walk.with_values(values), HEELS, PELVIS)
 
 
@@ -87,13 +87,13 @@ def test_a_swing_without_a_direction_is_refused():
     values = still.values.copy()
     values[:, still.index("RHEE.x")] = 0.3 * np.sin(2 * np.pi * t)
     values[:, still.index("LHEE.x")] = -0.3 * np.sin(2 * np.pi * t)
-    with pytest.raises(StrideError, match=r"a skewness of 0\.2 or more; the recording has [+-]0\.0"):
+    with pytest.raises(StrideError, match=r"0\.2.*[+-]0\.0"):
         walking_direction(still.with_values(values), HEELS, PELVIS)
 
 
 def test_a_given_direction_is_made_a_unit_vector():
     assert given_direction((0, -3, 0)).forward.tolist() == [0, -1, 0]
-    with pytest.raises(StrideError, match="at right angles and not zero"):
+    with pytest.raises(StrideError, match="right angles and not"):
         given_direction((0, 0, 1))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording
@@ -27,9 +28,9 @@ def said(walk: float, other: float, usual: tuple[float, float]) -> list[str]:
 def test_walking_beside_standing_is_judged_by_a_thousand(stronger):
     assert not said(stronger, 1.0, OVER_STANDING)
     (weak,) = said(1e-3 * stronger, 1.0, OVER_STANDING)
-    assert "times weaker than in other, the median of 4 channels: its numbers look like V where mV is stated" in weak
+    assert says(weak, "weaker", "4 channels", "mV")
     (strong,) = said(1e3 * stronger, 1.0, OVER_STANDING)
-    assert "times stronger than in other" in strong and "look like mV where V is stated" in strong
+    assert "times stronger than in other" in strong and says(strong, "mV", "V is stated")
 
 
 def test_one_walk_beside_another():

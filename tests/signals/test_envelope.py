@@ -35,15 +35,15 @@ def test_movement_artefact_below_40_hz_is_gone():
 
 
 def test_a_slow_rate_is_refused():
-    with pytest.raises(SamplingError, match=r"40 Hz needs a rate above 80 .*; walk\.c3d has 80\. Give the raw EMG"):
+    with pytest.raises(SamplingError, match=r"40 Hz.*above 80.*walk\.c3d.*80.*EMG"):
         enveloped(emg(np.random.default_rng(0).normal(size=500), 80.0))
 
 
 def test_an_envelope_is_refused():
-    with pytest.raises(SamplingError, match=r"walk\.c3d, emg_sol_r: all 500 samples lie between .* none below zero"):
+    with pytest.raises(SamplingError, match=r"walk\.c3d, emg_sol_r.*500 samples.*below"):
         enveloped(emg(0.1 + np.abs(np.random.default_rng(0).normal(size=500))))
 
 
 def test_an_angle_is_refused():
-    with pytest.raises(ChannelError, match=r"walk\.c3d gives 'knee_angle_r', which is angle"):
+    with pytest.raises(ChannelError, match=r"walk\.c3d.*'knee_angle_r'.*angle"):
         enveloped(emg(np.zeros(500), channel=Channel("knee_angle_r", "angle", "deg", "r")))

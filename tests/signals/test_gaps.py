@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides
@@ -69,7 +70,7 @@ def test_too_few_whole_strides_make_no_template():
 def test_findings_tell_short_from_long():
     short, long = gap_findings(broken(np.sin(TIME), 300, 8))[0], gap_findings(broken(np.sin(TIME), 300, 30))[0]
     assert (short.severity, long.severity) == ("note", "warning")
-    assert short.what == "1 gap, 0.080 s of 10.00 s, the longest 0.080 s"
+    assert says(short.what, "1 gap, 0.080 s", "10.00 s", "0.080 s")
     assert long.spans == ((3.0, 3.3),)
     assert gap_findings(recording(np.sin(TIME))) == []
 

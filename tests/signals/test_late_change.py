@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import StrideError
 from gaitdisc.signals.contact_movement import angle_contacts
@@ -50,7 +51,7 @@ def test_the_finding_says_when_how_much_and_where(made):
     assert finding.what.startswith("gait changes at 1")
     assert "stride-to-stride sd (p = 0.003)" in finding.what
     assert finding.spans[0][0] == pytest.approx(179, abs=6)
-    assert "leave the trial out, or cut it there" in finding.spoils
+    assert says(finding.spoils, "leave the trial")
 
 
 def test_one_odd_stride_late_is_no_change(made):
@@ -62,7 +63,7 @@ def test_one_odd_stride_late_is_no_change(made):
 
 def test_too_few_strides_are_refused_and_noted(made):
     recording, strides = made.wandering(20, 0.0, 0)
-    with pytest.raises(StrideError, match=r"24 whole strides or more; walk\.mot has 19 of side 'r'"):
+    with pytest.raises(StrideError, match=r"24 whole strides.*walk\.mot.*19.*'r'"):
         late_change(recording, strides)
     (finding,) = late_change_findings(recording, strides)
     assert (finding.severity, finding.what) == ("note", "not looked for: walk.mot has 19 of side 'r'")

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d import C3DReader
@@ -35,8 +36,8 @@ def test_distances_of_a_segment_do_not_walk():
 def test_another_person_is_named_with_the_two_distances():
     (said,) = person_findings(_person(), _person(size=1.08), "walk.c3d")
     assert (said.severity, said.kind, said.file) == ("warning", "static trial", "walk.c3d")
-    assert said.what.startswith("the static trial is of another person, or its markers were moved: ")
-    assert "370 mm in it, 400 mm in the walk" in said.what or "240 mm in it, 259 mm in the walk" in said.what
+    assert says(said.what, "markers were moved")
+    assert says(said.what, "370 mm", "400 mm") or says(said.what, "240 mm", "259 mm")
 
 
 def test_one_marker_that_was_set_again_is_no_other_person():

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.recording import Strides
 from gaitdisc.signals.contact_movement import angle_contacts
@@ -42,7 +43,7 @@ def test_the_finding_says_which_and_how_far(made):
     walk, strides = walk_with_fault(made, 15.0)
     (finding,) = stride_findings(walk, strides)
     assert finding.channel == "knee_angle_r"
-    assert finding.what.startswith(f"1 of 30 strides of side r, the worst at {strides.start[12]:.2f} s: ")
+    assert says(finding.what, "1 of 30 strides", f"{strides.start[12]:.2f} s")
     assert finding.spans == ((strides.start[12], strides.end[12]),)
 
 

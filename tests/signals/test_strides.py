@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import StrideError
 from gaitdisc.signals.contacts import Contacts
@@ -69,14 +70,14 @@ def test_strides_beyond_the_recording_are_dropped(made):
     walk, at = made.walk(12)
     strides = cut_strides(Contacts(at, "r", "force"), walk.between(0.0, 6.0))
     assert len(strides) + len(strides.dropped) == 12
-    assert strides.dropped[0].reason == "the recording covers 0.00 to 5.99 s only"
+    assert says(strides.dropped[0].reason, "0.00", "5.99 s")
 
 
 def test_one_contact_is_no_stride():
-    with pytest.raises(StrideError, match="two initial contacts of one foot; force found 1 of side 'r'"):
+    with pytest.raises(StrideError, match=r"two initial contacts.*1.*'r'"):
         cut_strides(contacts([]))
 
 
 def test_no_stride_left_is_refused_with_the_first_reason():
-    with pytest.raises(StrideError, match=r"none of 2 is left; the first at 1\.00 s: 5\.00 s is longer than 2\.5 s"):
+    with pytest.raises(StrideError, match=r"2.*left.*1\.00 s: 5\.00 s.*longer.*2\.5 s"):
         cut_strides(contacts([5.0, 6.0]))

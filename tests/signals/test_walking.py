@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Strides
@@ -30,7 +31,7 @@ def test_what_is_not_walking_is_refused_with_its_numbers(made):
     still = walk.with_values(walk.values * 0 + np.cumsum(rng.normal(size=walk.values.shape), axis=0) / 5)
     with pytest.raises(StrideError) as refusal:
         verify_walking(still, strides_of(contacts[:3]))
-    assert "walking means 3 strides or more over 60 % of the trial" in refusal.value.needed
+    assert says(refusal.value.needed, "3 strides", "60 %")
     for words in (
         "2 strides where 3 are needed",
         "strides cover 10 % of",
@@ -53,9 +54,7 @@ def test_real_walks_pass_and_range_of_motion_trials_do_not(gait_data, real):
     for name, trial in trials.items():
         strides = cut_strides(angle_contacts(trial)["r"], trial)
         if name in ("S01DE503", "S01DN603"):
-            with pytest.raises(
-                StrideError, match=r"strides? where 3 are needed; strides cover [38] % of .* correlation"
-            ):
+            with pytest.raises(StrideError, match=r"3.*needed; strides cover [38] %"):
                 verify_walking(trial, strides)
         else:
             assert verify_walking(trial, strides).regularity > 0.8

@@ -70,7 +70,7 @@ def test_an_equation_effect_may_use_definitions_and_a_delay_parameters():
 
 
 def test_a_sensor_belongs_to_an_observation_and_its_numbers_are_above_0():
-    with pytest.raises(SimulationError, match=r"a sensor records an observation; 'y' is none. Known: x, v."):
+    with pytest.raises(SimulationError, match="records an observation; 'y'"):
         _made(sensors=(Sensor("y", sd=1.0),))
-    with pytest.raises(SimulationError, match=r"sd is a number above 0 \[mm\]; found sd = nan"):
+    with pytest.raises(SimulationError, match=r"above 0 \[mm\].*= nan"):
         _made(sensors=(Sensor("x", "mm", float("nan")),))

@@ -205,7 +205,7 @@ def test_observations_and_their_delays():
 
 def test_a_delay_without_a_history_is_refused():
     late = compile_simulation(_system(["x"], {"x": "-delay(x, 1)"}))
-    with pytest.raises(SimulationError, match="delayed signals are needed at each point: x"):
+    with pytest.raises(SimulationError, match="signals are needed"):
         late.rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))
     assert late.rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)), late=np.array([[4.0]]))[0, 0] == -4.0
 

@@ -58,15 +58,14 @@ def test_delays_that_have_a_meaning_are_read(what):
 def test_a_delay_as_long_as_the_shortest_trial_is_refused(what):
     simulation = simulation_of(late(what))
     refuse_delays(simulation)
-    with pytest.raises(SimulationError, match=r"\[equations\] x: a delay is shorter than every trial; the shortest, "
-                       r"'b', lasts 8 s; 'delay.*' is .* s.* Write seconds, or leave the trial out"):  # fmt: skip
+    with pytest.raises(SimulationError, match=r"\[equations\].*shorter.*'b'.*8 s"):  # fmt: skip
         refuse_delays(simulation, 8.0, "b")
 
 
 def test_a_python_object_with_such_a_delay_is_refused_as_well():
     model = python_simulation("f", lambda t, x, u, p, ports: x, [State("x")], [Input("u")], [Parameter("d", 0.5)])
     refuse_delays(model.with_input("u", "delay(u, -d)"), 2.0, "a")
-    with pytest.raises(SimulationError, match=r"\[inputs\] u: .*'delay\(u, 9\*d\)' is 4.5 s"):
+    with pytest.raises(SimulationError, match=r"\[inputs\] u: .*9\*d\)' is 4\.5 s"):
         refuse_delays(model.with_input("u", "delay(u, 9*d)"), 2.0, "a")
-    with pytest.raises(SimulationError, match=r"\[observations\] x: .*'delay\(x, -1\)' is -1 s"):
+    with pytest.raises(SimulationError, match=r"\[observations\] x: .*-1\)' is -1 s"):
         refuse_delays(model.with_observation("x", "delay(x, -1)"), 2.0, "a")

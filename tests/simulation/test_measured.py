@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ReadError, SamplingError, ShapeError
 from gaitdisc.simulation.drive import Drive
@@ -34,7 +35,7 @@ def test_some_trials_and_some_samples():
     late = measured.between(40, 80)
     assert late.trials == ("b",)
     assert late.time(0)[0] == pytest.approx(0.4)
-    with pytest.raises(SamplingError, match=r"samples 40 to 90 .* the longest has 80"):
+    with pytest.raises(SamplingError, match=r"samples 40.*90.*80"):
         measured.between(40, 90)
 
 
@@ -68,10 +69,10 @@ def test_clocks_that_do_not_run_are_refused(trials, words):
 
 def test_a_constant_channel_is_refused_a_constant_trial_told():
     still = np.full((50, 1), 3.0)
-    with pytest.raises(ShapeError, match=r"'x'; walk\.csv has 3 in every sample"):
+    with pytest.raises(ShapeError, match=r"'x'; walk\.csv.*3"):
         _measured(_trial("a", observed=still), _trial("b", observed=still))
     (finding,) = _measured(_trial("a", observed=still), _trial("b")).findings
-    assert finding.line().startswith("warning: walk.csv, x: constant: constant in 1 of 2 trials (first: 'a')")
+    assert says(finding.line(), "walk.csv", "1 of 2 trials", "'a'")
 
 
 def test_shapes_are_checked():
@@ -85,17 +86,13 @@ def test_empty_cells_are_left_out_with_one_finding():
     measured = _measured(_trial("a", observed=observed), _trial("b"))
     assert np.isnan(measured.observed[0, [3, 4, 30], 0]).all()
     (finding,) = measured.findings
-    assert finding.line().startswith(
-        "note: walk.csv, x: empty cells: 3 of 100 samples are missing, most in trial 'a' (3)"
-    )
+    assert says(finding.line(), "walk.csv", "3 of 100 samples", "'a' (3)")
 
 
 def test_a_channel_that_is_as_good_as_empty_is_refused():
     observed = np.full((50, 1), np.nan)
     observed[:19, 0] = np.arange(19)
-    with pytest.raises(
-        ReadError, match=r"20 values or more in every trial; walk.csv, trial 'a', column 'x' has 19 in 50"
-    ):
+    with pytest.raises(ReadError, match=r"20 values.*walk.csv.*'a'.*'x'.*19.*50"):
         _measured(_trial("a", observed=observed), _trial("b"))
 
 

@@ -157,9 +157,9 @@ def test_a_real_walk_drives_a_knee(gait_data):
 
 
 def test_recordings_with_faults(ankle):
-    with pytest.raises(UnitError, match=r"'theta'.*'rad'; walk.mot has it in 'N m'"):
+    with pytest.raises(UnitError, match=r"'theta'.*'rad'; walk.mot.*'N m'"):
         measured_of_recordings([_recording("N m")], ankle)
-    with pytest.raises(ReadError, match=r"walk.mot'?, column 'tau': 21 rows \(0.21 s\) without one from t = 0.07 s on"):
+    with pytest.raises(ReadError, match=r"walk.mot'?.*'tau': 21 rows \(0.21 s\).*= 0.07 s"):
         absent = (np.arange(50) >= 7) & (np.arange(50) < 28)
         measured_of_recordings([_recording(tau=np.where(absent, np.nan, np.arange(50.0)))], ankle)
     with pytest.raises(ChannelError, match="needs a measured column 'tau'"):
@@ -191,7 +191,7 @@ def test_columns_of_another_kind_are_refused_in_words(ankle, tmp_path, change, w
 def test_a_doubled_column_of_parquet_is_refused_as_one_of_csv(ankle, tmp_path):
     table = pa.Table.from_pandas(_table())
     pq.write_table(table.append_column("theta", table["theta"]), tmp_path / "walk.parquet")
-    with pytest.raises(ChannelError, match=r"each column has a name of its own; walk.parquet has 'theta' twice"):
+    with pytest.raises(ChannelError, match=r"walk.parquet.*'theta'"):
         read_measured(tmp_path / "walk.parquet", ankle)
 
 

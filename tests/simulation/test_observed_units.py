@@ -48,7 +48,5 @@ def test_units_that_do_not_fit_are_refused_with_the_mend(ankle, expression, unit
 def test_a_file_is_refused_at_the_line_of_the_observation(ankle_text):
     text = f'{ankle_text}[observations.ankle]\nexpression = "theta"\nunit = "deg"\n'
     line = text.split("\n").index("[observations.ankle]") + 1
-    with pytest.raises(
-        SchemaError, match=rf"ankle.toml, line {line}, \[observations\] ankle: an observation is in the"
-    ):
+    with pytest.raises(SchemaError, match=rf"ankle.toml, line {line}, \[observations\]"):
         simulation_of(text, "ankle.toml")

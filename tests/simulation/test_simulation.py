@@ -29,7 +29,7 @@ def test_values_and_parameters(ankle):
     assert ankle.with_values({"k": 30}).values()["k"] == 30.0
     more = ankle.with_parameter(Parameter("x0", 0.03, "rad")).with_parameter(Parameter("k", 28.0))
     assert more.values() == {"inertia": 0.12, "b": 1.1, "k": 28.0, "x0": 0.03}
-    with pytest.raises(SimulationError, match=r"none called 'kk'.*Known: inertia, b, k"):
+    with pytest.raises(SimulationError, match=r"'kk'.*inertia"):
         ankle.with_values({"kk": 1.0})
 
 
@@ -57,11 +57,9 @@ def test_equations_come_as_a_mapping_too():
 def test_a_start_belongs_to_a_state(ankle):
     moved = ankle.with_starts({"omega": 0.5})
     assert [state.initial for state in moved.states] == [ankle.states[0].initial, 0.5]
-    with pytest.raises(
-        SimulationError, match=r"a start belongs to a state of the simulation; there is none called 'k'"
-    ):
+    with pytest.raises(SimulationError, match=r"a start belongs.*'k'"):
         ankle.with_starts({"k": 1.0})
-    with pytest.raises(SimulationError, match=r"a state starts at a finite number; initial is nan"):
+    with pytest.raises(SimulationError, match=r"finite number; initial.*nan"):
         ankle.with_starts({"omega": float("nan")})
 
 

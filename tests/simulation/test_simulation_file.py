@@ -64,7 +64,7 @@ def test_a_fault_is_told_with_its_place(ankle_text, old, new, words):
 def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(ReadError, match=r"absent\.toml: No such file"):
         read_simulation(tmp_path / "absent.toml")
-    with pytest.raises(ReadError, match=r"a file is to be read; .* is a folder"):
+    with pytest.raises(ReadError, match="is a folder"):
         read_simulation(tmp_path)
     (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
     with pytest.raises(ReadError, match="another byte at 12"):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from texts import says
 
 from gaitdisc.errors import ReadError, SchemaError, WriteError
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
@@ -95,7 +96,7 @@ def test_a_number_as_an_expression_is_replaced():
 def test_the_file_is_read_back(ankle, tmp_path):
     path = write_simulation(ankle.with_effect(SPRING), tmp_path / "new" / "augmented.toml")
     assert read_simulation(path) == ankle.with_effect(SPRING)
-    with pytest.raises(WriteError, match="needs a folder that it can write"):
+    with pytest.raises(WriteError, match="needs a folder"):
         write_simulation(ankle, path / "below.toml")
 
 
@@ -111,22 +112,20 @@ def test_a_python_object_is_given_all_that_was_written_of_it(tmp_path):
     path = write_simulation(changed, tmp_path / "ball.toml")
     read = read_into(ball(), path)
     assert (read.parts, read.replaced) == (changed.parts, changed.replaced)
-    assert "The right-hand side is a Python object" in path.read_text()
+    assert says(path.read_text(), "The right-hand side")
 
 
 def test_what_is_written_of_a_python_object_cannot_be_run_without_it(tmp_path):
     path = write_simulation(ball(), tmp_path / "ball.toml")
-    with pytest.raises(SchemaError, match=r"state 'v' has one equation; it has none"):
+    with pytest.raises(SchemaError, match="'v' has one equation"):
         read_simulation(path)
 
 
 def test_a_python_object_is_not_given_what_belongs_to_another(tmp_path):
     path = write_simulation(ball(), tmp_path / "ball.toml")
-    with pytest.raises(
-        SchemaError, match=r"the ports are those of 'ball': drag, lift; ball.toml has drag. Read the file"
-    ):
+    with pytest.raises(SchemaError, match=r"'ball'.*lift; ball.toml"):
         read_into(ball(Port("lift")), path)
-    with pytest.raises(ReadError, match=r"read from a TOML file; absent.toml: .*No such file.*Check the path"):
+    with pytest.raises(ReadError, match=r"TOML.*absent.toml"):
         read_into(ball(), tmp_path / "absent.toml")
 
 

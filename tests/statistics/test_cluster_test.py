@@ -26,7 +26,7 @@ def test_many_units_have_as_many_as_are_asked_for_and_the_same_for_a_seed():
 
 
 def test_permutations_that_could_show_nothing_are_refused():
-    with pytest.raises(ComparisonError, match=r"at level 0\.01 needs 100 permutations or more; there are 32"):
+    with pytest.raises(ComparisonError, match=r"0\.01.*100 permutations.*32"):
         sign_flips(6, PermutationPlan(alpha=0.01))
 
 
@@ -109,9 +109,9 @@ def test_worth_divides_t():
 
 
 def test_too_few_units_and_gaps_are_refused_in_words():
-    with pytest.raises(ComparisonError, match="needs 6 units or more in a set; found 5"):
+    with pytest.raises(ComparisonError, match=r"6 units.*5"):
         one_sample_test(np.zeros((5, 101, 1)))
-    with pytest.raises(ComparisonError, match="needs 6 units or more in a set; found 3"):
+    with pytest.raises(ComparisonError, match=r"6 units.*3"):
         two_sample_test(np.zeros((9, 101, 1)), np.zeros((3, 101, 1)))
     gap = np.ones((8, 101, 1))
     gap[2, 5] = np.nan
@@ -119,7 +119,7 @@ def test_too_few_units_and_gaps_are_refused_in_words():
         one_sample_test(gap)
     with pytest.raises(ShapeError, match="same points of the stride"):
         two_sample_test(np.ones((8, 101, 1)), np.ones((8, 51, 1)))
-    with pytest.raises(ComparisonError, match="needs 1000 permutations or more; there are 300"):
+    with pytest.raises(ComparisonError, match=r"1000 permutations.*300"):
         one_sample_test(np.ones((20, 101, 1)), PermutationPlan(alpha=0.001, permutations=300))
 
 

@@ -66,10 +66,10 @@ def test_the_order_of_participants_does_not_matter(order):
 def test_missing_numbers_and_too_few_are_refused():
     with pytest.raises(ComparisonError, match="1 of the numbers missing"):
         find_groups(np.where(np.arange(12).reshape(6, 2) == 3, np.nan, 1.0))
-    with pytest.raises(ComparisonError, match=r"6 participants or more .* found \(5, 2\)"):
+    with pytest.raises(ComparisonError, match=r"6 participants.*\(5, 2\)"):
         find_groups(np.ones((5, 2)))
 
 
 def test_participants_who_are_all_alike_have_none():
     found = find_groups(np.ones((8, 3)), clouds=19)
-    assert (found.count, found.p, found.why) == (0, 1.0, "No sub-groups: nothing parts the participants")
+    assert (found.count, found.p) == (0, 1.0) and found.why.startswith("No sub-groups: ")

@@ -79,7 +79,7 @@ def test_a_p_of_zero_and_of_one():
 
 @pytest.mark.parametrize(("p", "words"), [([], "found no test"), ([0.1, np.nan], "found nan"), ([1.2], "found 1.2")])
 def test_what_is_no_p_is_refused(p, words):
-    with pytest.raises(ComparisonError, match=f"p between 0 and 1; {words}"):
+    with pytest.raises(ComparisonError, match=rf"p between 0 and 1; {words}"):
         holm_sidak(p)
 
 

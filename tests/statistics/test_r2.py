@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sklearn.metrics import r2_score
+from texts import says
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.statistics.r2 import r2, why_no_r2
@@ -37,14 +38,14 @@ def test_it_is_nan_with_a_reason_where_it_means_nothing():
     f[2, 1] = np.nan
     assert np.isnan(r2(y, f)).tolist() == [True, True, True, False]
     constant, missing, rounding, fine = why_no_r2(y, f)
-    assert constant == "the measured part does not vary: 0.3 in all 4 samples"
-    assert missing == "1 of 4 samples are missing"
-    assert rounding.startswith("the measured part does not vary: 100000")
+    assert says(constant, "0.3", "4 samples")
+    assert says(missing, "1 of 4 samples")
+    assert says(rounding, "the measured part", "100000")
     assert fine == ""
     assert why_no_r2(y[:1], f[:1])[0] == "1 samples are too few"
     assert np.isnan(r2(y[:0], f[:0])).all()
 
 
 def test_shapes():
-    with pytest.raises(ShapeError, match=r"one shape \(sample, column\); found \(4, 1\) and \(4, 2\)"):
+    with pytest.raises(ShapeError, match=r"shape \(sample, column\).*\(4, 1\).*\(4, 2\)"):
         r2(np.zeros((4, 1)), np.zeros((4, 2)))

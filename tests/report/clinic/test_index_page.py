@@ -4,6 +4,7 @@ import re
 
 import pandas as pd
 from made_clinic import made_controls, made_person, made_run
+from texts import says
 
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.report.clinic.index_page import write_index
@@ -23,9 +24,9 @@ def test_refused_first_then_amber_then_green_each_with_why_and_link(tmp_path):
         ("amber", '<a href="people/P02.html">P02</a>'),
         ("green", '<a href="people/P01.html">P01</a>'),
     ]
-    assert "no walk of P09 can be read. Record again." in text and "few cycles: 2 left, 2 right" in text
+    assert says(text, "no", "P09", "read. Record again") and says(text, "2 left, 2 right")
     assert "Knee" in text or "knee" in text
-    assert "3 people; 1 refused, 1 amber, 1 green" in text
+    assert says(text, "3 people; 1 refused, 1", "amber, 1 green")
     assert len(pd.read_csv(tmp_path / "tables" / "people.csv")) == 3
 
 

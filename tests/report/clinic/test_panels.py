@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from made_clinic import made_controls, made_person
+from texts import says
 
 from gaitdisc.clinic.contrast import contrast_of
 from gaitdisc.clinic.reading import read_beside
@@ -64,7 +65,7 @@ def test_words_are_escaped_and_the_drawing_is_described():
     assert "<script" not in drawing
     assert hostile in root.attrib["aria-label"]
     alt = _panel().alt
-    assert "knee flexion [deg] over the cycle: left 0.0 to 60.0, peak at 100 %" in alt and "6 people" in alt
+    assert says(alt, "[deg]", "left 0.0", "60.0", "100 %") and "6 people" in alt
 
 
 @pytest.mark.parametrize(("low", "high"), [(-4.2, 61.0), (0.0, 0.0031), (-1.3, 0.2), (1e3, 9e3)])

@@ -7,6 +7,7 @@ import re
 import pandas as pd
 import pytest
 from made_clinic import PROVENANCE, made_controls, made_person
+from texts import says
 
 from gaitdisc.clinic.contrast import contrast_of
 from gaitdisc.clinic.reading import read_beside
@@ -49,7 +50,7 @@ def test_its_parts_stand_in_the_order_of_a_clinic(page):
     assert headings[: len(wanted)] == wanted
     assert headings[-3:] == ["Turn", "walk and turn", "How it was made"]
     assert text.count('role="img"') == text.count('aria-label="') - text.count('role="region"')
-    assert "Research use, not a medical device. No diagnosis." in text
+    assert says(text, "not", "device. No diagnosis")
 
 
 def test_the_numbers_of_every_sheet_and_table_lie_beside_it(page):

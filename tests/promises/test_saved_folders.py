@@ -1,0 +1,35 @@
+"""Folders that earlier versions saved are read, and nothing in them is changed; tests/test_approved.py draws them."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+from approve import SAVED
+from gaitdisc.results.saved import READERS
+
+import gaitdisc as gd
+from gaitdisc.own_files import file_sha256
+from gaitdisc.results.clinical_reference import load_reference
+from gaitdisc.results.unit_folder import damaged_units
+
+RESULTS = sorted(path.relative_to(SAVED) for name in (*READERS, "model.json") for path in SAVED.rglob(name))
+
+
+def test_every_kind_that_compatibility_names_is_here():
+    assert {path.name for path in RESULTS} == {*READERS, "model.json"}
+
+
+@pytest.mark.parametrize("place", RESULTS, ids=str)
+def test_a_saved_result_is_loaded_and_left_as_it_is(place, tmp_path):
+    kind = shutil.copytree(SAVED / place.parts[0], tmp_path / "kind")
+    before = {path: file_sha256(path) for path in kind.rglob("*") if path.is_file()}
+    result = gd.load((kind / place.relative_to(place.parts[0])).parent)
+    assert type(result).__module__.startswith("gaitdisc.")
+    assert {path: file_sha256(path) for path in kind.rglob("*") if path.is_file()} == before
+    assert damaged_units(kind) == ()
+
+
+def test_a_saved_reference_is_loaded_with_its_people():
+    reference = load_reference(SAVED / "cycles" / "reference")
+    assert set(reference.legs) == {"nominal", "exo"} and reference.people("nominal") == 1
