@@ -1,0 +1,223 @@
+"""Errors of reconstructed fields: histograms by route, boxes by kind of sensor, against the latent size, a table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.palette import RECONSTRUCTED, Look
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
+from gaitdisc.report.table import Table
+from gaitdisc.report.wording import number
+
+from .field_cell import FieldCell, field_cells_table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+ROUTE_LOOKS = (
+    Look("#111111", "-", "o"),
+    Look("#7a7a7a", (0, (1.2, 1.2)), "s"),
+    Look("#c8102e", "-", "v"),
+    Look("#1f4fc8", (0, (4.0, 1.6)), "^"),
+    Look("#00875a", (0, (4.0, 1.2, 1.2, 1.2)), "D"),
+    Look("#d97700", (0, (2.0, 1.0)), "x"),
+    Look("#7a3fa0", (0, (6.0, 1.0)), "P"),
+    Look("#a8326e", (0, (3.0, 1.0, 1.0, 1.0, 1.0, 1.0)), "*"),
+    Look("#5b4a2f", (0, (8.0, 2.0)), "h"),
+)
+
+
+@in_style
+def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Figure:
+    """How often errors of each size are made, a panel a split, a line a route.
+
+    cells: of one model and quantity; several runs of a route and split are added up
+    name, source: of the files; the figure of the dissertation that it stands for
+    """
+    splits = list(dict.fromkeys(cell.split for cell in cells))
+    routes = list(dict.fromkeys(cell.route for cell in cells))
+    drawn, (row,) = panels(1, len(splits), 2.1, Room(top=0.3 + 0.17 * (-(-len(routes) // 3)), across=0.7))
+    numbers = []
+    for axes, split in zip(row, splits, strict=True):
+        for route, look in zip(routes, ROUTE_LOOKS, strict=False):
+            some = [cell for cell in cells if (cell.split, cell.route) == (split, route)]
+            if some:
+                numbers.append(_histogram(axes, some, look))
+        axes.set_title(split)
+        axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        axes.set_xlabel(f"reconstructed − measured [{cells[0].unit}]")
+    row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density [1]")
+    handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
+    drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
+    caption = (
+        f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all test "
+        f"snapshots, n = {cells[0].tested} at most. {_beyond(numbers, cells[0])}"
+    )
+    return Figure(name, caption, f"Histograms of errors of {len(routes)} routes", pd.concat(numbers), drawn)
+
+
+def _beyond(numbers: Sequence[pd.DataFrame], cell: FieldCell) -> str:
+    """What the axis leaves out: the two outermost bins are open-ended, so their heights are no density."""
+    shares = [float(one["count"].iloc[[0, -1]].sum() / one["count"].sum()) for one in numbers]
+    low, high = cell.errors.edges[1], cell.errors.edges[-2]
+    return (
+        f"Not drawn: errors below {number(low)} or above {number(high)} {cell.unit}, "
+        f"{' to '.join(dict.fromkeys(f'{100 * share:.2g}' for share in (min(shares), max(shares))))} % of a route's."
+    )
+
+
+def _histogram(axes: Axes, some: Sequence[FieldCell], look: Look) -> pd.DataFrame:
+    edges, counts = some[0].errors.edges, np.sum([cell.errors.counts for cell in some], axis=0)
+    density = counts / counts.sum() / np.diff(edges)
+    middles = (edges[1:] + edges[:-1]) / 2
+    inner = np.where(density > 0, density, np.nan)[1:-1]
+    axes.plot(middles[1:-1], inner, color=look.colour, linestyle=look.line, linewidth=1.0)
+    of = {"split": some[0].split, "route": some[0].route}
+    return pd.DataFrame({**of, "error": middles, "count": counts, "density": density})
+
+
+@in_style
+def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: dict[str, float]) -> Figure:
+    """Relative error of many models, a panel a split, a box a kind of sensor, every model a point.
+
+    name, source: of the files; the figure of the dissertation that it stands for
+    ceilings: split -> relative error of the test part projected onto the training part's modes
+    """
+    splits = list(dict.fromkeys(cell.split for cell in cells))
+    routes = list(dict.fromkeys(cell.route for cell in cells))
+    drawn, (row,) = panels(1, len(splits), 2.2, Room(across=0.6))
+    for axes, split in zip(row, splits, strict=True):
+        groups = [[c.relative_l2 for c in cells if (c.split, c.route) == (split, route)] for route in routes]
+        axes.boxplot(groups, widths=0.5, showfliers=False, medianprops={"color": "#111111"})
+        for k, group in enumerate(groups):
+            spread = np.linspace(-0.16, 0.16, len(group)) if len(group) > 1 else np.zeros(1)
+            axes.plot(k + 1 + spread, group, ROUTE_LOOKS[k + 2].mark, color=ROUTE_LOOKS[k + 2].colour, markersize=3.5)
+        axes.axhline(1.0, color="#888888", linewidth=0.8)
+        axes.axhline(ceilings[split], color="#00875a", linestyle=(0, (4.0, 1.6)), linewidth=0.9)
+        words = [f"{route}\nn = {len(group)}" for route, group in zip(routes, groups, strict=True)]
+        axes.set_xticks(range(1, len(routes) + 1), words)
+        axes.set_title(split)
+        axes.set_ylim(bottom=0)
+    row[0].set_ylabel("relative L2 error [1]")
+    legend(drawn, lines_of({"the field's own norm": Look("#888888", "-", ""),
+                            "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}))  # fmt: skip
+    numbers = pd.DataFrame([(c.split, c.route, c.run, c.relative_l2, c.r2) for c in cells],
+                           columns=pd.Index(["split", "route", "run", "relative_l2", "r2"]))  # fmt: skip
+    caption = f"{source}. Each point is one model; box: quartiles, whiskers within 1.5 of their distance."
+    return Figure(name, caption, "Boxes of relative errors by split and kind of sensor", numbers, drawn)
+
+
+@in_style
+def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
+    """Error against the nodes of the recurrent layer, beside the energy that as many modes leave.
+
+    found: from `chapter5.latent_size.latent_sizes`, of one quantity, of any splits
+    name, source: of the files; the figure of the dissertation that it stands for
+    """
+    drawn, ((left, right),) = panels(1, 2, 2.1, Room(across=0.8, top=0.2))
+    splits = list(dict.fromkeys(found["split"]))
+    for split, look in zip(splits, (RECONSTRUCTED["shred"], RECONSTRUCTED["delay ridge"]), strict=False):
+        some = found[found["split"] == split]
+        left.plot(some["nodes"], some["relative_l2"], marker=look.mark, color=look.colour, linestyle=look.line,
+                  markersize=4, label=split)  # fmt: skip
+    first = found[found["split"] == splits[0]]
+    right.plot(first["nodes"], first["energy_left"], "o-", color="#111111", markersize=4)
+    for axes, words in ((left, "relative L2 error of SHRED [1]"), (right, "energy beyond so many modes, share [1]")):
+        axes.set_xscale("log", base=2)
+        axes.set_xticks(list(first["nodes"]), [str(n) for n in first["nodes"]])
+        axes.minorticks_off()
+        axes.axvline(5, color="#888888", linewidth=0.7, linestyle=(0, (2.0, 2.0)))
+        axes.set_ylabel(words)
+        axes.set_ylim(bottom=0)
+    left.set_xlabel("nodes of the recurrent layer")
+    right.set_xlabel("proper orthogonal modes")
+    left.legend(loc="lower left")
+    caption = f"{source}. Dotted: 5, where the dissertation sees both elbows. Modes of the training part ({splits[0]})."
+    return Figure(name, caption, "Error against latent size, and energy against modes", found, drawn)
+
+
+def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[str, str], float] | None = None) -> Table:
+    """Relative L2 error of every route, model and split; the least of each row and split is marked by a star.
+
+    printed mapping of (str, str) to float: (route, split) -> what the dissertation prints for its SHRED on its field;
+        shown in a column of its own
+    """
+    splits = list(dict.fromkeys(cell.split for cell in cells))
+    models = list(dict.fromkeys(cell.model for cell in cells if not _is_bound(cell.model)))
+    routes = list(dict.fromkeys(cell.route for cell in cells))
+    found = {(cell.route, cell.split, cell.model): cell for cell in cells}
+    extra = ("printed",) if printed else ()
+    rows = []
+    for route in routes:
+        row = [route]
+        for split in splits:
+            here = {model: found.get((route, split, model)) for model in models}
+            least = min((c.relative_l2 for c in here.values() if c is not None), default=0.0)
+            row += [_cell(cell, least) for cell in here.values()]
+            if printed:
+                row.append(f"{printed[route, split]:.4f}" if (route, split) in printed else "")
+        rows.append(tuple(row))
+    first = cells[0]
+    caption = (
+        f"{first.field}, {first.quantity}: relative L2 error, the norm of the error over the norm of the field about "
+        f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; star: least of the models. "
+        f"Test snapshots: {', '.join(f'{split} {_tested(cells, split)}' for split in splits)}."
+        f"{_bounds(cells)}"
+    )
+    columns = ("route", *[word for _ in splits for word in (*models, *extra)])
+    groups = (("", 1), *[(split, len(models) + len(extra)) for split in splits])
+    return Table(name, caption, columns, tuple(rows), field_cells_table(cells), groups)
+
+
+def _is_bound(model: str) -> bool:
+    return model.endswith("(no sensor)") or model.startswith("POD")
+
+
+def _bounds(cells: Sequence[FieldCell]) -> str:
+    """What needs no sensor, and what no model can beat: the same for every route."""
+    found = {(cell.split, cell.model): cell for cell in reversed(cells) if _is_bound(cell.model)}
+    words = [f"{split}, {model}: {_cell(cell)}" for (split, model), cell in reversed(found.items())]
+    return f" Bounds: {'; '.join(words)}." if words else ""
+
+
+def _cell(cell: FieldCell | None, least: float = 0.0) -> str:
+    if cell is None:
+        return ""
+    star = "*" if cell.relative_l2 == least else ""
+    return f"{cell.relative_l2:.3f}{star} ({cell.rmse:.3g}; {cell.r2:.2f})"
+
+
+def _tested(cells: Sequence[FieldCell], split: str) -> str:
+    counts = sorted({cell.tested for cell in cells if cell.split == split})
+    return str(counts[0]) if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+
+
+def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
+    """Median and range over runs of every route, split and model."""
+    groups: dict[tuple[str, str, str], list[FieldCell]] = {}
+    for cell in cells:
+        route = "" if _is_bound(cell.model) else cell.route
+        groups.setdefault((cell.split, cell.model, route), []).append(cell)
+    rows = []
+    for (split, model, route), found in groups.items():
+        some = found if route else found[:1]
+        errors, r2 = [cell.relative_l2 for cell in some], [cell.r2 for cell in some]
+        rows.append((
+            split, model, route, str(len(some)), f"{np.median(errors):.3f}", f"{min(errors):.3f} to {max(errors):.3f}",
+            f"{np.median(r2):.3f}", f"{np.median([c.bias for c in some]):+.4f}",
+            f"{np.median([c.sd for c in some]):.4f}", f"{np.median([c.seconds for c in some]):.1f}",
+        ))  # fmt: skip
+    first = cells[0]
+    caption = (
+        f"{first.field}, {first.quantity} [{first.unit}]: medians over runs; relative L2 error about zero with its "
+        "range, R2 about the training part's mean, mean and standard deviation of reconstructed minus measured, "
+        "processor time of a fit."
+    )
+    columns = ("split", "model", "sensor", "n", "relative L2", "range", "R2", "bias", "sd", "fit [s]")
+    return Table(name, caption, columns, tuple(rows), field_cells_table(cells))
