@@ -29,7 +29,7 @@ FLOORS = (
     ("kinetics", "engines"),
     ("processing", "discovery", "comparison", "sensing", "response", "clinic"),
     ("batch", "report"),
-    ("library", "commands"),
+    ("library", "commands", "studies"),
     ("cli", "__main__"),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
