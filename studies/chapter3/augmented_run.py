@@ -35,21 +35,7 @@ class AugmentedRun:
 def with_learned_rates(
     known: Rates, learned: Model, start: NDArray[np.float64], time: NDArray[np.float64], step_s: float | None = None
 ) -> AugmentedRun:
-    """Integrate f + delta_f (Eq. 3.4).
-
-    start (state,): first state
-    time (sample,) [s]: even
-    step_s: longest step [s]; where absent, 2.5 ms, and 5 ms of rates that are no simulation file
-
-    >>> from chapter3.polynomials import library
-    >>> from chapter3.sindy import Sindy
-    >>> from gaitdisc.simulation.parts import State
-    >>> from gaitdisc.simulation.simulation import Simulation
-    >>> still = KnownRates(Simulation("still", (State("x"),), equations=(("x", "0*x"),)))
-    >>> decay = Sindy(("x",), ("x",), library(1, 1), np.array([[0.0], [-1.0]]), 0.1)
-    >>> float(with_learned_rates(still, decay, np.ones(1), np.linspace(0, 1, 101)).values[-1, 0].round(6))
-    0.367879
-    """
+    """Integrate f + delta_f (Eq. 3.4)."""
     dt = float(time[1] - time[0])
     longest = step_s or (LEARNED_STEP_S if isinstance(known, KnownRates) else FIELD_STEP_S)
     substeps = max(1, int(np.ceil(dt / longest - 1e-9)))
@@ -71,12 +57,7 @@ def with_learned_rates(
 def on_states(
     system: System, learned: Model, start: NDArray[np.float64], time: NDArray[np.float64], summed: bool = False
 ) -> AugmentedRun:
-    """Correct the known model's solution (Eq. 3.5).
-
-    start (state,): first state of the known model
-    time (sample,) [s]: even
-    summed: as the published code does with SINDy: delta is taken for a rate, integrated from zero and then added
-    """
+    """Correct the known model's solution (Eq. 3.5)."""
     dt = float(time[1] - time[0])
     states = system.known.run(start[None], dt, len(time) - 1)[0]
     values = learned(time[:, None] if learned.inputs == ("t",) else states)

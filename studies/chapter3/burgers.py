@@ -28,11 +28,7 @@ class BurgersRates:
         return -x * slope + self.viscosity * bend - self.cubic * x**3
 
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
-        """Fields (start, steps + 1, state); NaN from where one diverged.
-
-        starts (start, state): first fields
-        dt_s: between samples [s]
-        """
+        """Fields (start, steps + 1, state); NaN from where one diverged."""
         found = np.full((len(starts), steps + 1, POINTS), np.nan)
         substeps = max(1, int(np.ceil(dt_s / LONGEST_STEP_S)))
         h, x = dt_s / substeps, np.array(starts, float)
@@ -49,15 +45,7 @@ class BurgersRates:
 
 
 def slope_and_bend(x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """First and second derivative in space of fields, by Fourier, (point, state) each.
-
-    x (point, state): fields
-
-    >>> angle = 2 * np.pi / LENGTH * places()[None]
-    >>> slope, bend = slope_and_bend(np.sin(angle))
-    >>> bool(np.allclose(slope, 2 * np.pi / LENGTH * np.cos(angle)))
-    True
-    """
+    """First and second derivative in space of fields, by Fourier, (point, state) each."""
     waves = 2j * np.pi / LENGTH * np.arange(POINTS // 2 + 1)
     spectrum = np.fft.rfft(x, axis=1)
     return np.fft.irfft(waves * spectrum, POINTS, axis=1), np.fft.irfft(waves**2 * spectrum, POINTS, axis=1)
@@ -68,13 +56,6 @@ def smoothed_in_space(fields: NDArray[np.float64]) -> NDArray[np.float64]:
 
     The noise's power is the median of that of the shortest quarter of the waves; waves up to half as many again as
     stand five times above it, over all samples, are kept.
-
-    fields (sample, state): measured, with noise
-
-    >>> clean = np.exp(-places() ** 2) + np.zeros((50, 1))
-    >>> noisy = clean + 0.01 * np.random.default_rng(0).standard_normal(clean.shape)
-    >>> bool(np.std(smoothed_in_space(noisy) - clean) < 0.005)
-    True
     """
     spectrum = np.fft.rfft(fields, axis=1)
     power = np.mean(np.abs(spectrum) ** 2, axis=0)
@@ -90,14 +71,7 @@ def places() -> NDArray[np.float64]:
 
 
 def burgers(cubic: float, sign: float = -1.0) -> System:
-    """System of Eqs. 3.11 and 3.12.
-
-    cubic: eps: 0.01 in the text, 0.1 in the published code
-    sign: of the exponent of the first pulse exp(sign (x + 2)^2): -1 in the published code, +1 in the text
-
-    >>> burgers(0.1).true(np.ones((1, 256)))[0, 0].round(6)
-    np.float64(-0.1)
-    """
+    """System of Eqs. 3.11 and 3.12."""
     names = tuple(f"u{k:03d}" for k in range(POINTS))
     start = np.exp(sign * (places() + 2) ** 2)
     return System("Burgers' equation", names, BurgersRates(), BurgersRates(cubic=cubic), start, np.eye(POINTS))

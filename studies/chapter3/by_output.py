@@ -14,15 +14,7 @@ from gaitdisc.recording import Samples
 
 @dataclass(frozen=True)
 class ByOutput:
-    """A model for each output; a `gaitdisc.model.Model`.
-
-    >>> from chapter3.polynomials import library
-    >>> from chapter3.sindy import Sindy
-    >>> twice = Sindy(("x",), ("a",), library(1, 1), np.array([[0.0], [2.0]]), 0.1)
-    >>> half = Sindy(("x",), ("b",), library(1, 1), np.array([[0.0], [0.5]]), 0.1)
-    >>> ByOutput((twice, half))(np.array([[4.0]])).tolist()
-    [[8.0, 2.0]]
-    """
+    """A model for each output; a `gaitdisc.model.Model`."""
 
     models: tuple[Model, ...]  # of the same inputs, each with one output, in order
 

@@ -38,19 +38,7 @@ PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
 def cell(
     system: System, method: Method, approach: Approach, conditions: Conditions, settings: MethodSettings | None = None
 ) -> DiscrepancyCell:
-    """Learn one error signal by one method, and test the augmented model.
-
-    settings: of the methods; SINDy's threshold is the published one in the published variant
-    returns: with the refusal in words where nothing can be fitted
-
-    >>> from chapter3.system import system_of
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> from gaitdisc.simulation.parts import Term
-    >>> system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
-    >>> found = cell(system, "sindy", "dynamics", Conditions(duration_s=20.0))
-    >>> found.terms
-    'y: -0.01*x**3'
-    """
+    """Learn one error signal by one method, and test the augmented model."""
     return cell_of(recorded(system, conditions), method, approach, settings)
 
 

@@ -37,35 +37,23 @@ class PartAccuracy:
             object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def rmse(self, model: str, until_s: float | None = None) -> NDArray[np.float64]:
-        """Root mean square error, (channel,) [channel's unit]; NaN if the model diverged before.
-
-        until_s: horizon [s]; the whole part where absent
-        """
+        """Root mean square error, (channel,) [channel's unit]; NaN if the model diverged before."""
         last = len(self.time) if until_s is None else int(np.searchsorted(self.time, until_s + 1e-9, side="right"))
         return np.sqrt(np.mean((getattr(self, model)[:last] - self.truth[:last]) ** 2, axis=0))
 
     def accuracy(self, clipped: bool = False, until_s: float | None = None) -> NDArray[np.float64]:
-        """100 (1 - RMSE augmented / RMSE known), (channel,) [%]; NaN if the augmented model diverged.
-
-        until_s: horizon [s]
-        """
+        """100 (1 - RMSE augmented / RMSE known), (channel,) [%]; NaN if the augmented model diverged."""
         known, augmented = self.rmse("known", until_s), self.rmse("augmented", until_s)
         with np.errstate(all="ignore"):
             found = 100 * (1 - augmented / np.where(known > 0, known, np.nan))
         return np.clip(found, -100, 100) if clipped else found
 
     def change(self, horizons_s: Sequence[float]) -> NDArray[np.float64]:
-        """Median over channels of the percent change in RMSE within each horizon (Fig. 3.9), (horizon,) [%].
-
-        horizons_s: [s]
-        """
+        """Median over channels of the percent change in RMSE within each horizon (Fig. 3.9), (horizon,) [%]."""
         return np.array([np.median(self.accuracy(until_s=each)) for each in horizons_s])
 
     def valid_s(self, model: str, tolerance: float = 0.4) -> float:
-        """Time until the error first exceeds a share of the truth's standard deviation [s].
-
-        tolerance: root mean square over the channels of error over standard deviation
-        """
+        """Time until the error first exceeds a share of the truth's standard deviation [s]."""
         error = (getattr(self, model) - self.truth) / self.truth.std(axis=0)
         beyond = ~(np.sqrt(np.mean(error**2, axis=1)) <= tolerance)
         return float(self.time[int(np.argmax(beyond))] if beyond.any() else self.time[-1])

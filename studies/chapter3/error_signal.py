@@ -24,20 +24,7 @@ FLOW_STEPS = 8  # of Runge-Kutta, between two samples
 
 
 def error_samples(record: Record, approach: Approach, of_time: bool = False) -> Samples:
-    """Samples of an error signal, that any method is fitted to.
-
-    approach: `dynamics`: the deterministic dynamical error at the measured states (Eqs. 3.4, 3.6); `state`: the
-        systematic state-space residual at the known model's states (Eq. 3.5), of the measurement as it is: low-passed,
-        its noise would be taken for signal (only the published variant is)
-
-    >>> from chapter3.record import Conditions, recorded
-    >>> from chapter3.system import system_of
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> from gaitdisc.simulation.parts import Term
-    >>> pushed = system_of(bundled("van_der_pol"), Term("y", "equation", "constant_force", "0.1"))
-    >>> error_samples(recorded(pushed, Conditions(duration_s=5.0)), "dynamics").y[:, 1].mean().round(2)
-    np.float64(0.1)
-    """
+    """Samples of an error signal, that any method is fitted to."""
     x, y, first, last = _dynamics(record) if approach == "dynamics" else _state(record)
     time = record.time[first : first + len(y)][: last - first]
     inputs = (TIME,) if of_time else record.system.states
@@ -107,9 +94,6 @@ def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[
     misses there, over the step, is what was missing in its rates at k. Error: of order dt^2 in the *missing* rate,
     while a central difference has it in the *whole* rate, which for the Lorenz system at 0.01 s is larger than what is
     to be found.
-
-    y (sample, state): states
-    dt_s: between samples [s]
     """
     ahead = y[2:] - flow(known, y[1:-1], dt_s)
     behind = y[:-2] - flow(known, y[1:-1], -dt_s)

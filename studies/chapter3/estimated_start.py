@@ -42,18 +42,7 @@ def estimated_start(
     of the model's own error: of the windows that double in length the longest is taken whose end agrees, within 2.5
     standard errors in every state, with the ends of all shorter ones.
 
-    run: from a first state (state,) and times (sample,) [s] to states (sample, state) and channels (sample, channel)
-    time (sample,) [s]: of the record, even
-    measured (sample, channel): with its noise
-    guess (sample, state): smoothed states, where each fit begins; their distance from `measured` in the channels is
-        the noise
     Source: Goldenshluger and Nemirovski 1997, Math. Methods Stat. 6:135 (windows whose intervals intersect).
-
-    >>> t, rng = np.arange(2000) / 100, np.random.default_rng(0)
-    >>> still = lambda start, time: (np.tile(start, (len(time), 1)), np.tile(start, (len(time), 1)))
-    >>> found = estimated_start(still, t, 3 + 0.1 * rng.standard_normal((2000, 1)), np.full((2000, 1), 3.0))
-    >>> found.samples, bool(abs(found.state[0] - 3) < 0.025)
-    (320, True)
     """
     noise = np.maximum((measured - guess[:, : measured.shape[1]]).std(axis=0), NOISE_FLOOR * measured.std(axis=0))
     best = EstimatedStart(guess[-1], np.full(guess.shape[1], np.nan), 0)

@@ -19,15 +19,9 @@ def fit_exact_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK) -> D
     as eigenvectors. Eigenvalues that are rounding are left out; what grows is held at its size, as in the other
     decompositions here. Amplitudes fit all columns, not the first alone.
 
-    samples: training part only, evenly in time; the inputs are not looked at
     Source: Tu, Rowley, Luchtenburg, Brunton, Kutz 2014, J. Comput. Dyn. 1:391; Eqs. 2.5 to 2.9 of the dissertation.
         Under noise its eigenvalues are biased inwards (Dawson et al. 2016, Exp. Fluids 57:42), which the optimised one
         is not.
-
-    >>> t = np.arange(300) / 100
-    >>> s = Samples(t[:, None], np.sin(9 * t)[:, None], ("t",), ("a",), t, t)
-    >>> bool(abs(fit_exact_dmd(s, delays=20, rank=2)(np.array([[4.0]]))[0, 0] - np.sin(36.0)) < 1e-6)
-    True
     """
     hankel = delayed(samples, delays, rank)
     outputs, dt = len(hankel.size), float(samples.time[1] - samples.time[0])

@@ -10,11 +10,7 @@ from gaitdisc.errors import TrainingError
 
 
 def chapter3_library(name: str) -> ModuleType:
-    """Library of the extra `chapter3`.
-
-    >>> chapter3_library("math").pi > 3
-    True
-    """
+    """Library of the extra `chapter3`."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of optional parts of theirs that are not used here

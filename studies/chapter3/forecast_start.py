@@ -16,17 +16,7 @@ MOST_STATES = 12  # of a fit by differences; a field begins at its last smoothed
 
 
 def forecast_start(record: Record, learned: Model | None, approach: Approach) -> NDArray[np.float64]:
-    """State at the end of the training part, estimated from the measurement under the model that forecasts, (state,).
-
-    >>> from chapter3.record import Conditions, recorded
-    >>> from chapter3.system import system_of
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> record = recorded(system_of(bundled("van_der_pol")), Conditions(0.1, duration_s=20.0))
-    >>> true, last = record.start(forecast=True), record.filtered[-1]
-    >>> error = abs(forecast_start(record, None, "dynamics") - true).max()
-    >>> bool(error < 0.5 * abs(last - true).max())
-    True
-    """
+    """State at the end of the training part, estimated from the measurement under the model that forecasts, (state,)."""
     system, time = record.system, record.time[: record.split]
     guess, measured = _smoothed_states(record), record.measured[: record.split]
     if record.conditions.published or len(system.states) > MOST_STATES:

@@ -58,10 +58,7 @@ class GaussianProcess:
         return np.column_stack(columns) + self.offset
 
     def sd(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Standard deviation of the outputs without their noise, (sample, output) [output's unit].
-
-        x (sample, input): inputs
-        """
+        """Standard deviation of the outputs without their noise, (sample, output) [output's unit]."""
         if not len(self.known):
             raise TrainingError(
                 "the variance of a Gaussian process is kept when it is fitted",
@@ -89,16 +86,9 @@ def fit_gaussian_process(
     all samples are conditioned on: exactly, or, of long records, by the projected process on inducing points that are
     far apart from each other.
 
-    variance: keep what the standard deviation is computed from: the square of the centres for each output. Noise that
-        remembers its past, as that of filtered samples does, counts for as many samples less (`autocorrelation_time`)
     Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 2.26, 4.17, 5.9, 8.26,
         8.27. The published code uses MATLAB's `fitrgp` with one length scale for all inputs; here each input has its
         own.
-
-    >>> t = np.arange(100) / 10
-    >>> s = Samples(t[:, None], np.sin(t)[:, None], ("a",), ("b",), t, t)
-    >>> bool(abs(fit_gaussian_process(s)(np.array([[2.05]]))[0, 0] - np.sin(2.05)) < 1e-4)
-    True
     """
     samples.trainable(LEAST_SAMPLES)
     scale, offset = scale_of(samples.x), samples.y.mean(axis=0)
@@ -126,13 +116,7 @@ def fit_gaussian_process(
 
 
 def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:
-    """Numbers of points that are far apart from each other: each next one is the farthest from those before.
-
-    x (point, input): scaled
-
-    >>> far_apart(np.array([[0.0], [0.1], [3.0], [1.0]]), 3).tolist()
-    [0, 2, 3]
-    """
+    """Numbers of points that are far apart from each other: each next one is the farthest from those before."""
     chosen, distance = [0], np.full(len(x), np.inf)
     while len(chosen) < min(count, len(x)):
         distance = np.minimum(distance, np.sum((x - x[chosen[-1]]) ** 2, axis=1))

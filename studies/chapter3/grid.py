@@ -29,13 +29,6 @@ def grid(
     """Compute the cells; without noise one seed is enough.
 
     Before the first, each method is fitted to a short record, so that no cell's seconds hold importing and compiling.
-
-    >>> from chapter3.system import system_of
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> from gaitdisc.simulation.parts import Term
-    >>> system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
-    >>> len(grid(system, Conditions(duration_s=20.0), (0.0, 0.001), (0, 1), (("sindy",), ("dynamics",))))
-    3
     """
     _warmed(system, conditions, chosen, settings)
     found = []

@@ -45,13 +45,6 @@ def method_answer(
     """What one method finds that the known model lacks.
 
     SINDy answers with terms, the others with a curve: of time (DMD) or of the states (Gaussian process, network).
-
-    >>> from chapter3.record import Conditions
-    >>> from chapter3.system import system_of
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> alike = HiddenEffect("van der Pol", "", system_of(bundled("van_der_pol")))
-    >>> method_answer(alike, recorded(alike.system, Conditions(0.001, duration_s=20.0)), "sindy").hidden
-    ''
     """
     begun, settings = clock.process_time(), settings or MethodSettings()
     made = record.conditions

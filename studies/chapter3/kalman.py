@@ -44,15 +44,7 @@ def linear_kalman(
 ) -> Filtered:  # fmt: skip
     """Kalman filter.
 
-    turn (state, state): one sample on
-    seen (state,): of one measured channel
-    y (sample,): measured
-    start (state,): first state
     Source: Kalman 1960, J. Basic Eng. 82:35.
-
-    >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
-    >>> linear_kalman(np.eye(1), np.ones(1), np.ones(99), np.zeros(1), noise).states[-1].round(2)
-    array([0.99])
     """
     x, p = np.array(start, float), np.diag(noise.first**2)
     states, sd = np.empty((len(y), len(x))), np.empty((len(y), len(x)))
@@ -74,14 +66,7 @@ def unscented_kalman(
 ) -> Filtered:
     """Unscented Kalman filter.
 
-    seen: from states (point, state) to what is measured of them, (point,) or (point, channel)
-    y (sample,) or (sample, channel): measured
-    start (state,): first state
     Source: Julier and Uhlmann 2004, Proc. IEEE 92:401; scaled sigma points with alpha 0.1, beta 2, kappa 0.
-
-    >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
-    >>> unscented_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), noise).states[-1].round(2)
-    array([0.99])
     """
     n = len(start)
     scale = SPREAD**2 * n
@@ -124,16 +109,8 @@ def ensemble_kalman(
 ) -> Filtered:
     """Ensemble Kalman filter, every member moved towards a measurement with noise of its own.
 
-    seen: from states (member, state) to what is measured of them, (member,) or (member, channel)
-    y (sample,) or (sample, channel): measured
-    start (state,): first state; the members are drawn around it
     Source: Evensen 1994, J. Geophys. Res. 99:10143; Burgers, van Leeuwen, Evensen 1998, Mon. Weather Rev. 126:1719.
         The spread is multiplied by 1.02 at each sample (Anderson and Anderson 1999, Mon. Weather Rev. 127:2741).
-
-    >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
-    >>> found = ensemble_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), noise)
-    >>> bool(abs(found.states[-1, 0] - 1) < 0.3)
-    True
     """
     rng = np.random.default_rng(seed)
     crowd = start + noise.first * rng.standard_normal((members, len(start)))

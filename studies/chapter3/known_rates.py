@@ -41,11 +41,7 @@ class KnownRates:
         return self.compiled.rates(np.zeros(len(x)), np.asarray(x, float), np.empty((len(x), 0)))
 
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
-        """States (start, steps + 1, state) from many starts; NaN from where one diverged.
-
-        starts (start, state): first states
-        dt_s: between samples [s]
-        """
+        """States (start, steps + 1, state) from many starts; NaN from where one diverged."""
         drive = Drive.of([np.empty((steps + 1, 0))], 1.0 / dt_s)
         none = np.zeros(len(starts), int)
         rows = Rows(none, none, np.asarray(starts, float))

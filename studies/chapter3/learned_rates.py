@@ -17,10 +17,7 @@ PRODUCTS, KERNELS, LAYERS, TIMES = 0, 1, 2, 3  # what `tables` holds
 def learned_rate(kind, tables, place, x, out):
     """Outputs of a learned term at one state.
 
-    kind: of what `tables` holds: products of powers, Gaussian kernels, layers of a network, or values in time
     tables each ndarray: six matrices, as `learned_term` lays them out
-    x (state,): state
-    out (state,): changed in place
     """
     if kind == 0:
         _products(tables, x, out)
@@ -98,13 +95,7 @@ def _layers(tables, x, out):
 
 @compiled
 def integrate_augmented(program, learned, start, plan, found):
-    """Known rates plus a learned term, by Runge-Kutta of order 4; ends where a state leaves every bound.
-
-    program: code that each stage runs, registers with parameters and constants in their places
-    start (state,): first state
-    plan: samples to go, steps for each, size of a step [s]
-    found (sample, state): changed in place; NaN stays where the run diverged
-    """
+    """Known rates plus a learned term, by Runge-Kutta of order 4; ends where a state leaves every bound."""
     code, registers = program
     kind, tables = learned
     steps, substeps, h = plan

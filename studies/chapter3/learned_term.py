@@ -30,16 +30,7 @@ class LearnedTerm:
 
 
 def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
-    """Lay out a learned model.
-
-    model: `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it, one or by output
-    times (stage,) [s]: of the integrator's half steps, for a model of time
-
-    >>> from chapter3.polynomials import library
-    >>> cubic = Sindy(("x",), ("x",), library(1, 3), np.array([[0.0], [0], [0], [0.01]]), 0.005)
-    >>> learned_term(cubic, np.empty(0)).kind == PRODUCTS
-    True
-    """
+    """Lay out a learned model."""
     if isinstance(model, Sindy):
         return LearnedTerm(PRODUCTS, _six(model.powers, model.coefficients))
     if isinstance(model, GaussianProcess):

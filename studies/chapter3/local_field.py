@@ -47,8 +47,6 @@ def fit_local_field(samples: Samples, method: Method, settings: MethodSettings, 
     """Fit a method to value, slope and bend of fields.
 
     Of all points at all times 3,000 are drawn: neighbours in space and time hold the same.
-
-    samples: fields on a ring of even points, and the error signal at each
     """
     points, error = _points(samples.x), samples.y.reshape(-1, 1)
     some = np.sort(np.random.default_rng(seed).choice(len(points), min(MOST_SAMPLES, len(points)), replace=False))
@@ -65,10 +63,7 @@ def recorded_field(system: System, conditions: Conditions) -> Record:
 
 
 def local_cell(record: Record, method: Method, settings: MethodSettings | None = None) -> DiscrepancyCell:
-    """Learn the missing rate of a field as a function of the field at a point, and test the augmented model.
-
-    returns: with the refusal in words where nothing can be fitted
-    """
+    """Learn the missing rate of a field as a function of the field at a point, and test the augmented model."""
     made, begun = record.conditions, clock.process_time()
     head = (record.system.name, method, "dynamics", "at each point", made.noise, made.seed, record.system.channels)
     try:

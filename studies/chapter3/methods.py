@@ -42,9 +42,6 @@ def fitted(samples: Samples, method: Method, settings: MethodSettings, seed: int
     together, a rate in which nothing is missing decides by its noise how the others are smoothed. The networks are
     trained as the published ones, by Levenberg-Marquardt with Bayesian regularisation: stochastic descent, stopped by
     an inner block of a few seconds, left a bias that the forecast gathers (docs/results.md, chapter 3).
-
-    samples: of states, or of time for the methods of `OF_TIME`; outputs are the error signal, for `wsindy` the known
-        rates
     """
     fits: dict[str, Callable[[], Model]] = {
         "sindy": lambda: fit_sindy(samples, settings.degree, settings.threshold, settings.bags, seed),

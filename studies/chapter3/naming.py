@@ -43,9 +43,5 @@ class Naming:
 
 
 def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
-    """Return all answers, one row each.
-
-    >>> namings_table([Naming("free fall", "", "sindy", 0.0, 0, "nothing", "nothing")])["right"].tolist()
-    [True]
-    """
+    """Return all answers, one row each."""
     return pd.DataFrame([asdict(naming) | {"right": naming.right} for naming in namings])

@@ -53,13 +53,7 @@ def naming_table(namings: Sequence[Naming], name: str) -> Table:
 
 
 def seeds_of(found: pd.DataFrame) -> tuple[str, float]:
-    """Most frequent answer of the seeds, `right` where it is, and its share.
-
-    found: rows of one case, tool and noise
-
-    >>> seeds_of(pd.DataFrame({"right": [True, False, True], "answer": ["named", "curve", "named"]}))
-    ('right', 0.6666666666666666)
-    """
+    """Most frequent answer of the seeds, `right` where it is, and its share."""
     kinds = found["answer"].where(~found["right"], "right")
     counts = kinds.value_counts(sort=False)
     return str(counts.idxmax()), float(counts.max() / len(kinds))

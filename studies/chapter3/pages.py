@@ -63,10 +63,7 @@ MOST_CHANNELS = 4  # that are listed one by one
 
 @in_style
 def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, channel: int = 0) -> Figure:
-    """Truth minus known and truth minus augmented over the record's time, a row a method (Figs. 3.3, 3.4, 3.7, 3.8).
-
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """Truth minus known and truth minus augmented over the record's time, a row a method (Figs. 3.3, 3.4, 3.7, 3.8)."""
     cells = [cell for cell in cells if cell.parts]
     drawn, grid = panels(len(cells), len(PARTS), 0.95, Room(across=0.4, down=0.5))
     numbers = []
@@ -108,12 +105,7 @@ def _unit(cell: DiscrepancyCell, channel: int) -> str:
 
 @in_style
 def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str, source: str) -> Figure:
-    """Phase portraits and time evolution of true and known system, and what is missing in rates and states.
-
-    cell: any, with every state measured; its training part is drawn
-    missing (sample, channel): rates that the known system lacks, along the truth
-    name, source: of the files; the figure of the dissertation that it stands for (Figs. 3.2, 3.6)
-    """
+    """Phase portraits and time evolution of true and known system, and what is missing in rates and states."""
     found, channels = cell.parts[PARTS[0]], cell.channels
     said = [f"{channel} [{_unit(cell, k)}]" for k, channel in enumerate(channels)]
     drawn, grid = panels(2, 3, 1.5, Room(across=0.6, down=0.6))
@@ -157,10 +149,7 @@ def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str
 
 @in_style
 def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
-    """Clipped accuracy against noise, a row an approach (Figs. 3.5, 3.10, 3.13).
-
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """Clipped accuracy against noise, a row an approach (Figs. 3.5, 3.10, 3.13)."""
     table = cells_table([cell for cell in cells if cell.parts])
     approaches, noises = list(dict.fromkeys(table["approach"])), sorted(table["noise"].unique())
     over = table.groupby(["approach", "part", "method", "noise", "seed"], sort=False)["clipped"].median()
@@ -200,10 +189,7 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
 
 @in_style
 def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
-    """Percent change in RMSE against the forecast horizon, a panel an approach (Fig. 3.9).
-
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """Percent change in RMSE against the forecast horizon, a panel an approach (Fig. 3.9)."""
     cells = [cell for cell in cells if cell.parts]
     approaches = list(dict.fromkeys(cell.approach for cell in cells))
     drawn, grid = panels(1, len(approaches), 1.8, Room(across=0.6))
@@ -240,10 +226,7 @@ def _horizons(last_s: float) -> list[float]:
 
 @in_style
 def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
-    """Seconds to fit and to run, by method and approach (Fig. 3.11).
-
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """Seconds to fit and to run, by method and approach (Fig. 3.11)."""
     rows = pd.DataFrame(
         [{"approach": c.approach, "method": c.method, "fit_s": c.fit_s, "run_s": c.run_s} for c in cells if c.parts]
     )
@@ -272,10 +255,7 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
 
 @in_style
 def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source: str) -> Figure:
-    """Error of known and augmented model over space and the record's time (Fig. 3.12).
-
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """Error of known and augmented model over space and the record's time (Fig. 3.12)."""
     drawn, grid = panels(1, 2, 2.0, Room(right=1.0, top=0.3, across=0.6))
     some = np.unique(np.linspace(0, len(found.time) - 1, 200).astype(int))
     time = found.begins_s + found.time[some]
@@ -362,15 +342,7 @@ def _cell(parts: list[PartAccuracy], seeds: int) -> str:
 
 
 def spread_words(values: NDArray[np.float64]) -> str:
-    """Median, and least and greatest where there are several.
-
-    values (seed,): [%]
-
-    >>> spread_words(np.array([99.5])), spread_words(np.array([-3.0, 4.0, 1.0]))
-    ('99.5', '1.0 [-3.0, 4.0]')
-    >>> spread_words(np.array([98.8, -6628419.0, 99.2]))
-    '98.8 [below -1000, 99.2]'
-    """
+    """Median, and least and greatest where there are several."""
     if not np.isfinite(values).all():
         return "nothing to mend"
     middle = _percent(float(np.median(values)))

@@ -7,23 +7,13 @@ from numpy.typing import NDArray
 
 
 def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
-    """Return a term of the library as a simulation file writes it.
-
-    powers (input,): of the term
-
-    >>> written(("x", "y"), np.array([2, 1]))
-    'x**2*y'
-    """
+    """Return a term of the library as a simulation file writes it."""
     parts = [name if power == 1 else f"{name}**{power}" for name, power in zip(inputs, powers, strict=True) if power]
     return "*".join(parts) or "1"
 
 
 def library(inputs: int, degree: int) -> NDArray[np.int64]:
-    """Powers of every product of the inputs up to a degree, (term, input), the constant first.
-
-    >>> library(2, 2).tolist()
-    [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]]
-    """
+    """Powers of every product of the inputs up to a degree, (term, input), the constant first."""
     from itertools import combinations_with_replacement
 
     rows = [
@@ -35,11 +25,7 @@ def library(inputs: int, degree: int) -> NDArray[np.int64]:
 
 
 def products(x: NDArray[np.float64], powers: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Columns of the library, (sample, term).
-
-    x (sample, input): inputs
-    powers (term, input): from `library`
-    """
+    """Columns of the library, (sample, term)."""
     columns = np.ones((len(x), len(powers)))
     for k, row in enumerate(powers):
         for name, power in enumerate(row):

@@ -56,10 +56,7 @@ class Record:
             object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def start(self, forecast: bool) -> NDArray[np.float64]:
-        """State that the known and the augmented model begin from, (state,).
-
-        forecast: at the end of the training part instead of its beginning
-        """
+        """State that the known and the augmented model begin from, (state,)."""
         if not forecast and self.system.assumed is not None:
             return self.system.assumed
         sample = self.split - 1 if forecast else 0
@@ -94,13 +91,7 @@ class Record:
 
 
 def recorded(system: System, conditions: Conditions) -> Record:
-    """Run the true system and measure it.
-
-    >>> from chapter3.system import system_of
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> recorded(system_of(bundled("lorenz")), Conditions(duration_s=5.0)).split
-    301
-    """
+    """Run the true system and measure it."""
     steps = round(conditions.duration_s / conditions.dt_s)
     split = round(conditions.train_share * steps) + 1
     if split < LEAST_SAMPLES:

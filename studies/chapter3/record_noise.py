@@ -18,16 +18,7 @@ MEMORY_S = 0.1  # after which coloured noise has forgotten all but 1/e
 def drawn_noise(
     kind: NoiseKind, clean: NDArray[np.float64], size: NDArray[np.float64], dt_s: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Noise of one standard deviation whatever its kind, (sample, channel).
-
-    clean (sample, channel): what is measured; multiplicative noise grows with its size
-    size (channel,) [channel's unit]: standard deviation; of multiplicative noise, root mean square over the record
-
-    >>> rng = np.random.default_rng(0)
-    >>> noise = drawn_noise("coloured", np.zeros((100_000, 1)), np.ones(1), 0.01, rng)
-    >>> float(noise.std().round(1)), float(np.corrcoef(noise[:-10, 0], noise[10:, 0])[0, 1].round(1))
-    (1.0, 0.4)
-    """
+    """Noise of one standard deviation whatever its kind, (sample, channel)."""
     if kind == "student_t":
         return size / np.sqrt(FREEDOM / (FREEDOM - 2)) * rng.standard_t(FREEDOM, clean.shape)
     noise = size * rng.standard_normal(clean.shape)

@@ -57,14 +57,7 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
     of the samples (contiguous, 0.3 s apart) is within 2 % of the least, or below 1e-4 of the outputs'
     mean square; an output smaller than a twentieth of the largest one is weighed as a twentieth of it.
 
-    bags: fits on samples drawn with replacement, whose median is taken; 0 for one plain fit
     Source: Brunton, Proctor, Kutz 2016, PNAS 113:3932; Fasel et al. 2022, Proc. R. Soc. A 478:20210904 for the bags.
-
-    >>> t = np.arange(200) / 20
-    >>> x = np.column_stack([np.sin(t), np.cos(np.sqrt(2) * t)])
-    >>> s = Samples(x, -0.01 * x[:, :1] ** 3, ("x", "y"), ("v",), t, t)
-    >>> fit_sindy(s, threshold=0.005).expression("v")
-    '-0.01*x**3'
     """
     terms = math.comb(len(samples.inputs) + degree, degree)
     if len(samples) < terms:

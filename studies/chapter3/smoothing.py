@@ -13,16 +13,7 @@ EDGE_PERIODS = 1.8  # of the cut-off, over which the filter's ends are not to be
 
 
 def smoothed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float | None = None) -> NDArray[np.float64]:
-    """Low-passed channels, (sample, channel).
-
-    values (sample, channel): without gaps
-    cutoff_hz: -3 dB frequency of one of the two passes; where absent, `noise_cutoff_hz` of each channel
-
-    >>> t = np.arange(500) / 100
-    >>> noisy = np.sin(t) + 0.1 * np.random.default_rng(0).standard_normal(500)
-    >>> bool(np.std(smoothed(noisy[:, None], 100.0)[:, 0] - np.sin(t)) < 0.03)
-    True
-    """
+    """Low-passed channels, (sample, channel)."""
     columns = []
     for column in np.asarray(values, float).T:
         cutoff = noise_cutoff_hz(column, rate_hz) if cutoff_hz is None else cutoff_hz
@@ -36,15 +27,9 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
     The noise's power density is the median of that above 0.75 of half the rate, taken as white; signal stands out where
     the density, as the mean of five neighbours, is above five times that.
 
-    values (sample,): without gaps
     Source: Welch 1967, IEEE Trans. Audio Electroacoust. 15:70, with segments of a quarter of the record. It stands for
         the published code's 4 Hz, which suits neither system: it costs the Lorenz system its turns and leaves the Van
         der Pol oscillator most of the noise.
-
-    >>> t = np.arange(3000) / 100
-    >>> noisy = np.sin(2 * np.pi * 2 * t) + 0.01 * np.random.default_rng(0).standard_normal(3000)
-    >>> bool(2.0 < noise_cutoff_hz(noisy, 100.0) < 6.0)
-    True
     """
     length = max(32, len(values) // 4)
     frequency, density = welch(values, rate_hz, nperseg=min(length, len(values)), detrend="linear")
@@ -56,11 +41,7 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
 
 
 def edge_samples(rate_hz: float, cutoff_hz: float = 4.0) -> int:
-    """Samples at each end that the filter's start and end still shape.
-
-    >>> edge_samples(100.0)
-    45
-    """
+    """Samples at each end that the filter's start and end still shape."""
     return int(np.ceil(EDGE_PERIODS / cutoff_hz * rate_hz))
 
 

@@ -24,19 +24,7 @@ class StochasticRates:
         return self.rates(x)
 
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
-        """States (start, steps + 1, state), all starts under the same pushes.
-
-        starts (start, state): first states
-        dt_s: between samples [s]; a push stands at the end of each
-
-        >>> from chapter3.known_rates import KnownRates
-        >>> from gaitdisc.simulation.parts import State
-        >>> from gaitdisc.simulation.simulation import Simulation
-        >>> still = KnownRates(Simulation("still", (State("x"),), equations=(("x", "0*x"),)))
-        >>> walk = StochasticRates(still, (2.0,)).run(np.zeros((1, 1)), 0.01, 4000)[0, :, 0]
-        >>> bool(abs(np.diff(walk).std() / (2.0 * 0.1) - 1) < 0.05)
-        True
-        """
+        """States (start, steps + 1, state), all starts under the same pushes."""
         sizes = np.asarray(self.strength) * np.sqrt(dt_s)
         pushes = sizes * np.random.default_rng(self.seed).standard_normal((steps, len(sizes)))
         found = np.empty((len(starts), steps + 1, len(sizes)))

@@ -23,11 +23,7 @@ class Rates(Protocol):
         ...
 
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
-        """States (start, steps + 1, state) from many starts; NaN from where one diverged.
-
-        starts (start, state): first states
-        dt_s: between samples [s]
-        """
+        """States (start, steps + 1, state) from many starts; NaN from where one diverged."""
         ...
 
 
@@ -58,14 +54,7 @@ class System:
 def system_of(
     known: Simulation, hidden: Term | None = None, start: tuple[float, ...] = (), gain: tuple[float, ...] = ()
 ) -> System:
-    """System of a simulation file and the effect that is hidden from it.
-
-    gain: of the measured channels, which are the first states; every state and 1 where empty
-
-    >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3")).states
-    ('x', 'y')
-    """
+    """System of a simulation file and the effect that is hidden from it."""
     states = tuple(state.name for state in known.states)
     true = known.with_effect(hidden) if hidden else known
     first = start or tuple(float(state.initial or 0.0) for state in known.states)

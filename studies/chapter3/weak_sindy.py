@@ -22,17 +22,8 @@ def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S
     test function that vanishes at its window's ends and integrated, the rate becomes the input itself against the test
     function's slope (integration by parts), so that noise is averaged where a derivative would multiply it.
 
-    samples: evenly in time; an input and an output for each state
-    window_s: length of a test function (1 - s^2)^4 over -1 < s < 1 [s]; windows follow each other by an eighth
     Source: Messenger and Bortz 2021, Multiscale Model. Simul. 19:1474; the threshold is chosen as in `fit_sindy`, by
         the last 15 % of the windows.
-
-    >>> t = np.arange(1000) / 100
-    >>> x = np.column_stack([np.sin(t), np.cos(t)])
-    >>> known = np.column_stack([x[:, 1], -0.5 * x[:, 0]])
-    >>> s = Samples(x, known, ("x", "v"), ("x", "v"), t, np.full(1000, np.nan))
-    >>> fit_weak_sindy(s, 1).terms("v").keys()
-    dict_keys(['x'])
     """
     powers = library(len(samples.inputs), degree)
     tests, slopes = _test_functions(samples.time, window_s, len(powers))

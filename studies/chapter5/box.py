@@ -15,12 +15,7 @@ LEAST_NODES = 8
 
 @dataclass(frozen=True)
 class Box:
-    """A cube with so many nodes along each side, in the half of all wavenumbers that a real field needs.
-
-    >>> box = Box(8)
-    >>> box.k.shape, box.largest
-    ((3, 8, 8, 5), 2)
-    """
+    """A cube with so many nodes along each side, in the half of all wavenumbers that a real field needs."""
 
     nodes: int  # along each side; even, at least 8
 
@@ -68,34 +63,22 @@ class Box:
         return weight
 
     def to_modes(self, velocity: NDArray[np.floating]) -> NDArray[np.complexfloating]:
-        """Fourier coefficients of a velocity, (3, x, y, z), as amplitudes: not times the number of nodes.
-
-        velocity (3, x, y, z): at the nodes
-        """
+        """Fourier coefficients of a velocity, (3, x, y, z), as amplitudes: not times the number of nodes."""
         from scipy.fft import rfftn
 
         return np.asarray(rfftn(velocity, axes=(1, 2, 3), norm="forward"))
 
     def to_nodes(self, modes: NDArray[np.complexfloating]) -> NDArray[np.floating]:
-        """Values at the nodes, (3, x, y, z).
-
-        modes (3, x, y, z): from `to_modes`
-        """
+        """Values at the nodes, (3, x, y, z)."""
         from scipy.fft import irfftn
 
         return np.asarray(irfftn(modes, s=(self.nodes,) * 3, axes=(1, 2, 3), norm="forward"))
 
     def projected(self, modes: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
-        """Take away the part that is a gradient, and the modes that are not computed: what is left has no divergence.
-
-        modes (3, x, y, z): of any vector field
-        """
+        """Take away the part that is a gradient, and the modes that are not computed: what is left has no divergence."""
         along = (self.k * modes).sum(axis=0) * self.inverse
         return np.where(self.kept, modes - self.k * along, 0)
 
     def energy(self, modes: NDArray[np.complexfloating]) -> NDArray[np.float32]:
-        """Kinetic energy per mass in every mode, (x, y, z), such that the sum is the mean over the box.
-
-        modes (3, x, y, z): of a velocity
-        """
+        """Kinetic energy per mass in every mode, (x, y, z), such that the sum is the mean over the box."""
         return 0.5 * self.weight * (modes.real**2 + modes.imag**2).sum(axis=0)

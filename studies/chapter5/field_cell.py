@@ -68,24 +68,14 @@ def field_cells_table(cells: Sequence[FieldCell]) -> pd.DataFrame:
 
 
 def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
-    """Count errors by size.
-
-    errors , any shape [unit]: reconstructed minus measured
-    sd [unit]: of the field; the bins reach four of it to each side
-
-    >>> error_counts(np.array([0.0, 99.0]), 1.0).counts[[60, 120]].tolist()
-    [1, 1]
-    """
+    """Count errors by size."""
     edges = np.linspace(-REACH_SD * sd, REACH_SD * sd, BINS + 1)
     place = np.clip(np.searchsorted(edges, errors.ravel(), side="right") - 1, 0, BINS - 1)
     return ErrorCounts(edges, np.bincount(place, minlength=BINS))
 
 
 def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Path) -> None:
-    """Keep cells, so that a study that was stopped goes on.
-
-    path: of a JSON file; written whole or not at all
-    """
+    """Keep cells, so that a study that was stopped goes on."""
     rows = [
         {**vars(cell), "errors": {"edges": cell.errors.edges.tolist(), "counts": cell.errors.counts.tolist()}}
         for cell in cells

@@ -34,11 +34,7 @@ ROUTE_LOOKS = (
 
 @in_style
 def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Figure:
-    """How often errors of each size are made, a panel a split, a line a route.
-
-    cells: of one model and quantity; several runs of a route and split are added up
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """How often errors of each size are made, a panel a split, a line a route."""
     splits = list(dict.fromkeys(cell.split for cell in cells))
     routes = list(dict.fromkeys(cell.route for cell in cells))
     drawn, (row,) = panels(1, len(splits), 2.1, Room(top=0.3 + 0.17 * (-(-len(routes) // 3)), across=0.7))
@@ -84,11 +80,7 @@ def _histogram(axes: Axes, some: Sequence[FieldCell], look: Look) -> pd.DataFram
 
 @in_style
 def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: dict[str, float]) -> Figure:
-    """Relative error of many models, a panel a split, a box a kind of sensor, every model a point.
-
-    name, source: of the files; the figure of the dissertation that it stands for
-    ceilings: split -> relative error of the test part projected onto the training part's modes
-    """
+    """Relative error of many models, a panel a split, a box a kind of sensor, every model a point."""
     splits = list(dict.fromkeys(cell.split for cell in cells))
     routes = list(dict.fromkeys(cell.route for cell in cells))
     drawn, (row,) = panels(1, len(splits), 2.2, Room(across=0.6))
@@ -115,11 +107,7 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
 
 @in_style
 def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
-    """Error against the nodes of the recurrent layer, beside the energy that as many modes leave.
-
-    found: from `chapter5.latent_size.latent_sizes`, of one quantity, of any splits
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """Error against the nodes of the recurrent layer, beside the energy that as many modes leave."""
     drawn, ((left, right),) = panels(1, 2, 2.1, Room(across=0.8, top=0.2))
     splits = list(dict.fromkeys(found["split"]))
     for split, look in zip(splits, (RECONSTRUCTED["shred"], RECONSTRUCTED["delay ridge"]), strict=False):
@@ -143,11 +131,7 @@ def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
 
 
 def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[str, str], float] | None = None) -> Table:
-    """Relative L2 error of every route, model and split; the least of each row and split is marked by a star.
-
-    printed mapping of (str, str) to float: (route, split) -> what the dissertation prints for its SHRED on its field;
-        shown in a column of its own
-    """
+    """Relative L2 error of every route, model and split; the least of each row and split is marked by a star."""
     splits = list(dict.fromkeys(cell.split for cell in cells))
     models = list(dict.fromkeys(cell.model for cell in cells if not _is_bound(cell.model)))
     routes = list(dict.fromkeys(cell.route for cell in cells))

@@ -25,12 +25,7 @@ SHELL = re.compile(r"e_(\d+)")
 
 @in_style
 def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
-    """One quantity of a field on its grid, one panel a snapshot, all on one scale of colour.
-
-    field: whose grid, quantity and unit are shown: its first quantity, and its middle plane where it has three axes
-    snapshots each (point,): title -> values [the quantity's unit]
-    name, source: of the files; the figure of the dissertation that it stands for
-    """
+    """One quantity of a field on its grid, one panel a snapshot, all on one scale of colour."""
     planes = {title: _plane(field.on_grid(values)) for title, values in snapshots.items()}
     middle, reach = _span(np.concatenate([plane.ravel() for plane in planes.values()]))
     columns = 2
@@ -64,10 +59,7 @@ def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], nam
 
 @in_style
 def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
-    """Where sensors go, on the grid of a field with two axes.
-
-    routes each (time, axis): name -> where the sensor is; one that stays is drawn as a point
-    """
+    """Where sensors go, on the grid of a field with two axes."""
     vertical, across = field.axes[-2:]
     height = float(np.clip(7.0 * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 1.2, 3.8))
     drawn, ((axes,),) = panels(1, 1, height, Room(top=0.5))
@@ -109,10 +101,7 @@ def _span(values: NDArray[np.float64]) -> tuple[float, float]:
 
 @in_style
 def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
-    """Mean spectrum beside the slope of -5/3, and dissipation beside the power that is put in.
-
-    numbers: from `chapter5.isotropic.record_turbulence`
-    """
+    """Mean spectrum beside the slope of -5/3, and dissipation beside the power that is put in."""
     drawn, ((left, right),) = panels(1, 2, 2.2, Room(across=0.8, top=0.3))
     shells = [column for column in numbers.columns if SHELL.fullmatch(column)]
     k = np.array([int(column[2:]) for column in shells], float)

@@ -16,22 +16,13 @@ from .routes import Route
 
 
 def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[str, ...]:
-    """Names of what one window holds for each of its times.
-
-    positions: whether each sensor gives its place, beside what it reads
-    """
+    """Names of what one window holds for each of its times."""
     given = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
     return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in given)
 
 
 def field_windows(field: Field, route: Route, lags: Lags, positions: bool = False) -> Samples:
-    """Every window along a field's whole time, still without outputs: those are modes of the part that is fitted.
-
-    lags: readings of a window, snapshots from one to the next, and from the last to the one that is reconstructed
-    positions: whether each sensor's place stands beside its reading: what a path never seen in training needs
-    returns: x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is reconstructed, counted
-        from 0: that of the last reading, or `lags.ahead` later
-    """
+    """Every window along a field's whole time, still without outputs: those are modes of the part that is fitted."""
     if len(field) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead} ahead" if lags.ahead else ""
         raise SamplingError(
@@ -61,8 +52,5 @@ def snapshots_of(windows: Samples) -> NDArray[np.intp]:
 
 
 def with_coefficients(windows: Samples, coefficients: NDArray[np.float64], names: Sequence[str]) -> Samples:
-    """Windows with the modes' coefficients of their snapshots as outputs.
-
-    coefficients (snapshot, mode): of all snapshots of the field
-    """
+    """Windows with the modes' coefficients of their snapshots as outputs."""
     return replace(windows, y=coefficients[snapshots_of(windows)], outputs=tuple(names))

@@ -60,12 +60,7 @@ class FlowSettings:
 
 
 def first_velocity(box: Box, energy: float, seed: int) -> NDArray[np.complexfloating]:
-    """Random velocity without divergence, most of it in the largest scales.
-
-    >>> box = Box(16)
-    >>> float(box.energy(first_velocity(box, 0.5, 0)).sum().round(4))
-    0.5
-    """
+    """Random velocity without divergence, most of it in the largest scales."""
     noise = np.random.default_rng(seed).normal(size=(3, *(box.nodes,) * 3)).astype(np.float32)
     u = box.projected(box.to_modes(noise) * (box.squared * np.exp(-box.squared / 4)))
     return u * np.float32(np.sqrt(energy / float(box.energy(u).sum(dtype=float))))
@@ -74,13 +69,7 @@ def first_velocity(box: Box, energy: float, seed: int) -> NDArray[np.complexfloa
 def record_turbulence(
     settings: FlowSettings, folder: Path, progress: Callable[[float], None] | None = None
 ) -> tuple[Field, pd.DataFrame]:
-    """Compute a flow, or go on with one that was interrupted, and give what is kept of it.
-
-    folder: where snapshots and state lie. What is there of the same settings is not computed again
-    returns field: `u`, the velocity along x, at the nodes of the cut; time in units of the box. Without unit
-    returns numbers: snapshot, energy, dissipation, re_lambda, kmax_eta, integral_length, turnover, and the spectrum as
-        e_1, e_2, ..
-    """
+    """Compute a flow, or go on with one that was interrupted, and give what is kept of it."""
     folder.mkdir(parents=True, exist_ok=True)
     box = Box(settings.nodes)
     stepper = Stepper(box, settings.viscosity, settings.power, settings.dt)

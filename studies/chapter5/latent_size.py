@@ -23,9 +23,6 @@ def latent_sizes(
 ) -> pd.DataFrame:
     """Error of SHRED with recurrent layers of several sizes, beside what as many singular values leave.
 
-    epochs: passes over the training part; more where 1,000 steps need more
-    returns: nodes, split, quantity, relative_l2, r2, energy_left: share of the training part's energy beyond so many
-        modes
     Source: Ebers 2023, section 5.2 and Fig. 5.1: both elbows are seen near 5, and a relation is conjectured.
     """
     from gaitdisc.networks.shred import Shred

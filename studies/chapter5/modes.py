@@ -42,18 +42,12 @@ class Modes:
         return tuple(f"mode {k + 1}" for k in range(self.count))
 
     def coefficients(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Coefficients of snapshots, (snapshot, mode).
-
-        values (snapshot, point, quantity) [each quantity's unit]: of the field
-        """
+        """Coefficients of snapshots, (snapshot, mode)."""
         scaled = (values - self.mean) / self.spread
         return (scaled.reshape(len(values), -1) @ self.basis).astype(float)
 
     def fields(self, coefficients: NDArray[np.floating]) -> NDArray[np.float32]:
-        """Snapshots from coefficients, (snapshot, point, quantity) [each quantity's unit].
-
-        coefficients (snapshot, mode): as `coefficients` gives them
-        """
+        """Snapshots from coefficients, (snapshot, point, quantity) [each quantity's unit]."""
         scaled = coefficients.astype(np.float32) @ self.basis.T
         return scaled.reshape(len(coefficients), *self.mean.shape) * self.spread + self.mean
 
@@ -61,15 +55,7 @@ class Modes:
 def fit_modes(values: NDArray[np.floating], energy: float = ENERGY, most: int | None = None) -> Modes:
     """Proper orthogonal modes of training snapshots, by their products with each other (method of snapshots).
 
-    values (snapshot, point, quantity) [each quantity's unit]: training snapshots only
-    energy: share of the energy that is kept, above 0, at most 1
     Source: Sirovich 1987, Turbulence and the dynamics of coherent structures (method of snapshots).
-
-    >>> t = np.linspace(0, 6.28, 50)[:, None]
-    >>> wave = (np.sin(t) * np.array([1.0, 2.0, 0.0]) + np.cos(t) * np.array([0.0, 0.0, 1.0]))[:, :, None]
-    >>> modes = fit_modes(wave, 1.0)
-    >>> modes.count, bool(np.allclose(modes.fields(modes.coefficients(wave)), wave, atol=1e-6))
-    (2, True)
     """
     if len(values) < 2 or not 0 < energy <= 1:
         raise TrainingError(
@@ -102,13 +88,7 @@ def evening_rotation(variances: NDArray[np.float64]) -> NDArray[np.float64]:
     Each plane rotation sets one diagonal element of the covariance to the mean; there is one that does, as long as one
     element lies above the mean and one below.
 
-    variances (mode,): of the coefficients
-    returns (mode, mode): orthogonal; its columns are the new coefficients' weights
     Source: Horn 1954, Doubly stochastic matrices and the diagonal of a rotation matrix.
-
-    >>> turn = evening_rotation(np.array([5.0, 3.0, 1.0]))
-    >>> np.diag(turn.T @ np.diag([5.0, 3.0, 1.0]) @ turn).round(6)
-    array([3., 3., 3.])
     """
     count, mean = len(variances), float(np.mean(variances))
     covariance, turn, left = np.diag(variances.astype(float)), np.eye(count), list(range(count))

@@ -16,11 +16,7 @@ from gaitdisc.regular_file import check_regular
 
 
 def read_sst_pacific(path: Path) -> Field:
-    """Read 399 months of sea-surface temperature anomalies of the tropical Pacific, 2 degrees apart.
-
-    path: `.npz` with `sst` (month, cell), `landmask` (1 = land), `lon`, `lat`
-    returns: `sst` [degC], an anomaly; land is left out; time in months since January 1970
-    """
+    """Read 399 months of sea-surface temperature anomalies of the tropical Pacific, 2 degrees apart."""
     held = _arrays(path, ("sst", "landmask", "lon", "lat"))
     lat, lon = np.unique(held["lat"]), np.unique(held["lon"])
     sea = held["landmask"] == 0
@@ -38,11 +34,7 @@ def read_sst_pacific(path: Path) -> Field:
 
 
 def read_navy_winds(path: Path) -> Field:
-    """Read 132 months of winds of the whole globe, 2.5 degrees apart.
-
-    path: `.npz` with `u` (eastward) and `v` (northward), (month, lat, lon), `lon`, `lat`
-    returns: `u` and `v` [m/s]; time in months since January 1982
-    """
+    """Read 132 months of winds of the whole globe, 2.5 degrees apart."""
     held = _arrays(path, ("u", "v", "lon", "lat"))
     lat, lon = (np.asarray(held[name], float) for name in ("lat", "lon"))
     if held["u"].shape[1:] != (len(lat), len(lon)) or held["v"].shape != held["u"].shape:

@@ -35,10 +35,7 @@ class Targets:
     departures: bool  # whether modes and readings are of departures from the season
 
     def fields(self, coefficients: NDArray[np.float64], windows: Samples) -> NDArray[np.float32]:
-        """Field at each window, (window, point, quantity) [each quantity's unit].
-
-        coefficients (window, mode): reconstructed
-        """
+        """Field at each window, (window, point, quantity) [each quantity's unit]."""
         found = self.modes.fields(coefficients)
         return found + self.season.at(snapshots_of(windows)) if self.departures else found
 
@@ -70,10 +67,7 @@ def targets_of(field: Field, task: FieldTask) -> Targets:
 
 
 def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None = None) -> Prepared:
-    """Cut windows, part them, and set what they are to reconstruct beside them.
-
-    targets: from `targets_of` with the same field and task; computed without
-    """
+    """Cut windows, part them, and set what they are to reconstruct beside them."""
     targets = targets or targets_of(field, task)
     parts = _parts(targets.read, route, task)
     names = reading_names(field, route, task.positions)
@@ -95,12 +89,7 @@ def reconstruct_field(
     floors: bool = True,
     targets: Targets | None = None,
 ) -> list[FieldCell]:
-    """Fit every kind of model and test it on the test part, in the field's own unit at every point.
-
-    floors: whether what needs no sensor is tested too (the training part's mean, its mean season), and the ceiling:
-        the test part projected onto the training part's modes, which no model of those modes can beat
-    targets: from `targets_of` with the same field and task; computed without
-    """
+    """Fit every kind of model and test it on the test part, in the field's own unit at every point."""
     ready = prepare(field, route, task, targets)
     cells = []
     for model, found in (_floors(ready, task) if floors else {}).items():
@@ -115,11 +104,7 @@ def reconstruct_field(
 def field_cells(
     field: Field, ready: Prepared, label: Label, reconstructed: NDArray[np.float32], seconds: float = 0.0
 ) -> list[FieldCell]:
-    """Compare what was reconstructed with the test part, a cell for each quantity.
-
-    reconstructed (window, point, quantity) [each quantity's unit]: the field at each window of the test part
-    seconds [s]: processor time of the fit
-    """
+    """Compare what was reconstructed with the test part, a cell for each quantity."""
     rows, cells = snapshots_of(ready.test), []
     for k, quantity in enumerate(field.quantities):
         y = field.values[rows, :, k].astype(float)

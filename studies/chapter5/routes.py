@@ -18,11 +18,7 @@ REACH = 0.5 + 1e-6  # of a step along each axis: a place belongs to the node who
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """Points of a field that sensors are at; it stands for the matrices C_t, whose rows are rows of the identity.
-
-    >>> Route("buoy", np.array([[3], [3]])).sensors
-    1
-    """
+    """Points of a field that sensors are at; it stands for the matrices C_t, whose rows are rows of the identity."""
 
     name: str
     points: NDArray[np.intp]  # (time, sensor), number of the point that each sensor reads at each snapshot
@@ -65,14 +61,7 @@ def fixed_at_random(field: Field, sensors: int, seed: int) -> Route:
 
 
 def along(field: Field, places: ArrayLike, name: str) -> Route:
-    """One sensor carried along a given path; at each snapshot it reads the node whose cell it is in.
-
-    >>> from gaitdisc.recording import Axis
-    >>> axes = (Axis("x", np.arange(3.0)),)
-    >>> line = Field(np.arange(2.0), np.zeros((2, 3, 1)), axes, np.ones(3, bool), ("h",), ("m",))
-    >>> along(line, [[0.4], [1.6]], "buoy").points.ravel().tolist()
-    [0, 2]
-    """
+    """One sensor carried along a given path; at each snapshot it reads the node whose cell it is in."""
     path = np.asarray(places, float)
     if path.shape != (len(field), len(field.axes)):
         raise ChannelError(
@@ -99,10 +88,7 @@ def along(field: Field, places: ArrayLike, name: str) -> Route:
 
 
 def circuit(field: Field, stops: ArrayLike, period: int, name: str) -> Route:
-    """One sensor that goes round a closed path at an even pace, again and again.
-
-    stops array_like (stop, axis) [each axis's unit]: corners of the path; from the last it returns to the first
-    """
+    """One sensor that goes round a closed path at an even pace, again and again."""
     corners = np.asarray(stops, float)
     corners = np.vstack([corners, corners[:1]])
     lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
@@ -117,7 +103,6 @@ def random_walk(field: Field, seed: int, start: int | None = None, every: int = 
     The dissertation starts each walk at the centre, and does not say what happens at the border: here a step that
     would leave the field is taken the other way, and not at all where that leaves it too.
 
-    start: point where it begins; the one nearest to the centre of the grid without
     Source: Ebers 2023, section 5.3.1.
     """
     rng = np.random.default_rng(seed)

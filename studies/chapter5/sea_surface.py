@@ -25,8 +25,6 @@ def read_oisst(path: Path, mask: Path | None = None) -> Field:
     NOAA's file holds a number on land too, filled in from the sea around: `lsmask.nc` marks what is sea. A cell that
     misses a value in any week is left out as well.
 
-    mask: netCDF with `mask` (lat, lon), 1 at sea: `lsmask.nc`. Without it every cell counts as sea
-    returns: `sst` [degC]; time in weeks since the first
     Source: Reynolds et al. 2002, An improved in situ and satellite SST analysis for climate.
     """
     found = read_variables(path, ("sst", "lat", "lon", "time"))
@@ -54,7 +52,6 @@ def read_sst_mat(path: Path) -> Field:
     The file has no coordinates and no time. They are taken as in NOAA's weekly files, from which it was made: rows
     from 89.5 degrees north to 89.5 south, columns from 0.5 to 359.5 degrees east. Land is 0 in every week.
 
-    returns: `sst` [degC]; time in weeks
     Source: Williams, Zahn and Kutz 2024, Sensing with shallow recurrent decoder networks (its public code).
     """
     from scipy.io import loadmat

@@ -24,10 +24,7 @@ class Season:
         object.__setattr__(self, "course", read_only(self.course, np.float32))
 
     def at(self, snapshots: NDArray[np.intp]) -> NDArray[np.float32]:
-        """Mean field at the time of year of snapshots, (snapshot, point, quantity) [each quantity's unit].
-
-        snapshots (snapshot,): counted from 0
-        """
+        """Mean field at the time of year of snapshots, (snapshot, point, quantity) [each quantity's unit]."""
         return self.course[snapshots % len(self.course)]
 
     def departures(self, field: Field) -> Field:
@@ -36,17 +33,7 @@ class Season:
 
 
 def season_of(field: Field, snapshots: NDArray[np.intp], period: int) -> Season:
-    """Mean of every time of the year over some snapshots; their mean of all where a time of year is not among them.
-
-    snapshots (snapshot,): of the training part
-    period: snapshots of a year; 0 where there is no season
-
-    >>> from gaitdisc.recording import Axis
-    >>> values = np.array([1.0, 5.0, 3.0, 7.0])[:, None, None]
-    >>> line = Field(np.arange(4.0), values, (Axis("x", np.zeros(1)),), np.ones(1, bool), ("h",), ("m",))
-    >>> season_of(line, np.arange(4), 2).course.ravel().tolist()
-    [2.0, 6.0]
-    """
+    """Mean of every time of the year over some snapshots; their mean of all where a time of year is not among them."""
     mean = field.values[snapshots].mean(axis=0, dtype=float)
     if not period:
         return Season(mean[None])

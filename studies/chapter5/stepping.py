@@ -43,10 +43,7 @@ class Stepper:
         return self.box.kept & (self.box.squared <= FORCED**2)
 
     def step(self, u: Modes) -> Modes:
-        """Return the velocity one step later.
-
-        u (3, x, y, z): modes of a velocity without divergence
-        """
+        """Return the velocity one step later."""
         first = self.rates(u)
         ahead = self._damping * (u + self.dt * first)
         second = self.rates(ahead)
@@ -60,10 +57,7 @@ class Stepper:
         return later
 
     def rates(self, u: Modes) -> Modes:
-        """Rate of the velocity without viscosity: advection and force.
-
-        u (3, x, y, z): modes of a velocity without divergence
-        """
+        """Rate of the velocity without viscosity: advection and force."""
         box = self.box
         velocity, vorticity = box.to_nodes(u), box.to_nodes(_curl(box, u))
         product = np.stack([velocity[(i + 1) % 3] * vorticity[(i + 2) % 3]

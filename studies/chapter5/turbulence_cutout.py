@@ -22,9 +22,6 @@ COORDINATES = ("zcoor", "ycoor", "xcoor")
 def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity") -> Field:
     """Read HDF5 cut-outs, one or several snapshots in each file.
 
-    paths: files with `Velocity_0001`, ... of shape (z, y, x, component) and `zcoor`, `ycoor`, `xcoor`; of one volume
-    step_s: from one number of a snapshot to the next [s]: 0.002 for isotropic1024coarse. The file does not hold it
-    returns: `u`, `v`, `w`, or `p`; without unit, as the database has them; axes z, y, x
     Source: Li et al. 2008, A public turbulence database cluster and applications to study Lagrangian evolution of
         velocity increments in turbulence. The layout is that of the service's files in public use, not of a stated
         standard.

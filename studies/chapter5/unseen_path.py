@@ -27,9 +27,6 @@ def unseen_path(
     The dissertation says of its network that it "cannot extrapolate to unseen sensor location trajectories". Here that
     error is stated: for a model fitted on one path, on many, and on many with each sensor's place fed in beside its
     reading. The test times are those of the split, and were not fitted on any path.
-
-    routes: to fit on, at least two, each with as many sensors as `unseen`
-    returns: `route` says on which path it was tested, and how the model was fitted
     """
     if len(routes) < 2 or {route.sensors for route in routes} != {unseen.sensors}:
         counts = ", ".join(str(route.sensors) for route in routes) or "none"
