@@ -37,10 +37,9 @@ import time
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
-from chapter5.field_task import FieldTask
-from chapter5.isotropic import FlowSettings, record_turbulence
-from chapter5.reconstruct_field import prepare
+from chapter5.reconstruct_field import FieldTask, prepare
 from chapter5.routes import fixed_at_random
+from chapter5.turbulence import FlowSettings, record_turbulence
 
 from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags

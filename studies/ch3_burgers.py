@@ -23,12 +23,10 @@ GIVEN = command_line(
 import numpy as np
 from ch3_report import Result, written
 from chapter3.augmented_run import with_learned_rates
-from chapter3.burgers import burgers, places
-from chapter3.cell import cell_of, learned_model
+from chapter3.burgers import burgers, local_cell, places, recorded_field
+from chapter3.cell import NOISES, cell_of, learned_model
 from chapter3.discrepancy_cell import DiscrepancyCell
 from chapter3.error_signal import APPROACHES
-from chapter3.grid import NOISES
-from chapter3.local_field import local_cell, recorded_field
 from chapter3.methods import Method, MethodSettings
 from chapter3.pages import field_figure, grid_table, statements_table
 from chapter3.record import Conditions, Record, recorded

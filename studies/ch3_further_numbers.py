@@ -14,13 +14,11 @@ from chapter3.augmented_run import with_learned_rates
 from chapter3.cell import cell_of, learned_model
 from chapter3.discrepancy_cell import FORECAST, PartAccuracy
 from chapter3.error_signal import error_samples
-from chapter3.filtered_start import filtered_start
-from chapter3.forecast_start import forecast_start
 from chapter3.gaussian_process import fit_gaussian_process
 from chapter3.methods import MethodSettings
 from chapter3.pages import METHOD_WORDS
-from chapter3.record import Conditions, recorded
-from chapter3.record_noise import NOISE_KINDS
+from chapter3.record import NOISE_KINDS, Conditions, recorded
+from chapter3.starts import filtered_start, forecast_start
 from chapter3.system import System
 
 NOISES = (0.01, 0.1)

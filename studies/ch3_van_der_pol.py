@@ -19,9 +19,9 @@ GIVEN = command_line(
 )  # before the slow imports
 
 from ch3_report import Result, blocks_of, written
+from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.discrepancy_cell import DiscrepancyCell
 from chapter3.error_signal import APPROACHES
-from chapter3.grid import ALL_METHODS, NOISES, grid
 from chapter3.record import Conditions
 from chapter3.system import System, system_of
 

@@ -21,16 +21,12 @@ GIVEN = command_line(
 
 import numpy as np
 from ch3_report import Result, written
-from chapter3.discover_answer import discover_answer
-from chapter3.grid import NOISES
-from chapter3.hidden_effect import HiddenEffect, method_answer
-from chapter3.known_rates import KnownRates
+from chapter3.cell import NOISES
 from chapter3.methods import Method
-from chapter3.naming import Naming
-from chapter3.naming_page import naming_figure, naming_table
+from chapter3.naming import HiddenEffect, Naming, discover_answer, method_answer
+from chapter3.pages import naming_figure, naming_table
 from chapter3.record import Conditions, recorded
-from chapter3.stochastic_rates import StochasticRates
-from chapter3.system import system_of
+from chapter3.system import KnownRates, StochasticRates, system_of
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from ch4_runs import run
-from chapter3.gaussian_process import fit_gaussian_process
-from chapter3.kernels import KernelKind
+from chapter3.gaussian_process import KernelKind, fit_gaussian_process
 from further import Number
 from numpy.typing import NDArray
 from real_people import ANGLES

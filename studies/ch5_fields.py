@@ -6,14 +6,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from chapter5.field_cell import FieldCell
-from chapter5.field_task import FieldTask
-from chapter5.field_windows import snapshots_of
-from chapter5.monthly_fields import read_navy_winds, read_sst_pacific
-from chapter5.reconstruct_field import prepare, reconstruct_field, targets_of
+from chapter5.files import read_navy_winds, read_oisst, read_sst_mat, read_sst_pacific
+from chapter5.reconstruct_field import (
+    FieldCell,
+    FieldTask,
+    prepare,
+    reconstruct_field,
+    snapshots_of,
+    targets_of,
+    unseen_path,
+)
 from chapter5.routes import Route, fixed_at_random, random_walk
-from chapter5.sea_surface import read_oisst, read_sst_mat
-from chapter5.unseen_path import unseen_path
 from command_line import SHARED
 
 import gaitdisc as gd

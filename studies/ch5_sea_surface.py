@@ -27,11 +27,8 @@ from dataclasses import replace
 
 import pandas as pd
 from ch5_fields import Result, fields, on_departures, reconstructed_maps, unseen_walks, written
-from chapter5.field_cell import FieldCell
-from chapter5.field_errors import field_table, histograms_figure, latent_figure
-from chapter5.field_maps import maps_figure, routes_figure
-from chapter5.latent_size import latent_sizes
-from chapter5.reconstruct_field import reconstruct_field, targets_of
+from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, routes_figure
+from chapter5.reconstruct_field import FieldCell, latent_sizes, reconstruct_field, targets_of
 from chapter5.routes import Route, circuit, fixed_at_random, joined
 
 import gaitdisc as gd

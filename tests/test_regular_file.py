@@ -10,10 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from chapter5.monthly_fields import read_sst_pacific
-from chapter5.netcdf import read_variables
-from chapter5.sea_surface import read_sst_mat
-from chapter5.turbulence_cutout import read_cutout
+from chapter5.files import read_cutout, read_sst_mat, read_sst_pacific, read_variables
 
 import gaitdisc as gd
 from gaitdisc.discovery.catalogue import read_catalogue

@@ -9,8 +9,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.recording.arrays import read_only
-
 METHODS = ("sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn")
 RECONSTRUCTION, ORACLE, FORECAST = PARTS = ("reconstruction", "oracle forecast", "forecast")
 PART_WORDS = {
@@ -30,11 +28,6 @@ class PartAccuracy:
     augmented: NDArray[np.float64]  # (sample, channel), Noise-free; NaN from where a model diverged
     diverged_s: float | None  # when the augmented model left every bound [s since the part's start]
     begins_s: float = 0.0  # when the part begins in its record [s]
-
-    def __post_init__(self) -> None:
-        """Freeze the numbers."""
-        for name in ("time", "truth", "known", "augmented"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def rmse(self, model: str, until_s: float | None = None) -> NDArray[np.float64]:
         """Root mean square error, (channel,) [channel's unit]; NaN if the model diverged before."""

@@ -1,4 +1,4 @@
-"""Optimised dynamic mode decomposition with delays: a few oscillations, growing or dying, as functions of time."""
+"""Dynamic mode decomposition with delays, optimised and exact: a few oscillations as functions of time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.recording import Samples, scale_of
-from gaitdisc.recording.arrays import read_only
 
-from .extra import chapter3_library
+from .sindy import chapter3_library
 
 DELAYS, RANK = 100, 15  # of the published code
 TIME = "t"
@@ -34,12 +33,6 @@ class Dmd:
     start: float  # [s], time that the amplitudes belong to
     # (mode,) [1/s], standard deviation of the eigenvalues over the bags of BOP-DMD; zero without bags
     spread: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        """Freeze the numbers."""
-        object.__setattr__(self, "modes", read_only(self.modes, complex))
-        object.__setattr__(self, "eigenvalues", read_only(self.eigenvalues, complex))
-        object.__setattr__(self, "spread", read_only(self.spread))
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for times (sample, 1) [s]; before the start, where what dies out explodes, held."""
@@ -144,3 +137,43 @@ def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[
         ) from error
     finally:
         np.random.set_state(state)  # noqa: NPY002
+
+
+SMALLEST_TURN = 1e-6  # |eigenvalue| of the map below which a mode dies within a sample: rounding, or noise
+
+
+def fit_exact_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK) -> Dmd:
+    """Fit modes to the outputs, which are stacked with their delays (Hankel matrix).
+
+    The map of least squares from each column to the next, projected on the first left singular vectors, has the modes
+    as eigenvectors. Eigenvalues that are rounding are left out; what grows is held at its size, as in the other
+    decompositions here. Amplitudes fit all columns, not the first alone.
+
+    Source: Tu, Rowley, Luchtenburg, Brunton, Kutz 2014, J. Comput. Dyn. 1:391; Eqs. 2.5 to 2.9 of the dissertation.
+        Under noise its eigenvalues are biased inwards (Dawson et al. 2016, Exp. Fluids 57:42), which the optimised one
+        is not.
+    """
+    hankel = delayed(samples, delays, rank)
+    outputs, dt = len(hankel.size), float(samples.time[1] - samples.time[0])
+    before, after = hankel.columns[:, :-1], hankel.columns[:, 1:]
+    small = hankel.axes.T @ before
+    turn = np.linalg.lstsq(small.T, (hankel.axes.T @ after).T, rcond=None)[0].T
+    values, vectors = (np.asarray(each, np.complex128) for each in np.linalg.eig(turn))
+    kept = np.abs(values) > SMALLEST_TURN
+    values, vectors = values[kept], vectors[:, kept]
+    exact = after @ np.linalg.pinv(small) @ vectors / values
+    found = np.log(values) / dt
+    continuous = np.asarray(np.minimum(found.real, 0.0) + 1j * found.imag, np.complex128)
+    amplitudes = _amplitudes(hankel.axes.T @ hankel.columns, vectors, continuous, dt)
+    modes = (exact[:outputs] * hankel.size[:, None] * amplitudes).T
+    return Dmd((TIME,), samples.outputs, modes, continuous, float(samples.time[0]), np.zeros(len(values)))
+
+
+def _amplitudes(
+    columns: NDArray[np.float64], vectors: NDArray[np.complex128], eigenvalues: NDArray[np.complex128], dt: float
+) -> NDArray[np.complex128]:
+    """Amplitudes that fit all columns best, (mode,) (Jovanovic, Schmid, Nichols 2014, Phys. Fluids 26:024103)."""
+    turns = np.exp(np.outer(eigenvalues, dt * np.arange(columns.shape[1])))
+    normal = (vectors.conj().T @ vectors) * (turns @ turns.conj().T).conj()
+    aim = np.diag(turns @ columns.conj().T @ vectors).conj()
+    return np.asarray(np.linalg.lstsq(normal, aim, rcond=None)[0], np.complex128)

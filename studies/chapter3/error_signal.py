@@ -13,8 +13,8 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples
 
-from .record import Record
-from .smoothing import edge_samples
+from .record import Record, edge_samples
+from .system import rk4_step
 
 Approach = Literal["dynamics", "state"]
 APPROACHES: tuple[Approach, ...] = ("dynamics", "state")
@@ -104,10 +104,7 @@ def flow(rates: Callable, x: NDArray[np.float64], dt_s: float, steps: int = FLOW
     """Run all states (point, state) one sample on, or back, by Runge-Kutta of order 4."""
     h = dt_s / steps
     for _ in range(steps):
-        one = rates(x)
-        two = rates(x + 0.5 * h * one)
-        three = rates(x + 0.5 * h * two)
-        x = x + h / 6 * (one + 2 * two + 2 * three + rates(x + h * three))
+        x = rk4_step(rates, x, h)
     return x
 
 

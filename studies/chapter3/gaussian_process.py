@@ -4,17 +4,36 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, scale_of
-from gaitdisc.recording.arrays import read_only
 from gaitdisc.recording.autocorrelation import autocorrelation_time
 
-from .kernels import KernelKind, kernel
+KernelKind = Literal["squared_exponential", "matern_3_2", "matern_5_2"]
+KERNELS: tuple[KernelKind, ...] = ("squared_exponential", "matern_3_2", "matern_5_2")
+
+
+def kernel(
+    kind: KernelKind, a: NDArray[np.float64], b: NDArray[np.float64], lengths: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Covariance of a process of size one between points (a's point, b's point).
+
+    Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
+    """
+    a, b = a / lengths, b / lengths
+    apart = np.maximum(np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2 * a @ b.T, 0.0)
+    if kind == "squared_exponential":
+        return np.exp(-0.5 * apart)
+    if kind == "matern_3_2":
+        far = np.sqrt(3 * apart)
+        return (1 + far) * np.exp(-far)
+    far = np.sqrt(5 * apart)
+    return (1 + far + far**2 / 3) * np.exp(-far)
+
 
 MOST_EXACT = 1500  # samples: memory grows with their square, time with their cube
 MOST_FOR_LENGTHS = 300  # samples, evenly in time, that the length scales are found on
@@ -42,11 +61,6 @@ class GaussianProcess:
     # (output, centre, centre), what the samples take away from that variance; empty where it was not kept
     known: NDArray[np.float64]
     kind: KernelKind = "squared_exponential"  # of the kernel
-
-    def __post_init__(self) -> None:
-        """Freeze the numbers."""
-        for name in ("centres", "lengths", "weights", "offset", "noise", "size", "known"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input)."""

@@ -3,18 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples
 
-from .by_output import fitted_by_output
-from .dmd import DELAYS, RANK, fit_dmd
-from .exact_dmd import fit_exact_dmd
+from .dmd import DELAYS, RANK, fit_dmd, fit_exact_dmd
 from .gaussian_process import MOST_EXACT, fit_gaussian_process
-from .sindy import fit_sindy
-from .weak_sindy import fit_weak_sindy
+from .sindy import fit_sindy, fit_weak_sindy
+
+
+@dataclass(frozen=True)
+class ByOutput:
+    """A model for each output; a `gaitdisc.model.Model`."""
+
+    models: tuple[Model, ...]  # of the same inputs, each with one output, in order
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs of each."""
+        return self.models[0].inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs, in order."""
+        return tuple(model.outputs[0] for model in self.models)
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (sample, output) for inputs (sample, input)."""
+        return np.column_stack([model(x) for model in self.models])
+
+
+def fitted_by_output(samples: Samples, fit: Callable[[Samples], Model]) -> ByOutput:
+    """Fit a model to each output by itself, so that one that is noise decides nothing about another."""
+    alone = [replace(samples, y=samples.y[:, [k]], outputs=(name,)) for k, name in enumerate(samples.outputs)]
+    return ByOutput(tuple(fit(each) for each in alone))
+
 
 Method = Literal["sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"]
 OF_TIME: tuple[Method, ...] = ("dmd", "exactdmd", "bopdmd")  # what they learn is a function of time

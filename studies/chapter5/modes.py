@@ -1,13 +1,14 @@
-"""A field by few numbers: its proper orthogonal modes, as many as hold a share of its energy."""
+"""A field by few numbers: its proper orthogonal modes, and the course that it takes every year."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
+from gaitdisc.recording import Field
 
 ENERGY = 0.99
 COLUMNS_AT_ONCE = 20_000
@@ -116,3 +117,30 @@ def _products(scaled: NDArray[np.floating]) -> NDArray[np.float64]:
         part = scaled[:, first : first + COLUMNS_AT_ONCE].astype(float)
         total += part @ part.T
     return total
+
+
+@dataclass(frozen=True, eq=False)
+class Season:
+    """Mean field of every time of the year."""
+
+    # (time of the year, point, quantity) [each quantity's unit], one time of the year where the field has no season:
+    # its mean
+    course: NDArray[np.float32]
+
+    def at(self, snapshots: NDArray[np.intp]) -> NDArray[np.float32]:
+        """Mean field at the time of year of snapshots, (snapshot, point, quantity) [each quantity's unit]."""
+        return self.course[snapshots % len(self.course)]
+
+    def departures(self, field: Field) -> Field:
+        """Departures of every snapshot from the mean of its time of year."""
+        return replace(field, values=field.values - self.at(np.arange(len(field))))
+
+
+def season_of(field: Field, snapshots: NDArray[np.intp], period: int) -> Season:
+    """Mean of every time of the year over some snapshots; their mean of all where a time of year is not among them."""
+    mean = field.values[snapshots].mean(axis=0, dtype=float)
+    if not period:
+        return Season(mean[None].astype(np.float32))
+    of_year = [field.values[snapshots[snapshots % period == k]] for k in range(period)]
+    course = np.stack([part.mean(axis=0, dtype=float) if len(part) else mean for part in of_year])
+    return Season(course.astype(np.float32))

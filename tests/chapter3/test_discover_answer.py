@@ -3,8 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chapter3.burgers import burgers
-from chapter3.discover_answer import answer_of, discover_answer
-from chapter3.hidden_effect import HiddenEffect
+from chapter3.naming import HiddenEffect, answer_of, discover_answer
 from chapter3.record import Conditions, recorded
 from chapter3.system import system_of
 

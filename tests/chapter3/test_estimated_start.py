@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.estimated_start import WINDOWS, estimated_start
+from chapter3.starts import WINDOWS, estimated_start
 
 DT, TIME = 0.01, np.arange(1000) * 0.01
 TRUTH = np.column_stack([np.cos(TIME), -np.sin(TIME)])

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.dmd import fit_dmd
-from chapter3.exact_dmd import fit_exact_dmd
+from chapter3.dmd import fit_dmd, fit_exact_dmd
 
 from gaitdisc.recording import Samples
 

@@ -1,7 +1,7 @@
 import sys
 
 import pytest
-from chapter3.extra import chapter3_library
+from chapter3.sindy import chapter3_library
 
 from gaitdisc.errors import TrainingError
 

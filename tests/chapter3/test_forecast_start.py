@@ -3,10 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chapter3.burgers import burgers
-from chapter3.forecast_start import forecast_start
-from chapter3.polynomials import library
 from chapter3.record import Conditions, recorded
-from chapter3.sindy import Sindy
+from chapter3.sindy import Sindy, library
+from chapter3.starts import forecast_start
 
 
 def cubic(weight=-0.01):

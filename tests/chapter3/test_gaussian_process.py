@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.gaussian_process import FORGOTTEN, far_apart, fit_gaussian_process
-from chapter3.kernels import KERNELS, kernel
+from chapter3.gaussian_process import FORGOTTEN, KERNELS, far_apart, fit_gaussian_process, kernel
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples

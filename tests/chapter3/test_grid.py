@@ -1,4 +1,4 @@
-from chapter3.grid import grid
+from chapter3.cell import grid
 from chapter3.record import Conditions
 
 

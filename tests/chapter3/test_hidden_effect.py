@@ -2,8 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chapter3.hidden_effect import HiddenEffect, method_answer
 from chapter3.methods import MethodSettings
+from chapter3.naming import HiddenEffect, method_answer
 from chapter3.record import Conditions, recorded
 from chapter3.system import system_of
 

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.kalman import Uncertainty, ensemble_kalman, linear_kalman, unscented_kalman
+from chapter3.starts import Uncertainty, ensemble_kalman, linear_kalman, unscented_kalman
 
 NOISE = Uncertainty(np.array([1.0, 2.0]), np.array([0.01, 0.02]), 0.3)
 TURN, SEEN = np.array([[1.0, 0.1], [-0.2, 0.97]]), np.array([1.0, 0.0])

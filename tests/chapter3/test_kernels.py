@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.kernels import KERNELS, kernel
+from chapter3.gaussian_process import KERNELS, kernel
 from sklearn.gaussian_process.kernels import RBF, Matern
 
 PEERS = {

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
+from chapter3.augmented_run import learned_rate, learned_term
 from chapter3.error_signal import error_samples
-from chapter3.learned_rates import learned_rate
-from chapter3.learned_term import learned_term
 from chapter3.methods import OF_TIME, MethodSettings, fitted
 
 

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.learned_term import learned_term
+from chapter3.augmented_run import learned_term
 
 from gaitdisc.errors import TrainingError
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
-from chapter3.burgers import burgers, slope_and_bend
+from chapter3.burgers import burgers, fit_local_field, local_cell, recorded_field, slope_and_bend
 from chapter3.error_signal import error_samples
-from chapter3.local_field import fit_local_field, local_cell, recorded_field
 from chapter3.methods import MethodSettings
 from chapter3.record import Conditions, recorded
 

@@ -1,5 +1,5 @@
 from chapter3.naming import Naming
-from chapter3.naming_page import naming_figure, naming_table
+from chapter3.pages import naming_figure, naming_table
 
 ANSWERS = [
     Naming("c", "x³", "sindy", 0.01, 0, "named", "y: x**3", 1.02, 90.0),

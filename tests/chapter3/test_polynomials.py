@@ -1,5 +1,5 @@
 import numpy as np
-from chapter3.polynomials import library, products, written
+from chapter3.sindy import library, products, written
 from hypothesis import given
 from hypothesis import strategies as st
 

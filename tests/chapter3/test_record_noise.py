@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.record_noise import FARTHER, NOISE_KINDS, drawn_noise
+from chapter3.record import FARTHER, NOISE_KINDS, drawn_noise
 
 SIZE = np.array([0.5, 2.0])
 

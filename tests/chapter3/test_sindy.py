@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.polynomials import library, products
-from chapter3.sindy import fit_sindy
+from chapter3.sindy import fit_sindy, library, products
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples

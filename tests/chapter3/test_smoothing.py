@@ -1,5 +1,5 @@
 import numpy as np
-from chapter3.smoothing import noise_cutoff_hz, smoothed
+from chapter3.record import noise_cutoff_hz, smoothed
 
 T = np.arange(3000) / 100
 CLEAN = np.sin(2 * np.pi * 0.5 * T) + 0.2 * np.sin(2 * np.pi * 3 * T)

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.polynomials import library, products
-from chapter3.thresholding import chosen_threshold, in_axes, sizes_of, thresholded
+from chapter3.sindy import chosen_threshold, in_axes, library, products, sizes_of, thresholded
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.weak_sindy import fit_weak_sindy
+from chapter3.sindy import fit_weak_sindy
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.box import Box
+from chapter5.turbulence import Box
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

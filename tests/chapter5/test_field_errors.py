@@ -2,14 +2,14 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from chapter5.field_cell import FieldCell, error_counts
-from chapter5.field_errors import (
+from chapter5.pages import (
     boxes_figure,
     field_table,
     histograms_figure,
     latent_figure,
     medians_table,
 )
+from chapter5.reconstruct_field import FieldCell, error_counts
 
 
 def cell(route, split, run=0, relative_l2=0.5, errors=(0.0, 0.1, -3.0)):

@@ -1,6 +1,6 @@
 import numpy as np
 import pandas as pd
-from chapter5.field_maps import flow_figure, maps_figure, routes_figure
+from chapter5.pages import flow_figure, maps_figure, routes_figure
 from manufactured_field import travelling_wave
 
 from gaitdisc.recording import Axis, Field

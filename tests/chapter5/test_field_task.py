@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from chapter5.field_task import FieldTask, Label
+from chapter5.reconstruct_field import FieldTask, Label
 
 from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from chapter5.field_windows import field_windows, reading_names, snapshots_of, with_coefficients
 from chapter5.modes import fit_modes
+from chapter5.reconstruct_field import field_windows, reading_names, snapshots_of, with_coefficients
 from chapter5.routes import fixed, joined, random_walk
 from manufactured_field import travelling_wave
 

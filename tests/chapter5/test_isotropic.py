@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
-from chapter5 import isotropic
-from chapter5.box import Box
-from chapter5.isotropic import FlowSettings, first_velocity, record_turbulence
+from chapter5 import turbulence
+from chapter5.turbulence import Box, FlowSettings, first_velocity, record_turbulence
 
 from gaitdisc.errors import ReadError, SchemaError, ShapeError
 
@@ -22,7 +21,7 @@ def test_a_record_is_the_cut_of_the_velocity(tmp_path):
 
 def test_what_was_interrupted_goes_on_to_the_same_numbers(tmp_path, monkeypatch):
     whole, numbers = record_turbulence(SMALL, tmp_path / "whole")
-    monkeypatch.setattr(isotropic, "KEPT_EVERY", 7)
+    monkeypatch.setattr(turbulence, "KEPT_EVERY", 7)
 
     def stop(fraction):
         if fraction > 0.8:
@@ -37,7 +36,7 @@ def test_what_was_interrupted_goes_on_to_the_same_numbers(tmp_path, monkeypatch)
 
 def test_what_is_there_is_not_computed_again(tmp_path, monkeypatch):
     first, _ = record_turbulence(SMALL, tmp_path)
-    monkeypatch.setattr(isotropic.Stepper, "step", None)
+    monkeypatch.setattr(turbulence.Stepper, "step", None)
     np.testing.assert_array_equal(record_turbulence(SMALL, tmp_path)[0].values, first.values)
 
 

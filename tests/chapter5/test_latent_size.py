@@ -1,6 +1,5 @@
 import pytest
-from chapter5.field_task import FieldTask
-from chapter5.latent_size import latent_sizes
+from chapter5.reconstruct_field import FieldTask, latent_sizes
 from chapter5.routes import fixed
 from manufactured_field import travelling_wave
 

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.monthly_fields import read_navy_winds, read_sst_pacific
+from chapter5.files import read_navy_winds, read_sst_pacific
 
 from gaitdisc.errors import ReadError
 

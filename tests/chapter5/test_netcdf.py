@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.netcdf import read_variables
+from chapter5.files import read_variables
 from scipy.io import netcdf_file
 
 from gaitdisc.errors import ReadError

@@ -2,9 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chapter5.field_task import FieldTask, Label
-from chapter5.field_windows import snapshots_of
-from chapter5.reconstruct_field import CEILING, MEAN, SEASON, field_cells, prepare
+from chapter5.reconstruct_field import CEILING, MEAN, SEASON, FieldTask, Label, field_cells, prepare, snapshots_of
 from chapter5.reconstruct_field import reconstruct_field as reconstruct
 from chapter5.routes import circuit, fixed
 from manufactured_field import travelling_wave

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.sea_surface import read_oisst, read_sst_mat
+from chapter5.files import read_oisst, read_sst_mat
 from scipy.io import netcdf_file, savemat
 
 from gaitdisc.errors import ReadError, SamplingError, ShapeError, UnitError

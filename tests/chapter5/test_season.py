@@ -1,5 +1,5 @@
 import numpy as np
-from chapter5.season import season_of
+from chapter5.modes import season_of
 from manufactured_field import travelling_wave
 
 WAVE = travelling_wave(58, quantities=2)  # the slower wave has a period of 29, the faster one of 17

@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.box import Box
-from chapter5.isotropic import first_velocity
-from chapter5.spectrum import energy_spectrum, flow_numbers
+from chapter5.turbulence import Box, energy_spectrum, first_velocity, flow_numbers
 
 BOX = Box(16)
 

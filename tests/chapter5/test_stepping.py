@@ -1,9 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.box import Box
-from chapter5.isotropic import first_velocity
-from chapter5.spectrum import flow_numbers
-from chapter5.stepping import Stepper
+from chapter5.turbulence import Box, Stepper, first_velocity, flow_numbers
 
 from gaitdisc.errors import SamplingError
 

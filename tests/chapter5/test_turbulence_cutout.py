@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.turbulence_cutout import read_cutout
+from chapter5.files import read_cutout
 
 from gaitdisc.errors import ReadError, SamplingError, ShapeError
 

@@ -1,7 +1,6 @@
 import pytest
-from chapter5.field_task import FieldTask
+from chapter5.reconstruct_field import ALONE, MANY_PLACED, OTHER, OWN, FieldTask, unseen_path
 from chapter5.routes import fixed, fixed_at_random
-from chapter5.unseen_path import ALONE, MANY_PLACED, OTHER, OWN, unseen_path
 from manufactured_field import travelling_wave
 
 from gaitdisc.errors import ChannelError
