@@ -10,8 +10,9 @@ JOBS   ?= 2
 # Bytecode is kept, also where the environment says no: tests start many processes, and each would compile the package.
 PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
 BESIDE := -n $(JOBS) --dist worksteal
+CHAPTERS := tests/chapter3 tests/chapter5 studies/chapter3 studies/chapter5
 
-.PHONY: demo test elsewhere slow lint format approve bench docs release clean
+.PHONY: demo test chapters elsewhere slow lint format approve bench docs release clean
 
 demo: $(VENV)/.base
 	$(BIN)/gaitdisc demo $(DEMO)
@@ -19,13 +20,17 @@ demo: $(VENV)/.base
 test: $(VENV)/.dev
 	$(PYTEST) $(BESIDE)
 
-# The same tests with the arithmetic of an older processor (no AVX, no FMA) and in random order: make elsewhere SEED=7
+# Chapters 3 and 5, whose modules lie with the studies: their longer ones as well.
+chapters: $(VENV)/.dev
+	$(PYTEST) $(BESIDE) -m 'slow or not slow' $(CHAPTERS)
+
+# The same tests, the chapters' among them, with the arithmetic of an older processor (no AVX, no FMA) and in random order: make elsewhere SEED=7
 # repeats an order. What numpy found on this machine is switched off, whatever its names are.
 elsewhere: $(VENV)/.dev
 	@set -e; seed=$${SEED:-$$(od -An -N3 -tu4 /dev/urandom | tr -d ' ')}; echo "order of seed $$seed"; \
 	found=$$($(BIN)/python -c 'import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))'); \
 	NPY_DISABLE_CPU_FEATURES="$$found" OPENBLAS_CORETYPE=Nehalem ATEN_CPU_CAPABILITY=default NUMBA_CPU_NAME=generic \
-	$(PYTEST) $(BESIDE) -p randomly --randomly-seed=$$seed
+	$(PYTEST) $(BESIDE) -p randomly --randomly-seed=$$seed tests gaitdisc $(CHAPTERS)
 
 slow: $(VENV)/.dev
 	$(PYTEST) $(BESIDE) -m slow

@@ -37,11 +37,10 @@ import time
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
+from chapter5.reconstruct_field import FieldTask, prepare
+from chapter5.routes import fixed_at_random
+from chapter5.turbulence import FlowSettings, record_turbulence
 
-from gaitdisc.chapters.fields.field_task import FieldTask
-from gaitdisc.chapters.fields.reconstruct_field import prepare
-from gaitdisc.chapters.fields.routes import fixed_at_random
-from gaitdisc.chapters.turbulence.isotropic import FlowSettings, record_turbulence
 from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags
 

@@ -28,15 +28,15 @@ import time as clock
 
 import numpy as np
 import pandas as pd
+from chapter3.augmented_run import with_learned_rates
+from chapter3.cell import learned_model, part
+from chapter3.discrepancy_cell import ORACLE
+from chapter3.methods import MethodSettings
+from chapter3.record import Conditions, Record, recorded
+from chapter3.system import Rates, System, system_of
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.chapters.discrepancy.cell import learned_model, part
-from gaitdisc.chapters.discrepancy.discrepancy_cell import ORACLE
-from gaitdisc.chapters.discrepancy.methods import MethodSettings
-from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.chapters.discrepancy.system import Rates, System, system_of
 from gaitdisc.model import Model
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import bundled

@@ -22,19 +22,17 @@ GIVEN = command_line(
 
 import numpy as np
 from ch3_report import Result, written
+from chapter3.augmented_run import with_learned_rates
+from chapter3.burgers import burgers, local_cell, places, recorded_field
+from chapter3.cell import NOISES, cell_of, learned_model
+from chapter3.discrepancy_cell import DiscrepancyCell
+from chapter3.error_signal import APPROACHES
+from chapter3.methods import Method, MethodSettings
+from chapter3.pages import field_figure, grid_table, statements_table
+from chapter3.record import Conditions, Record, recorded
 
 import gaitdisc as gd
-from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.chapters.discrepancy.burgers import burgers, places
-from gaitdisc.chapters.discrepancy.cell import cell_of, learned_model
-from gaitdisc.chapters.discrepancy.discrepancy_cell import DiscrepancyCell
-from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
-from gaitdisc.chapters.discrepancy.grid import NOISES
-from gaitdisc.chapters.discrepancy.local_field import local_cell, recorded_field
-from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
-from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.chapters.pages import Block
-from gaitdisc.chapters.pages.discrepancy import field_figure, grid_table, statements_table
+from gaitdisc.report.page import Block
 
 SEEDS = (0, 1, 2)
 AT_EACH_POINT: tuple[Method, ...] = ("sindy", "gp", "nn")

@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 import ch3_lorenz
 import ch3_measurement_bias
 import ch3_van_der_pol
-
-from gaitdisc.chapters.discrepancy.error_signal import Approach
-from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
-from gaitdisc.chapters.discrepancy.record import Conditions
-from gaitdisc.chapters.discrepancy.system import System
+from chapter3.error_signal import Approach
+from chapter3.methods import Method, MethodSettings
+from chapter3.record import Conditions
+from chapter3.system import System
 
 SEEDS = 12
 

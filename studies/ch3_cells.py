@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pandas as pd
+from chapter3.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
+from chapter3.pages import METHOD_WORDS, spread_words
+from chapter3.recommend import STARTS
 from markdown_table import markdown_table
-
-from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
-from gaitdisc.chapters.discrepancy.recommend import STARTS
-from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS, spread_words
 
 CELLS = Path(__file__).with_name("ch3_cells.csv")
 LYAPUNOV_PER_S = 0.906  # largest exponent of the Lorenz system: Sprott 2003, Chaos and Time-Series Analysis

@@ -37,7 +37,7 @@ from ch3_cells import said_of
 from ch3_further_numbers import numbers
 from markdown_table import markdown_table
 
-from gaitdisc.chapters.pages import save_table
+from gaitdisc.report.table import save_table
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
 HEADINGS = {

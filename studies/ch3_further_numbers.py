@@ -10,19 +10,16 @@ import ch3_lorenz
 import ch3_van_der_pol
 import numpy as np
 from ch3_cells import LYAPUNOV_PER_S
-
-from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.chapters.discrepancy.cell import cell_of, learned_model
-from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, PartAccuracy
-from gaitdisc.chapters.discrepancy.error_signal import error_samples
-from gaitdisc.chapters.discrepancy.filtered_start import filtered_start
-from gaitdisc.chapters.discrepancy.forecast_start import forecast_start
-from gaitdisc.chapters.discrepancy.methods import MethodSettings
-from gaitdisc.chapters.discrepancy.record import Conditions, recorded
-from gaitdisc.chapters.discrepancy.record_noise import NOISE_KINDS
-from gaitdisc.chapters.discrepancy.system import System
-from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS
-from gaitdisc.chapters.regression.gaussian_process import fit_gaussian_process
+from chapter3.augmented_run import with_learned_rates
+from chapter3.cell import cell_of, learned_model
+from chapter3.discrepancy_cell import FORECAST, PartAccuracy
+from chapter3.error_signal import error_samples
+from chapter3.gaussian_process import fit_gaussian_process
+from chapter3.methods import MethodSettings
+from chapter3.pages import METHOD_WORDS
+from chapter3.record import NOISE_KINDS, Conditions, recorded
+from chapter3.starts import filtered_start, forecast_start
+from chapter3.system import System
 
 NOISES = (0.01, 0.1)
 SACRIFICED_S = 5.0

@@ -20,14 +20,15 @@ import numpy as np
 import pandas as pd
 from ch3_cells import LYAPUNOV_PER_S
 from ch3_report import Cells, Result, blocks_of, written
+from chapter3.cell import ALL_METHODS, NOISES, grid
+from chapter3.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
+from chapter3.error_signal import APPROACHES
+from chapter3.record import Conditions
+from chapter3.system import System, system_of
 
 import gaitdisc as gd
-from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
-from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
-from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.chapters.discrepancy.record import Conditions
-from gaitdisc.chapters.discrepancy.system import System, system_of
-from gaitdisc.chapters.pages import Block, Table
+from gaitdisc.report.page import Block
+from gaitdisc.report.table import Table
 
 SEEDS = (0, 1, 2)
 FINE_DT_S, FINE_S, SHORT_S = 0.001, 20.0, 10.0  # of the short record 601 samples are learned from

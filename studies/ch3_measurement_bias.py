@@ -19,16 +19,16 @@ GIVEN = command_line(
 
 import numpy as np
 from ch3_report import Result, blocks_of, written
+from chapter3.cell import ALL_METHODS, NOISES, grid
+from chapter3.methods import MethodSettings
+from chapter3.pages import statements_table
+from chapter3.record import Conditions, Record, recorded
+from chapter3.starts import Uncertainty, linear_kalman, unscented_kalman
+from chapter3.system import System, system_of
 from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.chapters.discrepancy.kalman import Uncertainty, linear_kalman, unscented_kalman
-from gaitdisc.chapters.discrepancy.methods import MethodSettings
-from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.chapters.discrepancy.system import System, system_of
-from gaitdisc.chapters.pages import Block
-from gaitdisc.chapters.pages.discrepancy import statements_table
+from gaitdisc.report.page import Block
 
 SEEDS = (0, 1, 2)
 FIGURES = {"state": "Fig. 3.13", "noise": "Fig. 3.13"}

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from chapter3.discrepancy_cell import FORECAST, ORACLE
+from chapter3.pages import METHOD_WORDS, spread_words
+from chapter3.recommend import FOUND, STARTS, WANTS, recommend
 from markdown_table import markdown_table
-
-from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE
-from gaitdisc.chapters.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
-from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS, spread_words
 
 RECORDS = (
     *((False, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),

@@ -7,12 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ch3_statements import Cells, Stated, answered, of_figures
-
-from gaitdisc.chapters.discrepancy.discrepancy_cell import RECONSTRUCTION
-from gaitdisc.chapters.discrepancy.recommend import measured_cells
-from gaitdisc.chapters.discrepancy.system import System
-from gaitdisc.chapters.pages import Block, Table, save_table, write_blocks, write_markdown
-from gaitdisc.chapters.pages.discrepancy import (
+from chapter3.discrepancy_cell import RECONSTRUCTION
+from chapter3.pages import (
     accuracy_figure,
     cost_figure,
     error_figure,
@@ -21,6 +17,11 @@ from gaitdisc.chapters.pages.discrepancy import (
     statements_table,
     system_figure,
 )
+from chapter3.recommend import measured_cells
+from chapter3.system import System
+
+from gaitdisc.report.page import Block, write_blocks, write_markdown
+from gaitdisc.report.table import Table, save_table
 
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "

@@ -34,13 +34,13 @@ import numpy as np
 import pandas as pd
 from ch3_cell_sets import CellSet, cell_sets, chosen_sets
 from ch3_cells import CELLS, measured, sets_tables
+from chapter3.cell import cell_of
+from chapter3.discrepancy_cell import METHODS, DiscrepancyCell
+from chapter3.methods import Method
+from chapter3.recommend import FOUND, evidence_of
+from chapter3.record import recorded
 
-from gaitdisc.chapters.discrepancy.cell import cell_of
-from gaitdisc.chapters.discrepancy.discrepancy_cell import METHODS, DiscrepancyCell
-from gaitdisc.chapters.discrepancy.methods import Method
-from gaitdisc.chapters.discrepancy.recommend import FOUND, evidence_of
-from gaitdisc.chapters.discrepancy.record import recorded
-from gaitdisc.chapters.pages import save_table
+from gaitdisc.report.table import save_table
 
 
 def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:

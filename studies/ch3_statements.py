@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-
-from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
-from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS, spread_words
+from chapter3.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
+from chapter3.pages import METHOD_WORDS, spread_words
 
 Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
 Stated = tuple[str, str, str, float]  # where, statement, approach, noise

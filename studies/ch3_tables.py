@@ -21,12 +21,12 @@ import numpy as np
 import pandas as pd
 from ch3_cells import NUMBERS, START_WORDS, measured, set_table, sets_tables
 from ch3_recommended import evidence_table, recommended_table
+from chapter3.discrepancy_cell import FORECAST, ORACLE
+from chapter3.pages import METHOD_WORDS
 from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE
-from gaitdisc.chapters.pages import exact_p
-from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS
+from gaitdisc.statistics.signed_rank import exact_p
 
 IN_README = ("sindy", "dmd", "gp", "nn")
 RANKED = {"van_der_pol_text": "forecast", "van_der_pol_code": "forecast", "lorenz": "valid"}

@@ -19,13 +19,13 @@ GIVEN = command_line(
 )  # before the slow imports
 
 from ch3_report import Result, blocks_of, written
+from chapter3.cell import ALL_METHODS, NOISES, grid
+from chapter3.discrepancy_cell import DiscrepancyCell
+from chapter3.error_signal import APPROACHES
+from chapter3.record import Conditions
+from chapter3.system import System, system_of
 
 import gaitdisc as gd
-from gaitdisc.chapters.discrepancy.discrepancy_cell import DiscrepancyCell
-from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
-from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.chapters.discrepancy.record import Conditions
-from gaitdisc.chapters.discrepancy.system import System, system_of
 
 SEEDS = (0, 1, 2)
 SHORT_S = 10.0  # of which 601 samples are learned from

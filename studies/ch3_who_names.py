@@ -21,19 +21,15 @@ GIVEN = command_line(
 
 import numpy as np
 from ch3_report import Result, written
+from chapter3.cell import NOISES
+from chapter3.methods import Method
+from chapter3.naming import HiddenEffect, Naming, discover_answer, method_answer
+from chapter3.pages import naming_figure, naming_table
+from chapter3.record import Conditions, recorded
+from chapter3.system import KnownRates, StochasticRates, system_of
 
 import gaitdisc as gd
-from gaitdisc.chapters.discrepancy.discover_answer import discover_answer
-from gaitdisc.chapters.discrepancy.grid import NOISES
-from gaitdisc.chapters.discrepancy.hidden_effect import HiddenEffect, method_answer
-from gaitdisc.chapters.discrepancy.known_rates import KnownRates
-from gaitdisc.chapters.discrepancy.methods import Method
-from gaitdisc.chapters.discrepancy.naming import Naming
-from gaitdisc.chapters.discrepancy.record import Conditions, recorded
-from gaitdisc.chapters.discrepancy.stochastic_rates import StochasticRates
-from gaitdisc.chapters.discrepancy.system import system_of
-from gaitdisc.chapters.pages import Block
-from gaitdisc.chapters.pages.naming import naming_figure, naming_table
+from gaitdisc.report.page import Block
 
 SEEDS = (0, 1, 2)
 NAMING: tuple[Method, ...] = ("sindy",)

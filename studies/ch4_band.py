@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from ch4_runs import run
+from chapter3.gaussian_process import KernelKind, fit_gaussian_process
 from further import Number
 from numpy.typing import NDArray
 from real_people import ANGLES
@@ -14,8 +15,6 @@ from real_people import ANGLES
 import gaitdisc as gd
 from gaitdisc.batch.demonstration import MUSCLES, OUTPUTS
 from gaitdisc.batch.participant_unit import response_settings
-from gaitdisc.chapters.regression.gaussian_process import fit_gaussian_process
-from gaitdisc.chapters.regression.kernels import KernelKind
 from gaitdisc.cohort.cohort import walks_of
 from gaitdisc.cohort.person import drawn
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 from ch4_runs import run
+from chapter3.sindy import fit_sindy
 from further import Number
 from real_people import ANGLES
 
 import gaitdisc as gd
-from gaitdisc.chapters.regression.sindy import fit_sindy
 from gaitdisc.response.models import fit_linear
 
 REFITS, BLOCKS = 50, 16

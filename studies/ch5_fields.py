@@ -6,19 +6,24 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from chapter5.files import read_navy_winds, read_oisst, read_sst_mat, read_sst_pacific
+from chapter5.reconstruct_field import (
+    FieldCell,
+    FieldTask,
+    prepare,
+    reconstruct_field,
+    snapshots_of,
+    targets_of,
+    unseen_path,
+)
+from chapter5.routes import Route, fixed_at_random, random_walk
 from command_line import SHARED
 
 import gaitdisc as gd
-from gaitdisc.chapters.fields import Lags, fit_reconstructor
-from gaitdisc.chapters.fields.field_cell import FieldCell
-from gaitdisc.chapters.fields.field_task import FieldTask
-from gaitdisc.chapters.fields.field_windows import snapshots_of
-from gaitdisc.chapters.fields.monthly_fields import read_navy_winds, read_sst_pacific
-from gaitdisc.chapters.fields.reconstruct_field import prepare, reconstruct_field, targets_of
-from gaitdisc.chapters.fields.routes import Route, fixed_at_random, random_walk
-from gaitdisc.chapters.fields.sea_surface import read_oisst, read_sst_mat
-from gaitdisc.chapters.fields.unseen_path import unseen_path
-from gaitdisc.chapters.pages import Block, Table, write_blocks, write_markdown
+from gaitdisc.report.page import Block, write_blocks, write_markdown
+from gaitdisc.report.table import Table
+from gaitdisc.sensing.reconstructor import fit_reconstructor
+from gaitdisc.sensing.windows import Lags
 
 FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was

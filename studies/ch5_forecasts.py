@@ -7,11 +7,11 @@ from functools import partial
 
 import numpy as np
 from ch5_runner import SAGITTAL, Values, parts_of, rmse, runner
+from chapter3.sindy import fit_sindy
 from further import Number
 from real_people import turning
 
 import gaitdisc as gd
-from gaitdisc.chapters.regression.sindy import fit_sindy
 from gaitdisc.sensing.forecast import persistence, phase_average
 from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor, latent_states
 from gaitdisc.sensing.splits import Parts, split_by_subject

@@ -26,12 +26,12 @@ import pandas as pd
 from ch5_fields import fields
 from ch5_forecasts import ahead, turns
 from ch5_runner import SAGITTAL, parts_of, rmse, runner
+from chapter5.reconstruct_field import reconstruct_field
+from chapter5.routes import fixed_at_random
 from further import Made, Number, main
 from real_people import real_people
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
-from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field
-from gaitdisc.chapters.fields.routes import fixed_at_random
 from gaitdisc.report.curves import LATENT, course_numbers, draw_course
 from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.panels import Room, in_style, legend, panels

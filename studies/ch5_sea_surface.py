@@ -27,16 +27,14 @@ from dataclasses import replace
 
 import pandas as pd
 from ch5_fields import Result, fields, on_departures, reconstructed_maps, unseen_walks, written
+from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, routes_figure
+from chapter5.reconstruct_field import FieldCell, latent_sizes, reconstruct_field, targets_of
+from chapter5.routes import Route, circuit, fixed_at_random, joined
 
 import gaitdisc as gd
-from gaitdisc.chapters.fields import KINDS, RANDOM
-from gaitdisc.chapters.fields.field_cell import FieldCell
-from gaitdisc.chapters.fields.latent_size import latent_sizes
-from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field, targets_of
-from gaitdisc.chapters.fields.routes import Route, circuit, fixed_at_random, joined
-from gaitdisc.chapters.pages import Block
-from gaitdisc.chapters.pages.field_errors import field_table, histograms_figure, latent_figure
-from gaitdisc.chapters.pages.field_maps import maps_figure, routes_figure
+from gaitdisc.report.page import Block
+from gaitdisc.sensing.reconstructor import KINDS
+from gaitdisc.sensing.splits import RANDOM
 
 SPLITS = (RANDOM, "temporal")
 WRITTEN_DOWN = tomllib.loads(Path(__file__).with_name("ch5_fields.toml").read_text(encoding="utf-8"))

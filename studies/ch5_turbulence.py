@@ -27,16 +27,23 @@ GIVEN = command_line(
 from dataclasses import asdict, replace
 
 from ch5_fields import Result, middle_of, written
+from chapter5.pages import boxes_figure, flow_figure, histograms_figure, maps_figure, medians_table
+from chapter5.reconstruct_field import (
+    CEILING,
+    FieldCell,
+    FieldTask,
+    load_cells,
+    prepare,
+    reconstruct_field,
+    save_cells,
+    targets_of,
+)
+from chapter5.routes import Route, fixed, fixed_at_random, random_walk
+from chapter5.turbulence import FlowSettings, record_turbulence
 
-from gaitdisc.chapters.fields import RANDOM, Lags
-from gaitdisc.chapters.fields.field_cell import FieldCell, load_cells, save_cells
-from gaitdisc.chapters.fields.field_task import FieldTask
-from gaitdisc.chapters.fields.reconstruct_field import CEILING, prepare, reconstruct_field, targets_of
-from gaitdisc.chapters.fields.routes import Route, fixed, fixed_at_random, random_walk
-from gaitdisc.chapters.pages import Block
-from gaitdisc.chapters.pages.field_errors import boxes_figure, histograms_figure, medians_table
-from gaitdisc.chapters.pages.field_maps import flow_figure, maps_figure
-from gaitdisc.chapters.turbulence.isotropic import FlowSettings, record_turbulence
+from gaitdisc.report.page import Block
+from gaitdisc.sensing.splits import RANDOM
+from gaitdisc.sensing.windows import Lags
 
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100

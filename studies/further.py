@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from markdown_table import markdown_table
 
-from gaitdisc.chapters.pages import save_table
+from gaitdisc.report.table import save_table
 
 
 class Number(NamedTuple):

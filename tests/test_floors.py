@@ -29,14 +29,13 @@ FLOORS = (
     ("kinetics", "engines"),
     ("processing", "discovery", "comparison", "sensing", "response", "clinic"),
     ("batch", "report"),
-    ("library", "commands", "chapters"),
+    ("library", "commands", "studies"),
     ("cli", "__main__"),
 )
-CHAPTERS = (("regression", "turbulence"), ("discrepancy", "fields"), ("pages",))  # within the room of that name
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 SOLE_HOME = {
     "torch": {"networks"},
-    "matplotlib": {"report", "library", "chapters"},
+    "matplotlib": {"report", "library"},
     "pingouin": {"statistics"},
     "statsmodels": {"statistics"},
     "ezc3d": {"ingest"},
@@ -82,15 +81,9 @@ def test_imports_go_downwards():
     assert not upwards, "\n".join(upwards)
 
 
-def test_within_the_chapters_imports_go_downwards_too_and_pages_alone_draw():
-    floor = {room: number for number, rooms in enumerate(CHAPTERS) for room in rooms}
-    strays = []
-    for path in sorted((PACKAGE / "chapters").glob("*/*.py")):
-        own = path.parent.name
-        others = [name.split(".")[2] for name in _imported(path) if name.startswith("gaitdisc.chapters.")]
-        strays += [f"{path.name} imports {name}" for name in others if name != own and floor[name] >= floor[own]]
-        if own != "pages" and any(name.startswith("matplotlib") for name in _imported(path)):
-            strays.append(f"{path.name} draws")
+def test_nothing_in_the_package_imports_a_study():
+    studies = {path.stem for path in (PACKAGE.parent / "studies").iterdir()}
+    strays = [f"{path.name} imports {name}" for path, _ in _modules() for name in _imported(path) if name in studies]
     assert strays == []
 
 

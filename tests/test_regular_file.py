@@ -10,12 +10,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from chapter5.files import read_cutout, read_sst_mat, read_sst_pacific, read_variables
 
 import gaitdisc as gd
-from gaitdisc.chapters.fields.monthly_fields import read_sst_pacific
-from gaitdisc.chapters.fields.netcdf import read_variables
-from gaitdisc.chapters.fields.sea_surface import read_sst_mat
-from gaitdisc.chapters.fields.turbulence_cutout import read_cutout
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5

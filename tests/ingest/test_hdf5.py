@@ -3,9 +3,8 @@ import sys
 
 import numpy as np
 import pytest
+from chapter5.files import read_cutout, read_oisst
 
-from gaitdisc.chapters.fields.sea_surface import read_oisst
-from gaitdisc.chapters.fields.turbulence_cutout import read_cutout
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file, is_hdf5
 

@@ -1,10 +1,10 @@
 import os
 
 import pandas as pd
+from chapter3.pages import statements_table
 from texts import says
 
 import gaitdisc
-from gaitdisc.chapters.pages.discrepancy import statements_table
 from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_blocks, write_markdown, write_page
 from gaitdisc.report.table import Table
 

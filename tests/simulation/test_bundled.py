@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from scipy.special import ellipk
+from solving import solve
 
 from gaitdisc.errors import ReadError
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import bundled, bundled_names
-from gaitdisc.simulation.solving import solve
 
 
 def _run(simulation, steps, rate=100.0, starts=None, inputs=None):

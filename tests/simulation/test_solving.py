@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from solving import solve
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
-from gaitdisc.simulation.solving import solve
 
 LORENZ = simulation_of(
     '[states.x]\n[states.y]\n[states.z]\n[equations]\nx = "10*(y - x)"\ny = "x*(28 - z) - y"\nz = "x*y - 8/3*z"\n'

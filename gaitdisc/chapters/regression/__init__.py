@@ -1,1 +1,0 @@
-"""Fits that the dissertation compares: SINDy, dynamic mode decomposition, Gaussian process; each is a `Model`."""

@@ -1,0 +1,183 @@
+"""Who names what is hidden: a case of which the answer is known, and what each way of asking answers."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+
+import numpy as np
+import pandas as pd
+from threadpoolctl import threadpool_limits
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.errors import GaitdiscError, ShapeError
+from gaitdisc.model import Model
+from gaitdisc.results.discovery import Discovery, FoundEffect
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+
+from .cell import learned_model, part, terms_of
+from .discrepancy_cell import ORACLE
+from .error_signal import Approach, error_samples
+from .methods import Method, MethodSettings
+from .record import Record, recorded
+from .sindy import Sindy
+from .system import KnownRates, System
+
+ANSWERS = ("named", "tied", "among others", "wrong name", "curve", "nothing", "refused")
+TOOLS = ("discover", "sindy", "dmd", "gp", "nn")
+
+
+@dataclass(frozen=True)
+class Naming:
+    """An answer about what a model lacks."""
+
+    case: str  # what was recorded; what the known model lacks, empty where nothing is hidden
+    hidden: str  # what was recorded; what the known model lacks, empty where nothing is hidden
+    tool: str
+    noise: float
+    seed: int
+    # one of `ANSWERS`: the hidden effect and nothing else, it and another that the data cannot distinguish (whichever
+    # stands first), more than it, something else, a curve without a name, that nothing is missing, or a refusal
+    answer: str
+    said: str
+    amount: float = float("nan")  # the effect's number over its true one; NaN where the hidden effect was not named
+    # median over channels of how much less RMSE the forecast has than that of the known model, both from the noise-free
+    # true state, an oracle [%]; NaN where it diverged or was not run
+    accuracy: float = float("nan")
+    diverged_s: float | None = None  # when the forecast left every bound [s since its start]
+    seconds: float = float("nan")
+
+    def __post_init__(self) -> None:
+        """Refuse an answer that the table does not know."""
+        if self.answer not in ANSWERS or self.tool not in TOOLS:
+            raise ValueError(f"{self.answer!r} of {self.tool!r} is none of {ANSWERS} of {TOOLS}")
+
+    @property
+    def right(self) -> bool:
+        """Whether it says what is hidden, or rightly that nothing is."""
+        return self.answer == ("named" if self.hidden else "nothing")
+
+
+def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
+    """Return all answers, one row each."""
+    return pd.DataFrame([asdict(naming) | {"right": naming.right} for naming in namings])
+
+
+NOTHING = 1e-6  # of the known model's own rates or states: an error signal below it is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class HiddenEffect:
+    """A system and what is hidden in it."""
+
+    case: str
+    words: str  # what is hidden, in words; empty for nothing
+    system: System
+    effect: tuple[str, ...] = ()  # place and name by which `gaitdisc discover` would name it; empty for nothing
+    amount: float = float("nan")  # its number, in the convention of `gaitdisc discover`
+    # output to terms with their coefficients, by which SINDy would name it; empty where it has no such name
+    terms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    approach: Approach = "dynamics"
+    duration_s: float = 50.0  # of the record [s]
+
+
+def method_answer(
+    hidden: HiddenEffect, record: Record, method: Method, settings: MethodSettings | None = None
+) -> Naming:
+    """What one method finds that the known model lacks.
+
+    SINDy answers with terms, the others with a curve: of time (DMD) or of the states (Gaussian process, network).
+    """
+    begun, settings = clock.process_time(), settings or MethodSettings()
+    made = record.conditions
+    refused = Naming(hidden.case, hidden.words, method, made.noise, made.seed, "refused", "")
+    try:
+        with threadpool_limits(1):
+            learned = learned_model(record, method, hidden.approach, settings)
+    except GaitdiscError as error:
+        return replace(refused, said=str(error), seconds=clock.process_time() - begun)
+    seconds = clock.process_time() - begun
+    forecast = part(record, learned, hidden.approach, ORACLE)
+    accuracy = float(np.median(forecast.accuracy()))
+    answer, amount = _named(hidden, learned) if isinstance(learned, Sindy) else ("curve", float("nan"))
+    said = terms_of(learned) or curve_words(hidden, record, learned)
+    answered = replace(refused, answer=answer, said=said, amount=amount)
+    return replace(answered, accuracy=accuracy, diverged_s=forecast.diverged_s, seconds=seconds)
+
+
+def curve_words(hidden: HiddenEffect, record: Record, learned: Model) -> str:
+    """Say how far a learned curve is off what it stands for, along the record without its noise."""
+    clean = recorded(record.system, replace(record.conditions, noise=0.0))
+    signal = error_samples(clean, hidden.approach, learned.inputs == ("t",))
+    own = record.system.known(clean.truth) if hidden.approach == "dynamics" else clean.truth
+    size, missing, whole = (float(np.sqrt(np.mean(each**2))) for each in (learned(signal.x), signal.y, own))
+    of = "time" if learned.inputs == ("t",) else "the states"
+    if missing < NOTHING * whole:
+        return f"a curve of {of}, {size / whole:.1e} of what the known model has itself, where nothing is missing"
+    off = float(np.sqrt(np.mean((learned(signal.x) - signal.y) ** 2)))
+    return f"a curve of {of}, {100 * off / missing:.0f} % off what is missing"
+
+
+def _named(hidden: HiddenEffect, learned: Sindy) -> tuple[str, float]:
+    """Answer of terms, and the coefficient found over the true one."""
+    found = {output: terms for output in learned.outputs if (terms := learned.terms(output))}
+    sought = {(output, term) for output, terms in hidden.terms.items() for term in terms}
+    there = {(output, term) for output, terms in found.items() for term in terms}
+    if not there:
+        return "nothing", float("nan")
+    if not sought or not sought <= there:
+        return "wrong name", float("nan")
+    output, term = next(iter(sorted(sought)))
+    return "named" if there == sought else "among others", found[output][term] / hidden.terms[output][term]
+
+
+def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
+    """What `gaitdisc discover` finds that the known model lacks."""
+    begun, made, system = clock.process_time(), record.conditions, record.system
+    if not isinstance(system.known, KnownRates):
+        raise ShapeError(
+            "discover needs a simulation file",
+            f"{system.name!r} is known as {type(system.known).__name__}",
+            "Write its equations as a simulation file.",
+        )
+    simulation = system.known.simulation.observing(system.channels)
+    shown = record.measured[: record.split]
+    drive = Drive.of([np.empty((len(shown), 0))], 1.0 / made.dt_s)
+    found, augmented = discover(simulation, Measured(drive, shown[None], ("1",), system.channels))
+    seconds = clock.process_time() - begun
+    answer, amount = answer_of(hidden, found)
+    accuracy = forecast_accuracy(record, augmented)
+    case = (hidden.case, hidden.words, "discover", made.noise, made.seed, answer, found.sentence)
+    return Naming(*case, amount, accuracy, None, seconds)
+
+
+def answer_of(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
+    """Answer of a discovery in the words of `Naming`, and its number over the true one."""
+    named: dict[tuple[str, ...], FoundEffect] = {(one.place, one.name): one for one in found.effects}
+    if not named:
+        return "nothing", float("nan")
+    tied = {(one.place, one.name) for one in found.rivals if one.tied}
+    if hidden.effect in named:
+        number = next(iter(named[hidden.effect].estimates.values())).value
+        alone = len(named) == 1 or found.verdict == "wrong_initial_condition"
+        return ("among others" if not alone else "tied" if tied else "named"), number / hidden.amount
+    if hidden.effect in tied:
+        return "tied", float("nan")
+    return ("curve" if found.verdict == "unnamed" else "wrong name"), float("nan")
+
+
+def forecast_accuracy(record: Record, augmented: Simulation) -> float:
+    """How much less error the forecast of an augmented simulation has, median of channels [%]."""
+    system, start, truth = record.system, record.start(forecast=True), record.target(forecast=True)
+    known, states = (
+        rates.run(start[None], record.conditions.dt_s, len(truth) - 1)[0]
+        for rates in (system.known, KnownRates(augmented))
+    )
+    points = Points(np.zeros(len(states)), states, np.empty((len(states), 0)))
+    seen = np.column_stack([evaluate(augmented, expression, points) for _, expression in augmented.observations])
+    known, seen = (np.sqrt(np.mean((each - truth) ** 2, axis=0)) for each in (known[:, : truth.shape[1]], seen))
+    return float(np.median(100 * (1 - seen / np.where(known > 0, known, np.nan))))

@@ -1,0 +1,504 @@
+"""Pages of chapter 3: errors, accuracy against noise and horizon, cost, every cell, and who names what."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.palette import Look
+from gaitdisc.report.panels import Room, decades, in_style, legend, lines_of, panels
+from gaitdisc.report.table import Table, words_table
+from gaitdisc.report.wording import unit_text
+
+from .discrepancy_cell import (
+    FORECAST,
+    PART_WORDS,
+    PARTS,
+    DiscrepancyCell,
+    PartAccuracy,
+    cells_table,
+)
+from .naming import Naming, namings_table
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+METHOD_WORDS = {
+    "sindy": "SINDy",
+    "esindy": "SINDy, ensemble",
+    "wsindy": "SINDy, weak form",
+    "dmd": "DMD",
+    "exactdmd": "exact DMD",
+    "bopdmd": "BOP-DMD",
+    "gp": "Gaussian process",
+    "gpm": "Gaussian process, Matern",
+    "nn": "neural network",
+}
+METHOD_LOOKS = {
+    "sindy": Look("#00875a", "-", "s"),
+    "esindy": Look("#4caf7d", (0, (4.0, 1.6)), "P"),
+    "wsindy": Look("#0b5f3f", (0, (1.2, 1.2)), "X"),
+    "dmd": Look("#d97700", (0, (4.0, 1.6)), "o"),
+    "bopdmd": Look("#7a3fa0", (0, (3.0, 1.0, 1.0, 1.0)), "D"),
+    "exactdmd": Look("#a85f00", (0, (1.2, 1.2)), "p"),
+    "gp": Look("#1f4fc8", (0, (1.2, 1.2)), "^"),
+    "gpm": Look("#6f8fe0", "-", "<"),
+    "nn": Look("#c8102e", (0, (4.0, 1.2, 1.2, 1.2)), "v"),
+}
+KNOWN, AUGMENTED = Look("#1f4fc8", "-", ""), Look("#111111", (0, (4.0, 1.6)), "")
+HORIZONS_S = tuple(np.round(np.geomspace(0.2, 20.0, 40), 2))
+MOST_DRAWN = 1000  # points of a line
+BAR = 0.16  # of the distance between two noises, for one method
+MOST_TERMS = 110  # characters
+COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
+WORST_SAID = -1000.0  # %: how much worse a run is whose error is eleven times the known model's, rounding decides
+MOST_CHANNELS = 4  # that are listed one by one
+
+
+@in_style
+def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, channel: int = 0) -> Figure:
+    """Truth minus known and truth minus augmented over the record's time, a row a method (Figs. 3.3, 3.4, 3.7, 3.8)."""
+    cells = [cell for cell in cells if cell.parts]
+    drawn, grid = panels(len(cells), len(PARTS), 0.95, Room(across=0.4, down=0.5))
+    numbers = []
+    for row, cell in zip(grid, cells, strict=True):
+        for axes, part in zip(row, PARTS, strict=True):
+            numbers.append(_error_lines(axes, cell, part, channel))
+        row[0].set_ylabel(f"error of {cell.channels[channel]} [{_unit(cell, channel)}]")
+    for axes in grid[-1]:
+        axes.set_xlabel("time in the record [s]")
+    legend(drawn, lines_of({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
+    caption = (
+        f"{source}. {cells[0].system}, {cells[0].channels[channel]}: reconstruction of the training part from the true "
+        "first state; forecast from the noise-free true state (an oracle), and from the start estimated from the data; "
+        f"approach: {cells[0].approach}; variant: {cells[0].variant}; noise {cells[0].noise:g}."
+    )
+    return Figure(name, caption, f"Error curves of {len(cells)} methods over time", pd.concat(numbers), drawn)
+
+
+def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> pd.DataFrame:
+    found = cell.parts[part]
+    some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
+    table = pd.DataFrame({"method": cell.method, "part": part, "t_s": found.begins_s + found.time[some]})
+    for model, look in (("known", KNOWN), ("augmented", AUGMENTED)):
+        table[model] = (found.truth - getattr(found, model))[some, channel]
+        axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
+    diverged = "" if found.diverged_s is None else f"\ndiverged at t = {found.begins_s + found.diverged_s:.2f} s"
+    axes.set_title(f"{METHOD_WORDS[cell.method]}: {PART_WORDS[part]}{diverged}")
+    axes.set_xlim(found.begins_s, found.begins_s + found.time[-1])
+    return table
+
+
+def _rate_unit(unit: str) -> str:
+    return unit_text(f"{unit}2" if unit.endswith("/s") else f"{unit}/s")
+
+
+def _unit(cell: DiscrepancyCell, channel: int) -> str:
+    return unit_text(cell.units[channel]) if cell.units else "1"
+
+
+@in_style
+def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str, source: str) -> Figure:
+    """Phase portraits and time evolution of true and known system, and what is missing in rates and states."""
+    found, channels = cell.parts[PARTS[0]], cell.channels
+    said = [f"{channel} [{_unit(cell, k)}]" for k, channel in enumerate(channels)]
+    drawn, grid = panels(2, 3, 1.5, Room(across=0.6, down=0.6))
+    some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
+    lacking, last = int(np.argmax(np.abs(missing).max(axis=0))), len(channels) - 1
+    table = pd.DataFrame({"t_s": found.time[some]})
+    for row, model, look in zip(grid, ("truth", "known"), (AUGMENTED, KNOWN), strict=True):
+        for channel, values in zip(channels, getattr(found, model)[some].T, strict=True):
+            table[f"{channel} {model}"] = values
+        row[0].plot(
+            table[f"{channels[0]} {model}"], table[f"{channels[last]} {model}"], color=look.colour, linewidth=0.6
+        )
+        row[0].set_title(f"phase portrait, {'true' if model == 'truth' else 'known'}")
+        row[0].set_xlabel(said[0])
+        row[0].set_ylabel(said[last])
+        for panel, k in zip((grid[0][1], grid[1][1]), (0, last), strict=True):
+            values = table[f"{channels[k]} {model}"]
+            panel.plot(table["t_s"], values, color=look.colour, linestyle=look.line, linewidth=0.7)
+            panel.set_ylabel(said[k])
+            panel.set_xlabel("time [s]")
+    table["missing rate"], table["residual"] = missing[some, lacking], (found.truth - found.known)[some, 0]
+    rate = _rate_unit(_unit(cell, lacking))
+    for panel, column, words, label in zip(
+        (grid[0][2], grid[1][2]),
+        ("missing rate", "residual"),
+        (f"dynamical error: rate of {channels[lacking]}", f"state-space residual of {channels[0]}"),
+        (f"missing rate of {channels[lacking]} [{rate}]", f"truth − known, {said[0]}"),
+        strict=True,
+    ):
+        panel.plot(table["t_s"], table[column], color=AUGMENTED.colour, linewidth=0.7)
+        panel.set_title(words)
+        panel.set_xlabel("time [s]")
+        panel.set_ylabel(label)
+    legend(drawn, lines_of({"true": AUGMENTED, "known": KNOWN}))
+    caption = (
+        f"{source}. True and known system from the same start, without noise: phase portraits, time evolution, and the "
+        "two errors along the truth."
+    )
+    return Figure(name, caption, "Phase portraits, curves over time, two error signals", table, drawn)
+
+
+@in_style
+def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
+    """Clipped accuracy against noise, a row an approach (Figs. 3.5, 3.10, 3.13)."""
+    table = cells_table([cell for cell in cells if cell.parts])
+    approaches, noises = list(dict.fromkeys(table["approach"])), sorted(table["noise"].unique())
+    over = table.groupby(["approach", "part", "method", "noise", "seed"], sort=False)["clipped"].median()
+    spread = over.groupby(level=[0, 1, 2, 3]).agg(["median", "min", "max", "size"])
+    spread["diverged_s"] = table.groupby(["approach", "part", "method", "noise"])["diverged_s"].min()
+    spread.loc[spread["diverged_s"].notna(), ["median", "min", "max"]] = np.nan  # a time, and never a number
+    spread = spread.reset_index()
+    drawn, grid = panels(len(approaches), len(PARTS), 1.4, Room(across=0.4, down=0.5))
+    methods = list(dict.fromkeys(table["method"]))
+    noise_unit = "channel’s unit" if cells[0].variant == "as published" else "share of the channel’s SD"
+    for row, approach in zip(grid, approaches, strict=True):
+        for axes, part in zip(row, PARTS, strict=True):
+            for k, method in enumerate(methods):
+                rows = spread[
+                    (spread["approach"] == approach) & (spread["part"] == part) & (spread["method"] == method)
+                ]
+                at = [noises.index(noise) + (k - (len(methods) - 1) / 2) * BAR for noise in rows["noise"]]
+                axes.bar(at, rows["median"], 0.9 * BAR, color=METHOD_LOOKS[method].colour)
+                axes.vlines(at, rows["min"], rows["max"], color="#111111", linewidth=0.7)
+                lost = [place for place, time in zip(at, rows["diverged_s"], strict=True) if np.isfinite(time)]
+                axes.plot(lost, [-97.0] * len(lost), "x", color=METHOD_LOOKS[method].colour, markersize=4)
+            axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
+            axes.set_ylim(-105, 105)
+            axes.axhline(0, color="#111111", linewidth=0.5)
+            axes.set_title(f"{approach}: {PART_WORDS[part]}")
+        row[0].set_ylabel("less RMSE than known [%]")
+    for axes in grid[-1]:
+        axes.set_xlabel(f"noise [{noise_unit}]")
+    legend(drawn, _patches({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
+    caption = (
+        f"{source}. 100 (1 − RMSE augmented / RMSE known) against the noise-free truth, median of channels, clipped to "
+        f"±100; lines: least to most of n = {int(spread['size'].max())} seeds. ×: diverged, in one seed at least. "
+        "Oracle start: the noise-free true state, which no user has; estimated start: from the noisy data."
+    )
+    return Figure(name, caption, "Bars of accuracy against noise, by method", spread, drawn)
+
+
+@in_style
+def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
+    """Percent change in RMSE against the forecast horizon, a panel an approach (Fig. 3.9)."""
+    cells = [cell for cell in cells if cell.parts]
+    approaches = list(dict.fromkeys(cell.approach for cell in cells))
+    drawn, grid = panels(1, len(approaches), 1.8, Room(across=0.6))
+    tables = []
+    longest = max(float(cell.parts[FORECAST].time[-1]) for cell in cells)
+    for axes, approach in zip(grid[0], approaches, strict=True):
+        for cell in cells:
+            if cell.approach != approach:
+                continue
+            part, look = cell.parts[FORECAST], METHOD_LOOKS[cell.method]
+            horizons = _horizons(float(part.time[-1]))
+            change = part.change(horizons)
+            axes.plot(horizons, np.clip(change, -100, 100), color=look.colour, linestyle=look.line)
+            row = {"approach": approach, "method": cell.method, "horizon_s": horizons, "accuracy": change}
+            tables.append(pd.DataFrame(row))
+        axes.axvline(cells[0].parts[FORECAST].first_jump_s(), color="#7a7a7a", linewidth=0.6)
+        axes.set_xlim(0, longest)
+        axes.set_title(approach)
+        axes.set_xlabel("forecast horizon [s]")
+    grid[0][0].set_ylabel("less RMSE than known [%]")
+    methods = list(dict.fromkeys(cell.method for cell in cells))
+    legend(drawn, lines_of({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
+    caption = (
+        f"{source}. Median over channels, clipped to ±100, to the end of the forecast after {longest:g} s, from the "
+        f"start estimated from the data; grey: the truth’s first jump. Noise {cells[0].noise:g}."
+    )
+    return Figure(name, caption, "Curves of accuracy against horizon", pd.concat(tables), drawn)
+
+
+def _horizons(last_s: float) -> list[float]:
+    """Horizons within a forecast, its end among them [s]."""
+    return [each for each in HORIZONS_S if each < last_s] + [last_s]
+
+
+@in_style
+def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
+    """Seconds to fit and to run, by method and approach (Fig. 3.11)."""
+    rows = pd.DataFrame(
+        [{"approach": c.approach, "method": c.method, "fit_s": c.fit_s, "run_s": c.run_s} for c in cells if c.parts]
+    )
+    middle = rows.groupby(["approach", "method"], sort=False).median().reset_index()
+    approaches = list(dict.fromkeys(middle["approach"]))
+    drawn, grid = panels(1, len(approaches), 1.6, Room(across=0.6, bottom=0.5))
+    for axes, approach in zip(grid[0], approaches, strict=True):
+        part = middle[middle["approach"] == approach]
+        at = np.arange(len(part))
+        axes.bar(at - 0.2, part["fit_s"], 0.36, color="#555555")
+        axes.bar(at + 0.2, part["run_s"], 0.36, color="#bbbbbb")
+        decades(axes)
+        axes.set_xticks(at, [METHOD_WORDS[str(method)].replace(" ", "\n") for method in part["method"]])
+        axes.set_title(approach)
+    grid[0][0].set_ylabel("processor time [s]")
+    legend(drawn, _patches({"fit": Look("#555555", "-", ""), "runs": Look("#bbbbbb", "-", "")}))
+    return Figure(
+        name,
+        f"{source}. Processor time: fit (dark), and estimating the start and running all parts (light); median over "
+        "noises and seeds.",
+        "Bars of seconds",
+        middle,
+        drawn,
+    )
+
+
+@in_style
+def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source: str) -> Figure:
+    """Error of known and augmented model over space and the record's time (Fig. 3.12)."""
+    drawn, grid = panels(1, 2, 2.0, Room(right=1.0, top=0.3, across=0.6))
+    some = np.unique(np.linspace(0, len(found.time) - 1, 200).astype(int))
+    time = found.begins_s + found.time[some]
+    errors = {model: (found.truth - getattr(found, model))[some] for model in ("known", "augmented")}
+    most, drawn_maps = float(np.nanmax(np.abs(errors["known"]))) or 1.0, []
+    for axes, (model, error) in zip(grid[0], errors.items(), strict=True):
+        map_of_error = axes.pcolormesh(places, time, error, vmin=-most, vmax=most, cmap="RdBu_r", rasterized=True)
+        drawn_maps.append(map_of_error)
+        axes.set_title(f"truth − {model}")
+        axes.set_xlabel("place [1]")
+    grid[0][0].set_ylabel("time in the record [s]")
+    beyond = "both" if np.nanmax(np.abs(errors["augmented"])) > most else "neither"
+    bar = drawn.colorbar(drawn_maps[-1], cax=_beside(grid[0][-1]), extend=beyond)
+    bar.set_label("error of u [1]")
+    numbers = pd.DataFrame({
+        "t_s": time, **{f"rmse_{m}": np.sqrt(np.mean(e**2, axis=1)) for m, e in errors.items()},
+    })  # fmt: skip
+    return Figure(
+        name,
+        f"{source}. Colours span ±{most:.3g}, the known model’s largest error; errors beyond have the last colour.",
+        "Two maps of error over space and time",
+        numbers,
+        drawn,
+    )
+
+
+def _beside(axes: Axes) -> Axes:
+    """Room for a colour bar at the right of a panel."""
+    drawn, place = axes.figure, axes.get_position()
+    return drawn.add_axes((place.x1 + 0.015, place.y0, 0.012, place.height))
+
+
+def _patches(looks: dict[str, Look]) -> list[Artist]:
+    from matplotlib.patches import Patch
+
+    return [Patch(color=look.colour, label=words) for words, look in looks.items()]
+
+
+def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
+    """Accuracy of every cell, a row a method, approach and noise; the median of the seeds."""
+    groups: dict[tuple, list[DiscrepancyCell]] = {}
+    for cell in cells:
+        groups.setdefault((cell.variant, cell.approach, cell.method, cell.noise), []).append(cell)
+    rows = []
+    for (variant, approach, method, noise), found in groups.items():
+        parts = [[c.parts[part] for c in found if c.parts] for part in PARTS]
+        rows.append((
+            variant, approach, METHOD_WORDS[method], f"{noise:g}", f"{len(found)}",
+            *(_cell(each, len(found)) for each in parts),
+            *(_median([p.valid_s("augmented") for p in each], "{:.1f}") for each in parts[1:]),
+            _median([p.valid_s("known") for p in parts[2]], "{:.1f}"),
+            f"{np.median([c.fit_s for c in found]):.1f}", f"{np.median([c.run_s for c in found]):.1f}",
+            _found(found),
+        ))  # fmt: skip
+    columns = (
+        "variant", "approach", "method", "noise", "n", "reconstruction, true start [%]",
+        "forecast, true start (oracle) [%]", "forecast, estimated start [%]", "oracle valid [s]", "valid [s]",
+        "known valid [s]", "fit [s]", "run [s]", "found",
+    )  # fmt: skip
+    caption = (
+        "100 (1 − RMSE augmented / RMSE known) by channel, unclipped, against the noise-free truth: median and "
+        "[least, greatest] of n seeds; without noise there is one. "
+        "True start: the noise-free state, which no user has; estimated start: from the noisy measurement. "
+        "How far below −1000 it lies depends on the machine, and is not said. "
+        "Valid: until the error passes 0.4 standard deviations, median. Seconds of processor time. "
+        "Found: terms of the first seed."
+    )
+    return Table(name, caption, columns, tuple(rows), cells_table(cells))
+
+
+def _cell(parts: list[PartAccuracy], seeds: int) -> str:
+    """Say median and range over the seeds, by channel; when it diverged, and in how many seeds, instead of a number."""
+    if not parts:
+        return "not fitted"
+    diverged = [part.diverged_s for part in parts if part.diverged_s is not None]
+    if diverged:
+        return f"diverged at t = {min(diverged):.2f} s" + (f" ({len(diverged)} of {seeds} seeds)" * (seeds > 1))
+    accuracy = np.array([part.accuracy() for part in parts])
+    many = accuracy.shape[1] > MOST_CHANNELS
+    columns = [np.median(accuracy, axis=1)] if many else list(accuracy.T)
+    said = "; ".join(spread_words(column) for column in columns)
+    said += f" (median of {accuracy.shape[1]})" if many else ""
+    return said if len(parts) == seeds else f"{said} ({len(parts)} of {seeds} seeds)"
+
+
+def spread_words(values: NDArray[np.float64]) -> str:
+    """Median, and least and greatest where there are several."""
+    if not np.isfinite(values).all():
+        return "nothing to mend"
+    middle = _percent(float(np.median(values)))
+    return middle if len(values) == 1 else f"{middle} [{_percent(values.min())}, {_percent(values.max())}]"
+
+
+def _percent(value: float) -> str:
+    return f"{value:.1f}" if value >= WORST_SAID else f"below {WORST_SAID:.0f}"
+
+
+def _median(values: list[float], form: str) -> str:
+    return form.format(float(np.median(values))) if values else ""
+
+
+def _found(cells: list[DiscrepancyCell]) -> str:
+    refused = [cell.refused for cell in cells if cell.refused]
+    if refused:
+        return refused[0] + (f" ({len(refused)} of {len(cells)} seeds)" * (len(cells) > 1))
+    kinds = [re.sub(COEFFICIENT, "", cell.terms) for cell in cells]
+    same = f" (the same terms in {kinds.count(kinds[0])} of {len(cells)} seeds)" * (len(cells) > 1)
+    return _short(cells[0].terms) + same if cells[0].terms else ""
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= MOST_TERMS else f"{text[:MOST_TERMS]}… ({text.count('*')} products)"
+
+
+def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> Table:
+    """What the dissertation states, and what was found."""
+    columns = ("where", "dissertation", "ours")
+    caption = "The dissertation's statements beside what was found here."
+    return words_table(name, caption, columns, statements)
+
+
+MOST_WORDS = 120  # characters of an answer
+TOOL_WORDS = {"discover": "discover", "sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "network"}
+RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
+EDGE = "#555555"
+LOOKS = {
+    "right": (RIGHT, "N", "right, and nothing else"),
+    "tied": (HALF, "T", "right or another, tied"),
+    "among others": (HALF, "A", "right among others"),
+    "wrong name": (WRONG, "W", "wrong name"),
+    "curve": (CURVE, "C", "a curve, no name"),
+    "nothing": (SILENT, "–", "nothing found"),
+    "refused": (SILENT, "R", "refused"),
+}
+ROW, LEFT = 0.27, 1.75  # inch
+FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
+
+
+def naming_table(namings: Sequence[Naming], name: str) -> Table:
+    """What each tool answers, a row a case and noise."""
+    table = namings_table(namings)
+    tools = [tool for tool in TOOL_WORDS if tool in set(table["tool"])]
+    rows = []
+    for (case, noise), found in table.groupby(["case", "noise"], sort=False):
+        cells = [_answers(found[found["tool"] == tool]) for tool in tools]
+        rows.append((str(case), str(found["hidden"].iloc[0]) or "nothing", f"{noise:.1%}", *cells))
+    rows.sort(key=lambda row: list(dict.fromkeys(table["case"])).index(row[0]))
+    caption = (
+        "Answers, with how many of the seeds gave them; × the true number: median of the seeds that named it. Of a "
+        "curve: how far it is from what is missing, along the record without noise (first seed)."
+    )
+    return Table(
+        name, caption, ("case", "hidden", "noise", *(TOOL_WORDS[t] for t in tools)), tuple(rows), table
+    )  # fmt: skip
+
+
+def seeds_of(found: pd.DataFrame) -> tuple[str, float]:
+    """Most frequent answer of the seeds, `right` where it is, and its share."""
+    kinds = found["answer"].where(~found["right"], "right")
+    counts = kinds.value_counts(sort=False)
+    return str(counts.idxmax()), float(counts.max() / len(kinds))
+
+
+def _answers(found: pd.DataFrame) -> str:
+    if not len(found):
+        return ""
+    counts = found["answer"].value_counts(sort=False)
+    some = [f"{answer} {count}/{len(found)}" if count < len(found) else str(answer) for answer, count in counts.items()]
+    amounts = found["amount"].dropna()
+    words = ", ".join(some)
+    if len(amounts):
+        words += f" (× {amounts.median():.4g})"
+    first = str(found["said"].iloc[0]).split(";")[0]
+    shown = found["answer"].iloc[0] in ("curve", "refused") and len(first) < MOST_WORDS
+    return f"{words}: {first}" if shown else words
+
+
+@in_style
+def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
+    """A row a case, a column a tool and noise; the tile shows the answer, and the forecast."""
+    from matplotlib.patches import Patch
+
+    table = namings_table(namings)
+    tiles = _tiles(table)
+    cases, noises = list(dict.fromkeys(table["case"])), sorted(table["noise"].unique())
+    tools = list(dict.fromkeys(tiles["tool"]))
+    room = Room(left=LEFT, top=0.75, bottom=0.35, across=0.06)
+    drawn, (row,) = panels(1, len(tools), ROW * len(cases), room)
+    for axes, tool in zip(row, tools, strict=True):
+        _draw_tiles(axes, tiles[tiles["tool"] == tool], cases, noises)
+        axes.set_title(TOOL_WORDS[tool])
+    hidden = dict(zip(table["case"], table["hidden"], strict=True))
+    labels = [f"{case}:\n{hidden[case]}" if hidden[case] else case for case in cases]
+    row[0].set_yticks(np.arange(len(cases)) + 0.5, labels, fontsize=6)
+    row[len(tools) // 2].set_xlabel("noise [% of each channel’s SD]")
+    key = [Patch(facecolor=c, edgecolor=EDGE, label=f"{letter} {words}") for c, letter, words in LOOKS.values()]
+    legend(drawn, key[:4])
+    legend(drawn, key[4:], down=0.2)
+    caption = (
+        "Answer of most seeds, with its share in percent where the seeds differ; below it, how much less RMSE the "
+        "forecast from the noise-free true state (an oracle) has than the known model’s [%], median of "
+        f"n = {table['seed'].nunique()} seeds (without noise, and of the curves, one; no tile: not run)."
+    )
+    return Figure(name, caption, "Tiles of answers by case, tool and noise", tiles, drawn)
+
+
+def _tiles(table: pd.DataFrame) -> pd.DataFrame:
+    """What each tile shows: the answer of most seeds, its share, and the forecast."""
+    rows = []
+    for tool in TOOL_WORDS:
+        for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):
+            kind, share = seeds_of(found)
+            rows.append((case, tool, noise, kind, share, _forecast(found)))
+    return pd.DataFrame(rows, columns=pd.Index(["case", "tool", "noise", "kind", "share", "forecast"]))
+
+
+def _draw_tiles(axes: Axes, tiles: pd.DataFrame, cases: list[str], noises: list[float]) -> None:
+    from matplotlib.patches import Rectangle
+
+    for case, _, noise, kind, share, forecast in tiles.itertuples(index=False):
+        down, across = cases.index(str(case)), noises.index(noise)
+        colour, letter, _ = LOOKS[kind]
+        axes.add_patch(Rectangle((across, down), 1, 1, facecolor=colour, edgecolor=EDGE, linewidth=0.4))
+        ink = "#ffffff" if colour in (RIGHT, WRONG) else "#111111"
+        said = letter if share == 1 else f"{letter} {share:.0%}".replace("%", "")
+        axes.text(across + 0.5, down + 0.30, said, ha="center", va="center", fontsize=6, color=ink)
+        axes.text(across + 0.5, down + 0.72, forecast, ha="center", va="center", fontsize=5, color=ink)
+    axes.set_xlim(0, len(noises))
+    axes.set_ylim(len(cases), 0)
+    axes.set_xticks(np.arange(len(noises)) + 0.5, [f"{100 * noise:g}" for noise in noises])
+    axes.set_yticks([])
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+
+
+def _forecast(found: pd.DataFrame) -> str:
+    if found["diverged_s"].notna().any():
+        return "div."
+    middle = float(found["accuracy"].median())
+    if not np.isfinite(middle):
+        return ""
+    if middle < FEW:
+        return f"<{FEW:.0f}".replace("-", "−")
+    return (f"{middle:.1f}" if middle > MANY else f"{middle:.0f}").replace("-", "−")

@@ -1,0 +1,324 @@
+"""Errors and maps of reconstructed fields, and what describes a turbulent flow."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.recording import Axis, Field
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.palette import RECONSTRUCTED, Look
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
+from gaitdisc.report.table import Table
+from gaitdisc.report.wording import number
+
+from .reconstruct_field import FieldCell, field_cells_table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+
+ROUTE_LOOKS = (
+    Look("#111111", "-", "o"),
+    Look("#7a7a7a", (0, (1.2, 1.2)), "s"),
+    Look("#c8102e", "-", "v"),
+    Look("#1f4fc8", (0, (4.0, 1.6)), "^"),
+    Look("#00875a", (0, (4.0, 1.2, 1.2, 1.2)), "D"),
+    Look("#d97700", (0, (2.0, 1.0)), "x"),
+    Look("#7a3fa0", (0, (6.0, 1.0)), "P"),
+    Look("#a8326e", (0, (3.0, 1.0, 1.0, 1.0, 1.0, 1.0)), "*"),
+    Look("#5b4a2f", (0, (8.0, 2.0)), "h"),
+)
+
+
+@in_style
+def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Figure:
+    """How often errors of each size are made, a panel a split, a line a route."""
+    splits = list(dict.fromkeys(cell.split for cell in cells))
+    routes = list(dict.fromkeys(cell.route for cell in cells))
+    drawn, (row,) = panels(1, len(splits), 2.1, Room(top=0.3 + 0.17 * (-(-len(routes) // 3)), across=0.7))
+    numbers = []
+    for axes, split in zip(row, splits, strict=True):
+        for route, look in zip(routes, ROUTE_LOOKS, strict=False):
+            some = [cell for cell in cells if (cell.split, cell.route) == (split, route)]
+            if some:
+                numbers.append(_histogram(axes, some, look))
+        axes.set_title(split)
+        axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        axes.set_xlabel(f"reconstructed − measured [{cells[0].unit}]")
+    row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density [1]")
+    handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
+    drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
+    caption = (
+        f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all test "
+        f"snapshots, n = {cells[0].tested} at most. {_beyond(numbers, cells[0])}"
+    )
+    return Figure(name, caption, f"Histograms of errors of {len(routes)} routes", pd.concat(numbers), drawn)
+
+
+def _beyond(numbers: Sequence[pd.DataFrame], cell: FieldCell) -> str:
+    """What the axis leaves out: the two outermost bins are open-ended, so their heights are no density."""
+    shares = [float(one["count"].iloc[[0, -1]].sum() / one["count"].sum()) for one in numbers]
+    low, high = cell.errors.edges[1], cell.errors.edges[-2]
+    return (
+        f"Not drawn: errors below {number(low)} or above {number(high)} {cell.unit}, "
+        f"{' to '.join(dict.fromkeys(f'{100 * share:.2g}' for share in (min(shares), max(shares))))} % of a route's."
+    )
+
+
+def _histogram(axes: Axes, some: Sequence[FieldCell], look: Look) -> pd.DataFrame:
+    edges, counts = some[0].errors.edges, np.sum([cell.errors.counts for cell in some], axis=0)
+    density = counts / counts.sum() / np.diff(edges)
+    middles = (edges[1:] + edges[:-1]) / 2
+    inner = np.where(density > 0, density, np.nan)[1:-1]
+    axes.plot(middles[1:-1], inner, color=look.colour, linestyle=look.line, linewidth=1.0)
+    of = {"split": some[0].split, "route": some[0].route}
+    return pd.DataFrame({**of, "error": middles, "count": counts, "density": density})
+
+
+@in_style
+def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: dict[str, float]) -> Figure:
+    """Relative error of many models, a panel a split, a box a kind of sensor, every model a point."""
+    splits = list(dict.fromkeys(cell.split for cell in cells))
+    routes = list(dict.fromkeys(cell.route for cell in cells))
+    drawn, (row,) = panels(1, len(splits), 2.2, Room(across=0.6))
+    for axes, split in zip(row, splits, strict=True):
+        groups = [[c.relative_l2 for c in cells if (c.split, c.route) == (split, route)] for route in routes]
+        axes.boxplot(groups, widths=0.5, showfliers=False, medianprops={"color": "#111111"})
+        for k, group in enumerate(groups):
+            spread = np.linspace(-0.16, 0.16, len(group)) if len(group) > 1 else np.zeros(1)
+            axes.plot(k + 1 + spread, group, ROUTE_LOOKS[k + 2].mark, color=ROUTE_LOOKS[k + 2].colour, markersize=3.5)
+        axes.axhline(1.0, color="#888888", linewidth=0.8)
+        axes.axhline(ceilings[split], color="#00875a", linestyle=(0, (4.0, 1.6)), linewidth=0.9)
+        words = [f"{route}\nn = {len(group)}" for route, group in zip(routes, groups, strict=True)]
+        axes.set_xticks(range(1, len(routes) + 1), words)
+        axes.set_title(split)
+        axes.set_ylim(bottom=0)
+    row[0].set_ylabel("relative L2 error [1]")
+    legend(drawn, lines_of({"the field's own norm": Look("#888888", "-", ""),
+                            "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}))  # fmt: skip
+    numbers = pd.DataFrame([(c.split, c.route, c.run, c.relative_l2, c.r2) for c in cells],
+                           columns=pd.Index(["split", "route", "run", "relative_l2", "r2"]))  # fmt: skip
+    caption = f"{source}. Each point is one model; box: quartiles, whiskers within 1.5 of their distance."
+    return Figure(name, caption, "Boxes of relative errors by split and kind of sensor", numbers, drawn)
+
+
+@in_style
+def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
+    """Error against the nodes of the recurrent layer, beside the energy that as many modes leave."""
+    drawn, ((left, right),) = panels(1, 2, 2.1, Room(across=0.8, top=0.2))
+    splits = list(dict.fromkeys(found["split"]))
+    for split, look in zip(splits, (RECONSTRUCTED["shred"], RECONSTRUCTED["delay ridge"]), strict=False):
+        some = found[found["split"] == split]
+        left.plot(some["nodes"], some["relative_l2"], marker=look.mark, color=look.colour, linestyle=look.line,
+                  markersize=4, label=split)  # fmt: skip
+    first = found[found["split"] == splits[0]]
+    right.plot(first["nodes"], first["energy_left"], "o-", color="#111111", markersize=4)
+    for axes, words in ((left, "relative L2 error of SHRED [1]"), (right, "energy beyond so many modes, share [1]")):
+        axes.set_xscale("log", base=2)
+        axes.set_xticks(list(first["nodes"]), [str(n) for n in first["nodes"]])
+        axes.minorticks_off()
+        axes.axvline(5, color="#888888", linewidth=0.7, linestyle=(0, (2.0, 2.0)))
+        axes.set_ylabel(words)
+        axes.set_ylim(bottom=0)
+    left.set_xlabel("nodes of the recurrent layer")
+    right.set_xlabel("proper orthogonal modes")
+    left.legend(loc="lower left")
+    caption = f"{source}. Dotted: 5, where the dissertation sees both elbows. Modes of the training part ({splits[0]})."
+    return Figure(name, caption, "Error against latent size, and energy against modes", found, drawn)
+
+
+def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[str, str], float] | None = None) -> Table:
+    """Relative L2 error of every route, model and split; the least of each row and split is marked by a star."""
+    splits = list(dict.fromkeys(cell.split for cell in cells))
+    models = list(dict.fromkeys(cell.model for cell in cells if not _is_bound(cell.model)))
+    routes = list(dict.fromkeys(cell.route for cell in cells))
+    found = {(cell.route, cell.split, cell.model): cell for cell in cells}
+    extra = ("printed",) if printed else ()
+    rows = []
+    for route in routes:
+        row = [route]
+        for split in splits:
+            here = {model: found.get((route, split, model)) for model in models}
+            least = min((c.relative_l2 for c in here.values() if c is not None), default=0.0)
+            row += [_cell(cell, least) for cell in here.values()]
+            if printed:
+                row.append(f"{printed[route, split]:.4f}" if (route, split) in printed else "")
+        rows.append(tuple(row))
+    first = cells[0]
+    caption = (
+        f"{first.field}, {first.quantity}: relative L2 error, the norm of the error over the norm of the field about "
+        f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; star: least of the models. "
+        f"Test snapshots: {', '.join(f'{split} {_tested(cells, split)}' for split in splits)}."
+        f"{_bounds(cells)}"
+    )
+    columns = ("route", *[word for _ in splits for word in (*models, *extra)])
+    groups = (("", 1), *[(split, len(models) + len(extra)) for split in splits])
+    return Table(name, caption, columns, tuple(rows), field_cells_table(cells), groups)
+
+
+def _is_bound(model: str) -> bool:
+    return model.endswith("(no sensor)") or model.startswith("POD")
+
+
+def _bounds(cells: Sequence[FieldCell]) -> str:
+    """What needs no sensor, and what no model can beat: the same for every route."""
+    found = {(cell.split, cell.model): cell for cell in reversed(cells) if _is_bound(cell.model)}
+    words = [f"{split}, {model}: {_cell(cell)}" for (split, model), cell in reversed(found.items())]
+    return f" Bounds: {'; '.join(words)}." if words else ""
+
+
+def _cell(cell: FieldCell | None, least: float = 0.0) -> str:
+    if cell is None:
+        return ""
+    star = "*" if cell.relative_l2 == least else ""
+    return f"{cell.relative_l2:.3f}{star} ({cell.rmse:.3g}; {cell.r2:.2f})"
+
+
+def _tested(cells: Sequence[FieldCell], split: str) -> str:
+    counts = sorted({cell.tested for cell in cells if cell.split == split})
+    return str(counts[0]) if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+
+
+def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
+    """Median and range over runs of every route, split and model."""
+    groups: dict[tuple[str, str, str], list[FieldCell]] = {}
+    for cell in cells:
+        route = "" if _is_bound(cell.model) else cell.route
+        groups.setdefault((cell.split, cell.model, route), []).append(cell)
+    rows = []
+    for (split, model, route), found in groups.items():
+        some = found if route else found[:1]
+        errors, r2 = [cell.relative_l2 for cell in some], [cell.r2 for cell in some]
+        rows.append((
+            split, model, route, str(len(some)), f"{np.median(errors):.3f}", f"{min(errors):.3f} to {max(errors):.3f}",
+            f"{np.median(r2):.3f}", f"{np.median([c.bias for c in some]):+.4f}",
+            f"{np.median([c.sd for c in some]):.4f}", f"{np.median([c.seconds for c in some]):.1f}",
+        ))  # fmt: skip
+    first = cells[0]
+    caption = (
+        f"{first.field}, {first.quantity} [{first.unit}]: medians over runs; relative L2 error about zero with its "
+        "range, R2 about the training part's mean, mean and standard deviation of reconstructed minus measured, "
+        "processor time of a fit."
+    )
+    columns = ("split", "model", "sensor", "n", "relative L2", "range", "R2", "bias", "sd", "fit [s]")
+    return Table(name, caption, columns, tuple(rows), field_cells_table(cells))
+
+
+SENSOR_COLOUR = "#111111"
+ROUTE_COLOURS = ("#c8102e", "#1f4fc8", "#00875a", "#d97700", "#7a3fa0")
+SHELL = re.compile(r"e_(\d+)")
+
+
+@in_style
+def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
+    """One quantity of a field on its grid, one panel a snapshot, all on one scale of colour."""
+    planes = {title: _plane(field.on_grid(values)) for title, values in snapshots.items()}
+    middle, reach = _span(np.concatenate([plane.ravel() for plane in planes.values()]))
+    columns = 2
+    rows = -(-len(planes) // columns)
+    vertical, across = field.axes[-2:]
+    width = (8.0 - 1.6 - 0.5) / columns
+    height = float(np.clip(width * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 0.9, 2.6))
+    drawn, grid = panels(rows, columns, height, Room(right=0.85, across=0.5, down=0.5, top=0.35))
+    panel_list = [axes for row in grid for axes in row]
+    for axes in panel_list[len(planes) :]:
+        axes.set_visible(False)
+    limits = (middle - reach, middle + reach)
+    pairs = zip(panel_list, planes.values(), strict=False)
+    meshes = [_draw_map(axes, (vertical, across), plane, limits) for axes, plane in pairs]
+    for axes, title in zip(panel_list, planes, strict=False):
+        axes.set_title(title)
+    for row in grid:
+        row[0].set_ylabel(f"{vertical.name} [{vertical.unit}]")
+    for axes in grid[-1]:
+        axes.set_xlabel(f"{across.name} [{across.unit}]")
+    box = drawn.add_axes((1 - 0.72 / 8.0, 0.2, 0.12 / 8.0, 0.6))
+    drawn.colorbar(meshes[0], cax=box, label=f"{field.quantities[0]} [{field.units[0]}]")
+    table = pd.DataFrame([
+        {"snapshot": title, "mean": np.nanmean(plane), "sd": np.nanstd(plane), "points": int(np.isfinite(plane).sum())}
+        for title, plane in planes.items()
+    ])  # fmt: skip
+    plane_words = " Middle plane." if len(field.axes) > 2 else ""
+    return Figure(name, f"{source}. {field.quantities[0]} [{field.units[0]}].{plane_words}",
+                  f"{len(planes)} maps on one scale of colour", table, drawn)  # fmt: skip
+
+
+@in_style
+def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
+    """Where sensors go, on the grid of a field with two axes."""
+    vertical, across = field.axes[-2:]
+    height = float(np.clip(7.0 * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 1.2, 3.8))
+    drawn, ((axes,),) = panels(1, 1, height, Room(top=0.5))
+    axes.pcolormesh(across.coordinates, vertical.coordinates, np.where(field.mask, 0.25, np.nan), vmin=0, vmax=1,
+                    cmap="Greys", rasterized=True)  # fmt: skip
+    rows = []
+    for k, (title, places) in enumerate(routes.items()):
+        colour = ROUTE_COLOURS[k % len(ROUTE_COLOURS)]
+        stays = len(np.unique(places, axis=0)) == 1
+        axes.plot(places[:, 1], places[:, 0], "o" if stays else "-", color=colour, markersize=5, linewidth=1.4,
+                  label=title)  # fmt: skip
+        rows.append(pd.DataFrame({"route": title, vertical.name: places[:, 0], across.name: places[:, 1]}))
+    axes.set_xlabel(f"{across.name} [{across.unit}]")
+    axes.set_ylabel(f"{vertical.name} [{vertical.unit}]")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(routes), borderaxespad=0.2)
+    return Figure(name, f"{source}. Grey: points of the field.", "Routes of sensors on a map", pd.concat(rows), drawn)
+
+
+def _draw_map(axes: Axes, pair: tuple[Axis, Axis], plane: NDArray[np.float64], limits: tuple[float, float]) -> QuadMesh:
+    axes.set_facecolor("#dddddd")
+    return axes.pcolormesh(
+        pair[1].coordinates, pair[0].coordinates, plane, vmin=limits[0], vmax=limits[1], cmap="RdBu_r", rasterized=True
+    )
+
+
+def _plane(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    while grid.ndim > 2:
+        grid = grid[len(grid) // 2]
+    return grid
+
+
+def _span(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Middle and reach of the colours: about zero where values lie on both sides of it."""
+    low, high = np.nanquantile(values, [0.005, 0.995])
+    if low < 0 < high:
+        return 0.0, float(max(-low, high))
+    return float((low + high) / 2), float((high - low) / 2) or 1.0
+
+
+@in_style
+def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
+    """Mean spectrum beside the slope of -5/3, and dissipation beside the power that is put in."""
+    drawn, ((left, right),) = panels(1, 2, 2.2, Room(across=0.8, top=0.3))
+    shells = [column for column in numbers.columns if SHELL.fullmatch(column)]
+    k = np.array([int(column[2:]) for column in shells], float)
+    mean = numbers[shells].mean().to_numpy()
+    left.loglog(k, mean, "o-", color="#1f4fc8", markersize=3.5)
+    left.loglog(k, mean[1] * (k / k[1]) ** (-5 / 3), color="#888888", linestyle=(0, (4.0, 1.6)), label="slope −5/3")
+    for axis in (left.xaxis, left.yaxis):
+        axis.set_major_formatter(lambda value, _: f"{value:g}")
+    left.minorticks_off()
+    left.set_ylim(bottom=mean.min() / 3, top=3 * mean.max())
+    left.set_xticks([1, 2, 5, 10, *([20] if k[-1] >= 20 else [])])
+    left.set_xlabel("wavenumber [1]")
+    left.set_ylabel("energy in the shell [1]")
+    left.legend(loc="lower left")
+    right.plot(numbers["snapshot"], numbers["dissipation"], color="#c8102e", linewidth=1.0, label="dissipation")
+    right.axhline(power, color="#888888", linestyle=(0, (4.0, 1.6)), label="power put in")
+    right.set_ylim(0, 1.3 * max(power, float(numbers["dissipation"].max())))
+    right.set_xlabel("snapshot")
+    right.set_ylabel("per mass and time [1]")
+    right.legend(loc="lower right")
+    middle = numbers.mean()
+    caption = (
+        f"Stand-in flow, mean of {len(numbers)} instants: Reynolds number of Taylor's microscale "
+        f"{middle['re_lambda']:.1f}, largest wavenumber times Kolmogorov's length {middle['kmax_eta']:.2f}, turnover "
+        f"{middle['turnover']:.2f}; dissipation {middle['dissipation']:.4f}, power {power:g}."
+    )
+    return Figure(name, caption, "Spectrum of energy, and dissipation over time", numbers, drawn)

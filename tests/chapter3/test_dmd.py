@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+from chapter3.dmd import _modes, fit_dmd
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.recording import Samples
+
+
+def samples(y, dt=0.01):
+    time = dt * np.arange(len(y)) + 3.0
+    return Samples(time[:, None], y, ("t",), tuple("abc"[: y.shape[1]]), time, np.full(len(y), np.nan))
+
+
+def test_two_oscillations_go_on_as_they_were():
+    time = 3.0 + np.arange(900) / 100
+    y = np.column_stack([np.sin(4 * time) + 0.3 * np.cos(11 * time), np.exp(-0.1 * time) * np.sin(4 * time + 1)])
+    model = fit_dmd(samples(y[:600]), delays=40, rank=6)
+    assert np.abs(model(time[600:, None]) - y[600:]).max() < 1e-3
+    assert model.eigenvalues.real.max() <= 1e-9
+
+
+def test_bags_tell_the_spread_of_the_eigenvalues():
+    time = np.arange(400) / 100
+    y = np.sin(6 * time)[:, None] + 0.01 * np.random.default_rng(0).standard_normal((400, 1))
+    model = fit_dmd(samples(y), delays=20, rank=2, bags=5)
+    assert np.abs(np.sort(model.eigenvalues.imag) - [-6, 6]).max() < 0.1
+    assert 0 < model.spread.max() < 1
+
+
+def test_what_dies_out_within_a_sample_is_rounding_and_left_out(monkeypatch):
+    monkeypatch.setattr("chapter3.dmd._modes", lambda *given: _WithOneDead(_modes(*given)))
+    y = np.sin(6 * np.arange(300) / 100)[:, None]
+    model = fit_dmd(samples(y), delays=20, rank=3, bags=3)
+    assert model.eigenvalues.real.min() > -100  # what is left lives for a sample of 0.01 s at least
+    assert len(model.eigenvalues) == len(model.modes) == len(model.spread) > 0
+
+
+class _WithOneDead:
+    """A decomposition whose first eigenvalue is exp(-30) within a sample."""
+
+    def __init__(self, found):
+        self.modes, self.amplitudes, self.eigenvalues_std = found.modes, found.amplitudes, found.eigenvalues_std
+        self.eigs = np.concatenate([[-3000.0 + 0j], found.eigs[1:]])
+
+
+def test_a_record_too_short_for_the_delays_says_by_how_much():
+    with pytest.raises(SamplingError, match="15 modes with 100 delays need 130 samples; there are 90, 40 too few"):
+        fit_dmd(samples(np.random.default_rng(0).standard_normal((90, 1))))
+
+
+def test_a_gap_in_time_is_refused():
+    whole = samples(np.sin(np.arange(300.0))[:, None])
+    keep = np.ones(300, bool)
+    keep[150] = False
+    with pytest.raises(SamplingError, match=r"even in time; the step after 4.49 s is 0.02 s"):
+        fit_dmd(whole.rows(keep), delays=20, rank=2)
+
+
+def test_an_output_that_stands_still_stays_still():
+    y = np.column_stack([np.sin(np.arange(300) / 20), np.zeros(300)])
+    assert np.abs(fit_dmd(samples(y), delays=10, rank=2)(np.array([[4.0]]))[0, 1]) < 1e-12
+
+
+def test_before_its_start_a_mode_that_dies_out_is_held_and_does_not_explode():
+    t = 1.0 + np.arange(300) / 100
+    s = Samples(t[:, None], np.exp(-8.0 * t)[:, None], ("t",), ("a",), t, t)
+    found = fit_dmd(s, delays=20, rank=1)
+    assert found(np.array([[0.0]])) == pytest.approx(found(np.array([[1.0]])))
+
+
+def test_what_a_file_rounds_away_is_no_mode():
+    t = np.arange(600) / 100
+    y = np.column_stack([np.sin(4 * t), np.cos(4 * t)]).round(5)  # two modes, however many are asked for
+    assert len(fit_dmd(samples(y), delays=60, rank=15).eigenvalues) == 2
