@@ -16,6 +16,7 @@ from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.processing.markers_to_moments import computed_trial
 from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.processing.two_sources import line_angles
 from gaitdisc.recording import Strides
 from gaitdisc.recording.body_measures import BodyMeasures
 from gaitdisc.signals.butterworth import lowpassed
@@ -202,3 +203,40 @@ def gained(trial, plate, gain):
     forces = trial.stream("forces")
     times = [gain if c.name.startswith(f"plate_{plate}_") and c.name[8] in "fm" else 1.0 for c in forces.channels]
     return replace(trial, streams={**trial.streams, "forces": forces.with_values(forces.values * times)})
+
+
+def with_heels_exchanged(trial, seconds=(0.6, 1.1)):
+    """The heels' labels exchanged for half a second; nothing that the file computed changes."""
+    markers = trial.stream("markers")
+    values, frames = np.array(markers.values), slice(*(round(at * markers.rate_hz) for at in seconds))
+    for axis in "xyz":
+        one, other = (markers.index(f"{heel}.{axis}") for heel in ("LHEE", "RHEE"))
+        values[frames, [one, other]] = values[frames, [other, one]]
+    return replace(trial, streams={**trial.streams, "markers": markers.with_values(values)}), frames
+
+
+def test_angles_that_follow_the_right_labels_stay_and_keep_their_cycles(files, trials):
+    other, _ = with_heels_exchanged(trials["straight"])
+    (clean, _), _ = pooled(files, trials, Kinematics(angles="file"))
+    (found, _), said = pooled(files, {**trials, "straight": other}, Kinematics(angles="file"))
+    (one,) = (one for one in said if one.kind == "exchanged markers")
+    assert one.channel == "LHEE, RHEE" and one.spans == ((0.6, 1.1),) and "the file's own angles follow" in one.spoils
+    assert len(found.kept) == len(clean.kept) > 0
+    np.testing.assert_array_equal(found.curves, clean.curves)
+
+
+def test_angles_of_the_wrong_labels_are_left_out_and_the_refusal_names_these(files, trials):
+    """A file whose model ran after the labels were exchanged: its ankles follow the lines of the wrong ones."""
+    other, frames = with_heels_exchanged(trials["straight"])
+    angles, lines = other.stream("kinematics"), line_angles(other.stream("markers"))
+    values, right = np.array(angles.values), line_angles(trials["straight"].stream("markers"))
+    for name in ("ankle_angle_l", "ankle_angle_r"):
+        values[frames, angles.index(name)] += (lines[name] - right[name])[frames]
+    wrong = replace(other, streams={**other.streams, "kinematics": angles.with_values(values)})
+    for trial, source in ((wrong, "file"), (other, "markers")):
+        (found, _), said = pooled(files, {**trials, "straight": trial}, Kinematics(angles=source))
+        assert any(one.kind == "exchanged markers" and one.spans == ((0.6, 1.1),) for one in said)
+        assert len(found.kept) == 0
+        (refusal,) = found.refusals
+        assert "from 0.60 to 1.10 s foot_l, foot_r: exchanging LHEE and RHEE in this trial makes it" in refusal.reason
+        assert "Correct the labels, add trials" in refusal.reason
