@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -12,7 +13,7 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.exchanged_labels import Exchange
 from gaitdisc.kinematics.markers import marker_labels
-from gaitdisc.kinematics.motion import JOINT_CHANNELS, SEGMENTS_OF, Motion, motion
+from gaitdisc.kinematics.motion import Motion, motion
 from gaitdisc.kinematics.segment_angles import segment_angles
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
@@ -22,6 +23,11 @@ from gaitdisc.processing.two_sources import MOVES_DEG, line_angles
 from gaitdisc.recording import Finding, Recording, Trial
 
 STAY = "lengths and widths of steps there; the file's own angles follow the right labels, and stay; correct the labels"
+BELOW = {  # angles that hang on a segment where a model is built from the pelvis down, all of them on the pelvis
+    "thigh": r"(hip|knee|ankle|foot)_\w+_{0}|{1}(Hip|Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
+    "shank": r"(knee|ankle|foot)_\w+_{0}|{1}(Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
+    "foot": r"(ankle|foot)_\w+_{0}|{1}(Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,16 +89,17 @@ def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
     """
     moved, own = motion(trial.stream("markers"), calibration), trial.stream("kinematics")
     values, said = np.array(own.values), [one for one in moved.findings if one.kind == "exchanged markers"]
-    for at, one in enumerate(moved.exchanged, len(said) - len(moved.exchanged)):  # the static trial's come before
+    exchanged = moved.exchanged if len(own.time) == len(moved.markers.time) else ()
+    for at, one in enumerate(exchanged, len(said) - len(exchanged)):  # the static trial's come before
         if _follows_right_labels(own, trial.stream("markers"), one, calibration):
             said[at] = replace(said[at], spoils=STAY)
             continue
-        for joint, (names, _) in JOINT_CHANNELS.items():
-            for side in "lr":
-                lost = bool({part.format(side) for part in SEGMENTS_OF[joint]} & set(one.segments))
-                columns = [own.index(f"{name}_{side}") for name in names if f"{name}_{side}" in own.names]
-                frames = np.flatnonzero(one.frames & lost & (len(one.frames) == len(own.time)))
-                values[frames[:, None], columns] = np.nan
+        parts = [(segment[:-2], segment[-1]) for segment in one.segments if segment != "pelvis"]
+        hang = (
+            [BELOW[part].format(side, side.upper()) for part, side in parts] if "pelvis" not in one.segments else [".*"]
+        )
+        lost = [c.quantity == "angle" and any(re.fullmatch(name, c.name) for name in hang) for c in own.channels]
+        values[np.outer(one.frames, lost)] = np.nan
     streams = {**trial.streams, "markers": moved.markers, "kinematics": own.with_values(values, own.suspect)}
     return replace(trial, streams=streams, findings=(*trial.findings, *said))
 
@@ -105,7 +112,7 @@ def _follows_right_labels(own: Recording, markers: Recording, exchange: Exchange
     values[frames[:, None], first + second] = values[frames[:, None], second + first]
     as_is, right = line_angles(markers), line_angles(markers.with_values(values))
     apart = []
-    for name in set(as_is) & set(own.names) if len(own.time) == len(markers.time) else ():
+    for name in set(as_is) & set(own.names):
         both = [own[name] - lines[name] for lines in (as_is, right)]
         both = [np.abs(one - np.nanmedian(one[~exchange.frames]))[frames] for one in both]
         apart.append(
