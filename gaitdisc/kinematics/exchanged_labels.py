@@ -134,8 +134,8 @@ def exchange_findings(
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         what = (
             f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} makes it fit in "
-            f"{int(one.frames.sum())} of {len(one.frames)} frames: {1e3 * one.after_m:.0f} mm, not "
-            + (f"{1e3 * one.before_m:.0f} mm, from the static trial" if np.isfinite(one.before_m) else "turned about")
+            f"{int(one.frames.sum())} of {len(one.frames)} frames: {1e3 * one.after_m:.0f} mm from the static trial, "
+            f"not {f'{1e3 * one.before_m:.0f} mm' if np.isfinite(one.before_m) else 'turned about'}"
         )
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans))
