@@ -139,6 +139,8 @@ def measures(name: str, factor: float, of_all: bool = False) -> Plant:
     def plant(person: Recorded) -> None:
         if of_all:
             require_weighed(person.static)
+        if not of_all and not InPlace(person.walk).numbers(f"PROCESSING:{name}").size:
+            raise NotHereError(f"no {name} in the first walk")
         if not any(InPlace(path).numbers(f"PROCESSING:{name}").size for path in person.files() if path != person.walk):
             raise NotHereError(f"no {name} in another file")
         for path in person.files() if of_all else [person.walk]:

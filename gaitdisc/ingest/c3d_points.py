@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,8 @@ from gaitdisc.ingest.stated_units import METRES_AT_MOST, MILLIMETRES_AT_LEAST, d
 from gaitdisc.recording import Finding, Recording, Source
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
-Streams = dict[str, tuple[NDArray[np.float64], tuple[Channel, ...]]]
+Part = tuple[NDArray[np.float64], tuple[Channel, ...]]
+Streams = dict[str, Part]
 AXES = "xyz"
 NUMBERS = 17  # 4 x 4, first index fastest, and how sure it is; negative where the pose is not known
 CELLS = tuple(f"r{row}{column}" for row in "123" for column in "123")
@@ -96,7 +98,8 @@ def point_streams(
     """
     names = point_names(parameters, rows.shape[1] // 3)
     kinds = _kinds(names, parameters)
-    findings = _doubled(names, parameters, file)
+    plain, suffixed = _without_suffix(names, kinds, file)
+    findings = [*_doubled(names, parameters, file), *suffixed]
     places = [point for point, name in enumerate(names) if name not in kinds]
     markers = rows[:, _columns(places)]
     findings += _without_zeros(markers, file)
@@ -106,11 +109,12 @@ def point_streams(
         renamed = [(labels.name(names[point]) or names[point]) for point in places]
         channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in renamed for axis in AXES)
         streams["markers"] = (np.asarray(convert(markers, unit, "m"), float), channels)
-    parts: dict[str, list[tuple[NDArray[np.float64], tuple[Channel, ...]]]] = {}
+    parts: dict[str, list[Part]] = {}
+    about = (parameters, labels, file)
     for kind in MODEL_OUTPUTS:
         points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
         if points:
-            part, more = _model_part(rows, points, names, (kind, parameters, labels, file))
+            part, more = _model_part(rows[:, _columns(points)], [(names[at], plain[at]) for at in points], kind, about)
             parts.setdefault(kind.stream, []).append(part)
             findings += more
     for stream, several in parts.items():
@@ -135,8 +139,27 @@ def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, ModelOutput
     return kinds
 
 
-def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], tuple[Channel, ...]], list[Finding]]:
-    kind, parameters, labels, file = about
+def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: str) -> tuple[list[str], list[Finding]]:
+    """Names of outputs without the word that a laboratory's one model adds to each: `LKneeAngles_M`.
+
+    Nothing is taken away where two models differ by it, or where the file has the output without it too.
+    """
+    bases = {name: name.rpartition("_")[0] for name in names if name in kinds and "_" in name}
+    bases = {name: base for name, base in bases.items() if base and base not in names}
+    known = [name for name, base in bases.items() if any(vocabulary().named(f"{base}.{axis}") for axis in AXES)]
+    words = {name[len(bases[name]) :] for name in known}
+    if len(words) != 1:
+        return names, []
+    (word,) = words
+    what = f"{known[0]} and {len(known) - 1} more outputs of its model end in {word}; taken as {bases[known[0]]}, ..."
+    plain = [bases[name] if name in bases and name.endswith(word) else name for name in names]
+    return plain, [Finding("note", "model suffix", file, what, "nothing if it is Plug-in Gait under its own labels")]
+
+
+def _model_part(
+    rows: NDArray[np.float64], named: Sequence[tuple[str, str]], kind: ModelOutput, about
+) -> tuple[Part, list[Finding]]:
+    parameters, labels, file = about
     text = parameters.text("POINT", kind.units)
     unit = parsed_unit(text) if text else kind.usual
     findings = []
@@ -147,16 +170,16 @@ def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], 
         )
         findings.append(Finding("warning", "unit", file, what, f"the {kind.group.lower()}; correct the parameter"))
         unit, inner = "1", "1"
-    values = np.asarray(convert(rows[:, _columns(points)], unit, inner), float)
+    values = np.asarray(convert(rows, unit, inner), float)
     quantity = kind.quantity if inner != "1" else "signal"
     channels = []
-    for point in points:
+    for name_in_file, plain in named:
         for axis in AXES:
-            label = f"{names[point]}.{axis}"
-            mapped = labels.name(label)
+            label = f"{plain}.{axis}"
+            mapped = labels.name(f"{name_in_file}.{axis}")
             known = named_channel(mapped) if mapped else vocabulary().named(label)
             name = known.name if known is not None else label
-            own = re.match(r"([LR])[A-Z]", names[point])
+            own = re.match(r"([LR])[A-Z]", plain)
             side = known.side if known is not None else own[1].lower() if own else ""
             channels.append(Channel(name, quantity, inner, side))
     findings += _magnitude(values, kind, unit, file)

@@ -73,12 +73,19 @@ def exchanged_pairs(
 def misfits(places: Points, calibration: Calibration, up: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """How far the points of each segment lie from where the static trial has them, each (frame,) [m].
 
-    A pelvis that is upside down or turned against both feet is infinitely far: three markers exchanged may keep their
-    distances.
+    A foot that points backward in its shank (no ankle bends by 90 deg), and a pelvis that is upside down or turned
+    against both feet, is infinitely far: markers exchanged may keep their distances.
     """
     fits = free_fits(placed_markers(places, calibration), calibration)
-    found = {segment: fit.residual_m.copy() for segment, fit in fits.items()}
-    pelvis, feet = fits["pelvis"].pose.rotation, [fits[f"foot_{side}"].pose.rotation[:, :, 0] for side in "lr"]
+    found, feet = {segment: fit.residual_m.copy() for segment, fit in fits.items()}, []
+    for side in "lr":
+        names = [calibration.marker_set.landmark(end, side, places) for end in ("heel", "toe")]
+        heel, toe = (np.mean([places[name] for name in each] or [np.full(3, np.nan)], axis=0) for each in names)
+        feet.append(np.broadcast_to(toe - heel, fits["pelvis"].pose.origin.shape))
+        found[f"foot_{side}"][np.einsum("fi,fi->f", fits[f"shank_{side}"].pose.rotation[:, :, 0], feet[-1]) < 0] = (
+            np.inf
+        )
+    pelvis = fits["pelvis"].pose.rotation
     against = np.all([np.einsum("fi,fi->f", pelvis[:, :, 0], foot) < 0 for foot in feet], axis=0)
     found["pelvis"][against | (pelvis[:, :, 1] @ up < 0)] = np.inf
     return {
@@ -127,8 +134,8 @@ def exchange_findings(
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         what = (
             f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} makes it fit in "
-            f"{int(one.frames.sum())} of {len(one.frames)} frames: {1e3 * one.after_m:.0f} mm, not "
-            + (f"{1e3 * one.before_m:.0f} mm, from the static trial" if np.isfinite(one.before_m) else "turned about")
+            f"{int(one.frames.sum())} of {len(one.frames)} frames: {1e3 * one.after_m:.0f} mm from the static trial, "
+            f"not {f'{1e3 * one.before_m:.0f} mm' if np.isfinite(one.before_m) else 'turned about'}"
         )
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans))

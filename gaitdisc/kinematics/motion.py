@@ -16,6 +16,7 @@ from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.exchanged_labels import (
     UNFIT,
+    Exchange,
     exchange_findings,
     exchanged_pairs,
     without_exchanged,
@@ -53,7 +54,7 @@ class Motion:
     residual_m: Mapping[str, NDArray[np.float64]]
     marker_set: str  # name of the set that was used
     markers: Recording  # of the trial, without those that bear another's label
-    exchanged: Mapping[str, NDArray[np.bool_]]  # each (frame,), segment -> frames in which two labels are exchanged
+    exchanged: tuple[Exchange, ...]  # pairs of labels, and in which frames
     findings: tuple[Finding, ...] = ()  # what was inferred, bridged or left out
 
 
@@ -132,10 +133,10 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     if np.nanmedian(np.einsum("fi,fi->f", np.cross(pelvis[:, :, 0], up), legs)) < 0:  # the legs too, not two spines
         check_right_handed(pelvis, up, file)
     exchanges, broken = exchanged_pairs(places, calibration, up)
-    exchanged = {
-        s: np.any([e.frames & (s in e.segments) for e in exchanges] or [0 * broken[s]], axis=0) for s in SEGMENTS
+    unfit = {
+        s: np.any([broken[s], *(e.frames for e in exchanges if s in e.segments)], axis=0) | (s in calibration.spoiled)
+        for s in SEGMENTS
     }
-    unfit = {s: exchanged[s] | broken[s] | (s in calibration.spoiled) for s in SEGMENTS}
     said = exchange_findings(exchanges, broken, calibration, markers, up)
     if unfit["pelvis"].all():
         raise ShapeError(
@@ -176,7 +177,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         MappingProxyType(residuals),
         chosen.name,
         without_exchanged(markers, exchanges, calibration),
-        MappingProxyType(exchanged),
+        tuple(exchanges),
         tuple(findings),
     )
 

@@ -104,7 +104,7 @@ class RigidFit:
 
     pose: Pose  # NaN in frames with fewer than three points, or points on a line
     seen: NDArray[np.bool_]  # (frame, point), points that were there
-    # (frame,) [m], root of the mean square distance between the points and those of the body
+    # (frame,) [m], root of the mean square distance between the points and those of the body, on a line too
     residual_m: NDArray[np.float64]
 
 
@@ -134,7 +134,8 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
     apart = from_places - np.einsum("fij,fpj->fpi", rotation, from_body)
     residual = np.sqrt((apart**2).sum(axis=(1, 2)) / np.maximum(seen.sum(axis=1), 1))
     unknown = ~_determined(body, seen)
-    rotation[unknown], origin[unknown], residual[unknown] = np.nan, np.nan, np.nan
+    rotation[unknown], origin[unknown] = np.nan, np.nan
+    residual[seen.sum(axis=1) < FEWEST_POINTS] = np.nan
     return RigidFit(Pose(origin, rotation), seen, residual)
 
 

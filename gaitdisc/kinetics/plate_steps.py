@@ -202,9 +202,10 @@ def weighed_steps(
         share = weight.share(named[step.platform], (start, end)) if end - start >= ALONE_S else 1.0
         if not abs(share - 1) > MOST_APART:
             return step
-        reason = f"it shows {share:.2f} of the force that {weight.newton:.0f} N of body weight need on one leg"
-        found = f"{reason} from {start:.2f} to {end:.2f} s"
-        return replace(step, reason=step.reason or found, doubt="note" if step.reason else "warning")
+        found = f"it shows {share:.2f} of the force that {weight.newton:.0f} N of body weight need on one leg"
+        if step.reason and share < 1:  # a sole beyond the edge, another foot: explains what is missing, never too much
+            return replace(step, doubt=step.doubt or "note")
+        return replace(step, reason=f"{found} from {start:.2f} to {end:.2f} s", doubt="warning")
 
     return [weighed(step) for step in steps]
 

@@ -222,7 +222,8 @@ def _force(trial: Trial, direction: str, body_weight_n: float | None) -> dict[st
         return force_contacts(forces)  # refuses, and says what is needed
     markers = trial.stream("markers")
     heels, pelvis = named_markers(markers)
-    return plate_contacts(forces, markers, heels, trial_direction(markers, heels, pelvis, direction), body_weight_n)
+    way = trial_direction(markers, heels, pelvis, direction)
+    return plate_contacts(forces, markers, heels, way, body_weight_n, pelvis)
 
 
 def _markers(markers: Recording, direction: str) -> dict[str, Contacts]:

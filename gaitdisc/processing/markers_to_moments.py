@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.motion import JOINT_CHANNELS, SEGMENTS_OF, Motion, motion
+from gaitdisc.kinematics.exchanged_labels import Exchange
+from gaitdisc.kinematics.markers import marker_labels
+from gaitdisc.kinematics.motion import Motion, motion
 from gaitdisc.kinematics.segment_angles import segment_angles
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
-from gaitdisc.recording import Finding, Trial
+from gaitdisc.processing.two_sources import MOVES_DEG, line_angles
+from gaitdisc.recording import Finding, Recording, Trial
+
+STAY = "lengths and widths of steps there; the file's own angles follow the right labels, and stay; correct the labels"
+BELOW = {  # angles that hang on a segment where a model is built from the pelvis down, all of them on the pelvis
+    "thigh": r"(hip|knee|ankle|foot)_\w+_{0}|{1}(Hip|Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
+    "shank": r"(knee|ankle|foot)_\w+_{0}|{1}(Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
+    "foot": r"(ankle|foot)_\w+_{0}|{1}(Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,17 +83,47 @@ def computed_trial(
 
 
 def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
-    """Trial with the angles of its file, missing where markers of their segments bear another's label."""
+    """Trial with the angles of its file, missing where markers of their segments bear another's label.
+
+    Angles that follow the markers as they are with the labels put right were computed before these were exchanged.
+    """
     moved, own = motion(trial.stream("markers"), calibration), trial.stream("kinematics")
-    values = np.array(own.values)
-    for joint, (names, _) in JOINT_CHANNELS.items():
-        for side in "lr":
-            lost = np.any([moved.exchanged[one.format(side)] for one in SEGMENTS_OF[joint]], axis=0)
-            columns = [own.index(f"{name}_{side}") for name in names if f"{name}_{side}" in own.names]
-            values[np.flatnonzero(lost & (len(lost) == len(own.time)))[:, None], columns] = np.nan
-    said = tuple(one for one in moved.findings if one.kind == "exchanged markers")
+    values, said = np.array(own.values), [one for one in moved.findings if one.kind == "exchanged markers"]
+    exchanged = moved.exchanged if len(own.time) == len(moved.markers.time) else ()
+    for at, one in enumerate(exchanged, len(said) - len(exchanged)):  # the static trial's come before
+        if _follows_right_labels(own, trial.stream("markers"), one, calibration):
+            said[at] = replace(said[at], spoils=STAY)
+            continue
+        parts = [(segment[:-2], segment[-1]) for segment in one.segments if segment != "pelvis"]
+        hang = (
+            [BELOW[part].format(side, side.upper()) for part, side in parts] if "pelvis" not in one.segments else [".*"]
+        )
+        lost = [c.quantity == "angle" and any(re.fullmatch(name, c.name) for name in hang) for c in own.channels]
+        values[np.outer(one.frames, lost)] = np.nan
     streams = {**trial.streams, "markers": moved.markers, "kinematics": own.with_values(values, own.suspect)}
     return replace(trial, streams=streams, findings=(*trial.findings, *said))
+
+
+def _follows_right_labels(own: Recording, markers: Recording, exchange: Exchange, calibration: Calibration) -> bool:
+    """Whether angles lie nearer to the lines between markers whose labels are put right than to those as they are."""
+    names, values = calibration.marker_set.names(marker_labels(markers)), np.array(markers.values)
+    first, second = ([markers.index(f"{names[name]}.{axis}") for axis in "xyz"] for name in exchange.pair)
+    frames: NDArray[np.intp] = np.flatnonzero(exchange.frames)
+    values[frames[:, None], first + second] = values[frames[:, None], second + first]
+    as_is, right = line_angles(markers), line_angles(markers.with_values(values))
+    apart = []
+    for name in set(as_is) & set(own.names):
+        both = [own[name] - lines[name] for lines in (as_is, right)]
+        if not all(
+            np.isfinite(one[~exchange.frames]).any() for one in both
+        ):  # exchanged throughout: no offset is known
+            continue
+        both = [np.abs(one - np.nanmedian(one[~exchange.frames]))[frames] for one in both]
+        apart.append(
+            np.nan_to_num(np.where(np.abs(as_is[name] - right[name])[frames] > MOVES_DEG, both, 0.0)).sum(axis=1)
+        )
+    wrong, good = np.sum(apart, axis=0) if apart else (0.0, 0.0)
+    return bool(good < wrong)
 
 
 def with_segment_angles(trial: Trial) -> Trial:

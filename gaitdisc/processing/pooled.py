@@ -15,6 +15,7 @@ from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
+from gaitdisc.kinematics.exchanged_labels import UNFIT
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
 from gaitdisc.processing.cycle_channels import cycle_channels
@@ -207,7 +208,7 @@ def _pooled(
     reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))
     checked = [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in cycles] for cycles, _ in cut]
     outside = bool(seen) and all(trial.over_ground for trial in seen)
-    too_few = _too_few(study, participant, one, checked, outside)
+    too_few = _too_few(study, participant, one, seen, checked)
     where = " ".join(part for part in (one.session, one.condition) if part)
     rows = [
         _row(trial.number, cycle, place, too_few)
@@ -268,22 +269,31 @@ def _cut(study: Study, seen: _Seen, later: Later) -> tuple[list[Cycle], list[Pla
 
 
 def _too_few(
-    study: Study, participant: Participant, one: TrialSet, cycles: Sequence[list[Cycle]], outside: bool
+    study: Study, participant: Participant, one: TrialSet, seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]
 ) -> str:
-    """Why the cycles that are left do not do; empty where they do."""
+    """Why the cycles that are left do not do, and which labels spoiled those that are not; empty where they do."""
+    outside = bool(seen) and all(trial.over_ground for trial in seen)
     kept = Counter(cycle.side for own in cycles for cycle in own if not cycle.reason)
     needed, key = (study.quality.min_cycles, "min_cycles") if outside else (study.quality.min_strides, "min_strides")
     if max(kept.values(), default=0) >= needed:
         return ""
     left_out = [cycle.reason for own in cycles for cycle in own if cycle.reason]
     first = f"; left out {len(left_out)}, the first: {left_out[0]}" if left_out else ""
+    causes = [
+        f"; from {start:.2f} to {end:.2f} s {finding.what}"
+        for trial, own in zip(seen, cycles, strict=True)
+        for finding in trial.findings
+        if finding.kind in UNFIT
+        for start, end in finding.spans
+        if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in own)
+    ]
     found = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
     where = " ".join(part for part in (participant.id, one.session, one.condition) if part)
     trials = "1 trial" if len(one.trials) == 1 else f"{len(one.trials)} trials"
     error = StrideError(
         f"{where} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
-        f"{trials} of it have {found}{first}",
-        f"Add trials, or lower {key} in [quality].",
+        f"{trials} of it have {found}{first}{''.join(causes[:1])}",
+        f"{'Correct the labels, add' if causes else 'Add'} trials, or lower {key} in [quality].",
     )
     return str(error)
 

@@ -36,7 +36,6 @@ USUAL_STRIDE_S = 1.1
 LEAST_PATH_M_PER_S = 0.3  # of the pelvis from end to end
 BELT_M = 2.0  # who comes farther walks over ground
 HEEL_M, LEG_DEG = 0.25, 10.0  # least reach of a heel, a hip or a knee within a second of who steps
-AROUND_S = 0.5  # of a second of walking: the first step from standing and the last one stay
 LEAST_CUT_S = 1.0
 NO_WALKWAY_S = 10.0  # a walk that lasts longer and does not show its path is one on a treadmill
 Times = NDArray[np.float64]
@@ -150,8 +149,8 @@ def walking_part(trial: Trial) -> Trial:
     if shown is None or not shown[1].any():
         return trial
     time, walks = shown
-    first, last = (float(time[at]) for at in np.flatnonzero(walks)[[0, -1]])
-    start, end = first - AROUND_S, last + AROUND_S
+    # half of the second that first shows walking lies behind it: the first step from standing stays, as the last one
+    start, end = (float(time[at]) for at in np.flatnonzero(walks)[[0, -1]])
     start, end = (
         (start if start - time[0] > LEAST_CUT_S else -np.inf),
         (end if time[-1] - end > LEAST_CUT_S else np.inf),

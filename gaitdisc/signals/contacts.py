@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.recording.runs import runs
-from gaitdisc.signals.direction import Direction, marker_position
+from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
 MATCH_S = 0.25
@@ -21,6 +21,7 @@ RISE_N = 50.0
 RISE_OF_BODY_WEIGHT = 0.1  # of whoever weighs less than 51 kg
 LEAST_RISE_N = 20.0  # a plate's own noise and drift stay below it
 REST_N = 20.0  # below which a foot that was on the ground has left it
+CLEAR_OF_PELVIS_M = 0.1  # half a foot: at contact one heel is some 0.3 m in front of the pelvis, the other behind it
 SHORTEST_S = 0.1  # neither stance nor swing is shorter; what is, is chatter
 
 
@@ -302,17 +303,20 @@ def plate_contacts(
     heels: Mapping[str, str],
     direction: Direction,
     body_weight_n: float | None = None,
+    pelvis: Sequence[str] = (),
 ) -> dict[str, Contacts]:
     """Contacts from plates that either foot may hit: the foot that lands is the one whose heel is in front.
 
     forces: channels of quantity `vertical_force` [N], one a plate
     heels: side (`r`, `l`) to the name of its heel marker
+    pelvis: markers that one heel alone is clearly in front of, or behind, where the other is missing
     returns: both sides; empty where no plate was hit by that foot
     """
     times: dict[str, list[float]] = {"r": [], "l": []}
     offs: dict[str, list[float]] = {"r": [], "l": []}
     places = {side: marker_position(markers, name) for side, name in heels.items()}
     middle = np.mean(list(places.values()), axis=0)
+    middle = np.where(np.isnan(middle), pelvis_position(markers, pelvis), middle) if pelvis else middle
     along = {side: direction.ahead(place - middle) for side, place in places.items()}
     for channel in forces.channels:
         if channel.quantity != "vertical_force":
@@ -320,6 +324,10 @@ def plate_contacts(
         on, off, _ = _contacts(forces, channel.name, body_weight_n)
         for time in on:
             place = {side: float(np.interp(time, markers.time, heel)) for side, heel in along.items()}
+            place = {
+                side: -place[other] if np.isnan(ahead) and abs(place.get(other, 0.0)) > CLEAR_OF_PELVIS_M else ahead
+                for (side, ahead), other in zip(place.items(), reversed(place), strict=True)
+            }
             if not np.isfinite(list(place.values())).all() or len(place) < 2:
                 raise StrideError(
                     "identifying the foot on a plate needs both heel markers at contact",

@@ -283,17 +283,20 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
     """Say that calf and tibialis anterior of a leg, or the calves of both legs, are exchanged.
 
     A muscle alone is not tested: a foot that drops or a calf that is spastic has its own course. Two that each do what
-    the other should are.
+    the other should are. Each is held against the steps of both feet, of which one swings while the other stands.
     """
-    seen: dict[tuple[str, str], tuple[str, float]] = {}
+    seen: dict[tuple[str, str], tuple[str, float, float]] = {}  # name, by the steps of both feet, by its own foot's
     for name in envelope.names:
         for kind, pattern in (("calf", _CALF), ("shin", _SHIN)):
             found = pattern.fullmatch(name)
             if found and found[2] in strides:
-                value = stance_over_swing(envelope, strides[found[2]], name)
+                own, *other = (
+                    stance_over_swing(envelope, strides[side], name) for side in sorted(strides, key=found[2].__ne__)
+                )
+                value = (own - other[0]) / 2 if other and np.isfinite(other[0]) else own
                 worst = seen.get((kind, found[2]), ("", -np.inf))[1]
                 if np.isfinite(value) and value > worst:
-                    seen[kind, found[2]] = name, value
+                    seen[kind, found[2]] = name, value, own
     calf_swings = {side for kind, side in seen if kind == "calf" and seen[kind, side][1] < -CLEAR}
     shin_stands = {side for kind, side in seen if kind == "shin" and seen[kind, side][1] > CLEAR}
     pairs = [(seen["calf", side], seen["shin", side]) for side in sorted(calf_swings & shin_stands)]
@@ -302,9 +305,9 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
     return [_finding(one, other, envelope.source.file) for one, other in pairs]
 
 
-def _finding(one: tuple[str, float], other: tuple[str, float], file: str) -> Finding:
-    def said(muscle: tuple[str, float]) -> str:
-        more, where = np.exp(abs(muscle[1])), "its foot stands" if muscle[1] > 0 else "its foot swings"
+def _finding(one: tuple[str, float, float], other: tuple[str, float, float], file: str) -> Finding:
+    def said(muscle: tuple[str, float, float]) -> str:
+        more, where = np.exp(abs(muscle[2])), "its foot stands" if muscle[2] > 0 else "its foot swings"
         return f"{muscle[0]} is {more:.1f} times as strong while {where}"
 
     what = f"{one[0]} and {other[0]} look exchanged, or the muscles of both legs: {said(one)}, {said(other)}"

@@ -117,3 +117,32 @@ def test_the_study_names_markers_and_components():
     streams, _, _ = _streams([[300.0, 0, 1, 45, 2, 3]], ["LCAL", "KneeR"], channels, UNITS=("mm",), ANGLES=("KneeR",))
     assert streams["markers"][1][0].name == "LHEE.x"
     assert [c.name for c in streams["kinematics"][1]] == ["knee_angle_r", "KneeR.y", "KneeR.z"]
+
+
+SUFFIXED = ("LASI", "LKneeAngles_M", "LAbsAnkleAngle_M", "LPelvisAngles_M", "LPelvisAngles_TOR", "LKneeMoment_M")
+
+
+def test_outputs_to_which_one_model_adds_a_word_are_known_by_their_own_labels():
+    rows = 1e3 + np.arange(3.0 * len(SUFFIXED))[None] + np.zeros((4, 1))
+    listed = {"ANGLES": SUFFIXED[1:5], "MOMENTS": SUFFIXED[5:], "MOMENT_UNITS": ("Nmm",), "UNITS": ("mm",)}
+    streams, _, findings = _streams(rows, SUFFIXED, **listed)
+    values, channels = streams["kinematics"]
+    names = [channel.name for channel in channels]
+    assert names[:3] == ["knee_angle_l", "knee_adduction_l", "knee_rotation_l"] and values[0, 0] == 1003.0
+    assert [names[3], names[6], names[9]] == ["LAbsAnkleAngle.x", "LPelvisAngles.x", "LPelvisAngles_TOR.x"]
+    assert streams["moments"][1][0].name == "knee_angle_l_moment"
+    (said,) = [finding for finding in findings if finding.kind == "model suffix"]
+    assert said.severity == "note" and "LKneeAngles_M" in said.what and "_M; taken as LKneeAngles" in said.what
+
+
+@pytest.mark.parametrize("labels", [("LKneeAngles", "LKneeAngles_M"), ("LKneeAngles_M", "LHipAngles_F")])
+def test_a_word_that_tells_two_models_apart_stays(labels):
+    streams, _, findings = _streams(np.ones((4, 6)), labels, ANGLES=labels)
+    named = [channel.name for channel in streams["kinematics"][1]]
+    assert f"{labels[1]}.x" in named and "model suffix" not in {finding.kind for finding in findings}
+
+
+def test_the_study_names_an_output_by_the_label_of_its_file():
+    map_ = {"LKneeAngles_M.x": "knee_angle_r"}
+    streams, *_ = _streams(np.full((4, 3), 9.0), ["LKneeAngles_M"], map_, ANGLES=("LKneeAngles_M",))
+    assert streams["kinematics"][1][0].name == "knee_angle_r"

@@ -69,6 +69,19 @@ def test_half_a_second_is_missing_and_said_and_all_else_is_exact(name, pair, los
         np.testing.assert_allclose(found.angles[channel][known], other.angles[channel][known], atol=1e-6)
 
 
+def test_heel_and_toe_are_told_apart_on_a_foot_whose_ankle_lies_on_their_line():
+    """Such a foot's turn about the line is not known, and its markers may lie at one distance from the ankle."""
+    places = {segment: dict(own) for segment, own in PLUG_IN_GAIT.items()}
+    for side in "LR":
+        places[f"foot_{side.lower()}"] = {f"{side}HEE": np.array([-0.1, 0, 0]), f"{side}TOE": np.array([0.1, 0, 0])}
+    calibration = calibrated(static_of(places), marker_set("plug_in_gait"), MEASURES)
+    clean = motion(markers_of(KNOWN, places), calibration, (1, 0, 0))
+    assert not said(clean) and np.isnan(clean.angles["ankle_angle_r"]).all()
+    for pair in (("RHEE", "RTOE"), ("LHEE", "RHEE")):
+        (one,) = said(motion(exchanged(markers_of(KNOWN, places), pair, slice(40, 90)), calibration, (1, 0, 0)))
+        assert one.channel == f"{pair[0]}, {pair[1]}" and one.spans == ((0.4, 0.9),)
+
+
 def test_a_whole_walk_with_heel_and_toe_exchanged_loses_that_ankle_alone():
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     found = motion(exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE")), calibration, (1, 0, 0))

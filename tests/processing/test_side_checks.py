@@ -71,6 +71,20 @@ def test_a_plate_of_another_gain_contradicts_the_person_s_weight(plates):
         assert said.spans[0][0] == pytest.approx(start, abs=0.02)  # s
 
 
+def test_an_edge_under_the_sole_explains_what_is_missing_and_never_too_much(plates):
+    walk, _ = plates
+    middles = [np.mean(one.corners, axis=0) for one in walk.surfaces]
+    small = [
+        replace(s, corners=m + [0.4, 0.4, 1] * (s.corners - m)) for s, m in zip(walk.surfaces, middles, strict=True)
+    ]
+    cut = replace(walk, surfaces=tuple(small))
+    for gain, severity in ((0.77, "note"), (1.3, "warning")):
+        (said,) = (one for one in plate_words(gained(cut, 2, gain)) if "plate_2" in one.what)
+        assert said.severity == severity, said.what
+        assert ("of the force that 449 N of body weight need" in said.what) == (gain > 1)
+        assert ("edge" in said.what) == (gain < 1)
+
+
 def test_two_plates_that_are_exchanged_have_no_foot_under_their_force(plates):
     walk, static = plates
     first, second = walk.surfaces

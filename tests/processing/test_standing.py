@@ -14,8 +14,9 @@ from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTr
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.processing.markers_to_moments import computed_trial
+from gaitdisc.processing.markers_to_moments import computed_trial, without_exchanged_markers
 from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.processing.two_sources import line_angles
 from gaitdisc.recording import Strides
 from gaitdisc.recording.body_measures import BodyMeasures
 from gaitdisc.signals.butterworth import lowpassed
@@ -202,3 +203,60 @@ def gained(trial, plate, gain):
     forces = trial.stream("forces")
     times = [gain if c.name.startswith(f"plate_{plate}_") and c.name[8] in "fm" else 1.0 for c in forces.channels]
     return replace(trial, streams={**trial.streams, "forces": forces.with_values(forces.values * times)})
+
+
+def with_heels_exchanged(trial, pair=("LHEE", "RHEE"), seconds=(0.6, 1.1)):
+    """Two labels exchanged for half a second, the heels'; nothing that the file computed changes."""
+    markers = trial.stream("markers")
+    values, frames = np.array(markers.values), slice(*(round(at * markers.rate_hz) for at in seconds))
+    for axis in "xyz":
+        one, other = (markers.index(f"{heel}.{axis}") for heel in pair)
+        values[frames, [one, other]] = values[frames, [other, one]]
+    return replace(trial, streams={**trial.streams, "markers": markers.with_values(values)}), frames
+
+
+def test_angles_that_follow_the_right_labels_stay_and_keep_their_cycles(files, trials):
+    other, _ = with_heels_exchanged(trials["straight"])
+    (clean, _), _ = pooled(files, trials, Kinematics(angles="file"))
+    (found, _), said = pooled(files, {**trials, "straight": other}, Kinematics(angles="file"))
+    (one,) = (one for one in said if one.kind == "exchanged markers")
+    assert one.channel == "LHEE, RHEE" and one.spans == ((0.6, 1.1),) and "the file's own angles follow" in one.spoils
+    assert len(found.kept) == len(clean.kept) > 0
+    np.testing.assert_array_equal(found.curves, clean.curves)
+
+
+def test_angles_of_the_wrong_labels_are_left_out_and_the_refusal_names_these(files, trials):
+    """A file whose model ran after the labels were exchanged: its ankles follow the lines of the wrong ones."""
+    other, frames = with_heels_exchanged(trials["straight"])
+    angles, lines = other.stream("kinematics"), line_angles(other.stream("markers"))
+    values, right = np.array(angles.values), line_angles(trials["straight"].stream("markers"))
+    for name in ("ankle_angle_l", "ankle_angle_r"):
+        values[frames, angles.index(name)] += (lines[name] - right[name])[frames]
+    wrong = replace(other, streams={**other.streams, "kinematics": angles.with_values(values)})
+    for trial, source in ((wrong, "file"), (other, "markers")):
+        (found, _), said = pooled(files, {**trials, "straight": trial}, Kinematics(angles=source))
+        assert any(one.kind == "exchanged markers" and one.spans == ((0.6, 1.1),) for one in said)
+        assert len(found.kept) == 0
+        (refusal,) = found.refusals
+        assert "from 0.60 to 1.10 s foot_l, foot_r: exchanging LHEE and RHEE in this trial makes it" in refusal.reason
+        assert "Correct the labels, add trials" in refusal.reason
+
+
+@pytest.mark.parametrize("pair", [("LTHI", "LKNE"), ("LASI", "RASI")])
+def test_all_that_hangs_on_a_segment_of_wrong_labels_is_missing(files, trials, pair):
+    """A model builds its joint centres from the pelvis down: a thigh that is wrong turns shank and foot too."""
+    trial, frames = with_heels_exchanged(trials["straight"], pair)
+    angles, lines = trial.stream("kinematics"), line_angles(trial.stream("markers"))
+    right, values = line_angles(trials["straight"].stream("markers")), np.array(angles.values)
+    for name in set(lines) & set(angles.names):
+        values[frames, angles.index(name)] += (lines[name] - right[name])[frames]
+    wrong = replace(trial, streams={**trial.streams, "kinematics": angles.with_values(values)})
+    measures = read_body_measures(files["static"])
+    calibration = calibrated(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
+    found = without_exchanged_markers(wrong, calibration).stream("kinematics")
+    lost = {name for name in found.names if np.isnan(found[name][frames]).all()}
+    left = {"hip_flexion_l", "knee_angle_l", "ankle_angle_l", "LFootProgressAngles.z"}
+    assert left <= lost
+    assert ({"ankle_angle_r", "LPelvisAngles.x"} <= lost) == (pair == ("LASI", "RASI"))
+    for name in found.names:
+        np.testing.assert_array_equal(np.delete(found[name], np.r_[frames]), np.delete(angles[name], np.r_[frames]))

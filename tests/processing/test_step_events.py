@@ -163,7 +163,7 @@ def _standing_about(walk, before_s, after_s):
     return replace(walk, streams=streams)
 
 
-@pytest.mark.parametrize(("before_s", "after_s"), [(15.0, 0.0), (0.0, 40.0), (8.0, 8.0)])
+@pytest.mark.parametrize(("before_s", "after_s"), [(15.0, 0.0), (0.0, 40.0), (8.0, 8.0), (1.5, 0.0), (0.0, 1.5)])
 @pytest.mark.parametrize("only", [("markers", "forces"), ("kinematics", "forces")])
 def test_standing_before_and_after_a_walk_is_cut_out_and_said(walks, before_s, after_s, only):
     for name in ("HC030A22", "HC031A06"):
@@ -173,7 +173,7 @@ def test_standing_before_and_after_a_walk_is_cut_out_and_said(walks, before_s, a
         (said,) = [finding for finding in part.findings if finding.kind == "standing"]
         assert (said.severity, said.file) == ("note", walk.name) and said.what.startswith("nobody walks from ")
         for recording in part.streams.values():
-            assert recording.time[0] >= -1.1 and recording.time[-1] <= walk.streams[only[0]].time[-1] + 1.1
+            assert recording.time[0] >= -0.6 and recording.time[-1] <= walk.streams[only[0]].time[-1] + 0.6
         assert over_ground(part)
         assert walking_part(walk) is walk
 

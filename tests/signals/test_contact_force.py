@@ -100,6 +100,27 @@ def test_the_leading_heel_tells_the_foot():
         plate_contacts(plates, Recording(slow, heels, channels), {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
 
 
+@pytest.mark.parametrize("missing", ["RHEE", "LHEE"])
+def test_one_heel_in_front_of_the_pelvis_or_behind_it_tells_the_foot(missing):
+    t, plates = belt([1.0], length_s=3.0)[0], [belt([at], length_s=3.0)[1] for at in (1.0, 1.6)]
+    channels = tuple(Channel(f"plate{k}", "vertical_force", "N") for k in (1, 2))
+    forces_ = Recording(t, np.stack(plates, axis=1), channels)
+    slow = np.arange(300) / 100
+    ahead = {"RHEE": np.full(300, 0.6), "LHEE": np.where(slow < 1.3, 0.0, 1.2), "SACR": np.where(slow < 1.3, 0.3, 0.9)}
+    ahead[missing] = np.full(300, np.nan)
+    zero = np.zeros(300)
+    names = tuple(Channel(f"{n}.{a}", "marker", "m") for n in ahead for a in "xyz")
+    given = {"heels": {"r": "RHEE", "l": "LHEE"}, "direction": given_direction((1, 0, 0)), "pelvis": ("SACR",)}
+    marked = Recording(slow, np.stack([x for one in ahead.values() for x in (one, zero, zero)], axis=1), names)
+    found = plate_contacts(forces_, marked, **given)
+    assert found["r"].time == pytest.approx([1.005], abs=1e-3)
+    assert found["l"].time == pytest.approx([1.605], abs=1e-3)
+    ahead["SACR"] = np.where(slow < 1.3, 0.55, 0.05) if missing == "LHEE" else np.where(slow < 1.3, 0.05, 1.15)
+    near = Recording(slow, np.stack([x for one in ahead.values() for x in (one, zero, zero)], axis=1), names)
+    with pytest.raises(StrideError, match="heel missing there"):
+        plate_contacts(forces_, near, **given)
+
+
 def test_real_belts_that_chatter(gait_data, real):
     ezc3d = pytest.importorskip("ezc3d")
     c3d = ezc3d.c3d(str(gait_data / "treadmill_c3d_emg" / "walking_1.c3d"))

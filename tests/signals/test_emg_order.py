@@ -40,3 +40,16 @@ def test_calves_of_both_legs_exchanged_are_named():
 def test_one_muscle_out_of_time_is_a_patients_own():
     assert order_of_muscles(*walk("emg_gas_r", "emg_ta_r", swing=("emg_gas_r", "emg_ta_r"))) == []
     assert order_of_muscles(*walk("emg_ta_r")) == []
+
+
+def test_exchanged_calves_that_begin_before_contact_are_named_by_the_steps_of_both_feet():
+    """One foot's steps alone say little of them."""
+    envelope, strides = walk("emg_sol_r", "emg_sol_l")
+    values = np.array(envelope.values)
+    for column, begins in enumerate((0.5, 0.0)):  # each is the other leg's
+        at = (envelope.time - begins) % 1.0
+        values[:, column] = np.select([(at > 0.9) | (at < 0.06), at < 0.6], [1.8, 1.0], 0.1)
+    late = envelope.with_values(values)
+    assert -0.5 < stance_over_swing(late, strides["r"], "emg_sol_r") < 0
+    (finding,) = order_of_muscles(late, strides)
+    assert "emg_sol_l and emg_sol_r look exchanged" in finding.what
