@@ -250,7 +250,12 @@ def angles_of_poses(
             add(names, side, values, bridged[above] | bridged[below])
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
         add(("foot_progression_angle",), side, foot[:, 2:] * mirror[2], bridged[f"foot_{side}"])
-    place = np.einsum("fji,fj->fi", walking.rotation, poses["pelvis"].origin)
+    # steps, each along its own frame's axes: in a turn the laboratory's origin is behind, then beside the walker
+    origin, samples = poses["pelvis"].origin, np.arange(len(base.time))
+    known = np.isfinite(origin).all(axis=1)
+    path = np.stack([np.interp(samples, samples[known], axis) for axis in origin[known].T], axis=1)
+    place = np.einsum("fji,fj->fi", walking.rotation, np.diff(path, axis=0, prepend=0 * path[:1])).cumsum(axis=0)
+    place[~known] = np.nan
     for name, column in zip(("pelvis_tx", "pelvis_ty", "pelvis_tz"), place.T, strict=True):
         columns.append((Channel(name, "translation", "m"), column, bridged["pelvis"]))
     return replace(
