@@ -251,9 +251,8 @@ def angles_of_poses(
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
         add(("foot_progression_angle",), side, foot[:, 2:] * mirror[2], bridged[f"foot_{side}"])
     # steps, each along its own frame's axes: in a turn the laboratory's origin is behind, then beside the walker
-    origin, samples = poses["pelvis"].origin, np.arange(len(base.time))
-    known = np.isfinite(origin).all(axis=1)
-    path = np.stack([np.interp(samples, samples[known], axis) for axis in origin[known].T], axis=1)
+    known = poses["pelvis"].known
+    path = np.stack([np.interp(base.time, base.time[known], axis[known]) for axis in poses["pelvis"].origin.T], axis=1)
     place = np.einsum("fji,fj->fi", walking.rotation, np.diff(path, axis=0, prepend=0 * path[:1])).cumsum(axis=0)
     place[~known] = np.nan
     for name, column in zip(("pelvis_tx", "pelvis_ty", "pelvis_tz"), place.T, strict=True):
