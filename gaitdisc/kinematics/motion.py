@@ -213,8 +213,8 @@ def _gaps_and_shape(
         what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the others carry it"
         findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
-        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: too few markers"
-        spoils = "its joints there; fill the gaps, or use more markers"
+        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: fewer than 3 points, or on one line"
+        spoils = "its joints there; fill the gaps, or put a marker beside the line"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
     if typical > ANOTHER_SHAPE_M:
