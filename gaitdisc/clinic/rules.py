@@ -158,7 +158,8 @@ def outstanding(
                 numbers.append((rule, values, leg, number))
     for rule, values, leg, number in numbers:
         limits = limits_of(*values, tests=len(numbers))
-        beyond = rule.less if number < limits.low else rule.more if number > limits.high else ""
+        shown, low, high = (round(one, rule.digits) for one in (number, limits.low, limits.high))
+        beyond = rule.less if shown < low else rule.more if shown > high else ""  # as printed: 50 is not beyond 50
         words = beyond if abs(number - limits.mean) >= rule.least else ""
         count = len(leg.cycles[rule.variable]) if rule.variable else len(leg.values[rule.value])
         reach = limits.high - limits.mean

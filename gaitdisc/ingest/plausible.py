@@ -30,6 +30,7 @@ FEW = 0.01  # of the samples; where EMG is beyond its range more often, it is co
 BENT_DEG = 30.0  # no knee is hyperextended that far, so it was flexed
 HYPEREXTENDED_DEG = 25.0  # what a lax knee or an offset of the model may show on the other side
 FEWEST = 20  # samples of a knee
+_PLATE = re.compile(r"plate_\d+(?=_)")
 _KNEE = re.compile(r"knee_angle_[rl](_beta)?")
 _MOVES = re.compile(r"(knee_angle_[rl](?:_beta)?)(/speed|/accel|_moment|_force)")
 _GENERALISED = ("mot", "sto")  # OpenSim: the moment belongs to the coordinate and has its sign
@@ -92,9 +93,14 @@ def without_impossible(
             beyond[:, counted] = False
         before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
         frames = round(before_s * recording.rate_hz) if before_s else 0
+        plates = [found[0] if (found := _PLATE.match(channel.name)) else "" for channel in recording.channels]
+        lost: set[str] = set()
         for place in np.flatnonzero(beyond.any(axis=0)).tolist():
-            findings.append(_finding(recording, place, beyond[:, place], frames))
-        kept[key] = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
+            lost |= {plates[place]} - {""}
+            findings.append(_finding(recording, place, beyond[:, place], frames, bool({*plates} - lost - {""})))
+        known = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
+        rest = [channel.name for channel, plate in zip(known.channels, plates, strict=True) if plate not in lost]
+        kept[key] = known.selected(rest) if lost else known
     return kept, findings
 
 
@@ -195,7 +201,7 @@ def _other_unit(recording: Recording, place: int) -> Finding:
     return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
 
 
-def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int) -> Finding:
+def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int, other_plates: bool) -> Finding:
     """First value beyond the range, with its frame in the file, and how many there are; a force is refused."""
     channel, first, file = recording.channels[place], int(np.argmax(beyond)), recording.source.file
     limits = _limits(channel)
@@ -206,6 +212,9 @@ def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before
         f"{recording.values[first, place]:.6g}{unit} in frame {before + first + 1} (t = {recording.time[first]:.6g} s) "
         f"is beyond what it can be, {limits.low:g} to {limits.high:g}{unit}{more}"
     )
+    if other_plates and _PLATE.match(channel.name):
+        spoils = "the plate: it is left out; zero it, or correct the cell or the unit and export again"
+        return Finding("refused", "out of range", file, where, spoils, channel.name)
     if channel.quantity in ("force", "vertical_force") and channel.unit == "N":
         raise ReadError(
             f"{file}: {channel.name} needs a plausible force in every sample",

@@ -74,7 +74,7 @@ def read_trial(
     Raises
     ------
     ReadError
-        If a file cannot be read, its ending is none that is known, or a ground force is beyond what it can be.
+        If a file cannot be read, its ending is none that is known, or the only ground force is beyond what it can be.
     ChannelError
         If two files give the same channel.
     SamplingError

@@ -214,8 +214,8 @@ def _gaps_and_shape(
         what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the others carry it"
         findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
-        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: too few markers"
-        spoils = "its joints there; fill the gaps, or use more markers"
+        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: fewer than 3 points, or on one line"
+        spoils = "its joints there; fill the gaps, or put a marker beside the line"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
     if typical > ANOTHER_SHAPE_M:
@@ -251,7 +251,11 @@ def angles_of_poses(
             add(names, side, values, bridged[above] | bridged[below])
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
         add(("foot_progression_angle",), side, foot[:, 2:] * mirror[2], bridged[f"foot_{side}"])
-    place = np.einsum("fji,fj->fi", walking.rotation, poses["pelvis"].origin)
+    # steps, each along its own frame's axes: in a turn the laboratory's origin is behind, then beside the walker
+    known = poses["pelvis"].known
+    path = np.stack([np.interp(base.time, base.time[known], axis[known]) for axis in poses["pelvis"].origin.T], axis=1)
+    place = np.einsum("fji,fj->fi", walking.rotation, np.diff(path, axis=0, prepend=0 * path[:1])).cumsum(axis=0)
+    place[~known] = np.nan
     for name, column in zip(("pelvis_tx", "pelvis_ty", "pelvis_tz"), place.T, strict=True):
         columns.append((Channel(name, "translation", "m"), column, bridged["pelvis"]))
     return replace(

@@ -52,3 +52,17 @@ def test_too_few_controls_say_nothing_in_words():
     numbers, why = outstanding(legs_of(made_person()), made_controls(4).of("walk"))
     assert numbers == ()
     assert says(why, "5 people", "more", "4 people")
+
+
+def test_a_number_that_prints_as_the_limit_is_not_beyond_it(reference):
+    """0.3 deg below the limit is said only where the limit itself prints as a larger number."""
+    rule = {"name": "a", "variable": "knee_flexion", "part": "swing", "take": "max", "least": 5.0, "less": "less"}
+    plain, table = made_person("P01", spread=0.0), rules_in({"rules": [rule]})
+    usual = {one.side: one for one in outstanding(legs_of(plain), reference, table)[0]}["l"]
+    for shown, words in ((round(usual.limits.low), ""), (round(usual.limits.low) - 1, "less")):
+        person = made_person("P01", spread=0.0, changed={"knee_angle_l": shown - usual.value})
+        found = {one.side: one for one in outstanding(legs_of(person), reference, table)[0]}["l"]
+        assert (round(found.value), found.words) == (shown, words)
+    edge = made_person("P01", spread=0.0, changed={"knee_angle_l": usual.limits.low - 0.02 - usual.value})
+    found = {one.side: one for one in outstanding(legs_of(edge), reference, table)[0]}["l"]
+    assert found.value < found.limits.low and (found.words == "") == (round(found.value) == round(found.limits.low))

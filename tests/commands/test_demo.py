@@ -18,7 +18,9 @@ def test_a_made_week_becomes_pages_that_find_what_was_planted(called, tmp_path):
     assert "Reduced dorsiflexion in swing: right" in pages["P04"]
     assert "Reduced knee flexion in swing: right" in pages["P05_before"]
     quiet = ["None of" in pages[healthy] for healthy in ("P01", "P03", "P05_after", "P07", "P08")]
-    assert sum(quiet) >= 3  # limits leave some healthy people out: how many in forty, studies/clinic_rules.py counts
+    # limits leave some healthy people out (how many in forty, studies/clinic_rules.py counts), a knee of 50 deg beside
+    # limits of 50 to 69 deg does not: two of these five bend theirs so
+    assert sum(quiet) >= 4
     assert "These controls are adults, the person is 8 years old" in pages["P08"]
     assert "These controls are adults" not in pages["P01"]
     assert "no cycle is kept" in pages["P06"]

@@ -183,3 +183,17 @@ def test_a_plate_does_not_pull(least_n, is_read):
         return
     with pytest.raises(ReadError, match=r"-1810 N.*frame 1.*-100.*20000 N"):
         without_impossible({"forces": force})
+
+
+def test_a_plate_that_was_not_zeroed_is_left_out_and_the_others_stay():
+    """A plate that rests at -103 N takes its own channels with it, not the walk; alone it is refused."""
+    names = ("plate_1_fz", "plate_2_fx", "plate_2_fz")
+    channels = tuple(Channel(name, "vertical_force" if name.endswith("z") else "force", "N") for name in names)
+    values = np.array([[0.0, 2.0, -103.0], [700.0, 80.0, 590.0], [0.0, 1.0, -103.0]])
+    forces = Recording(np.arange(3) / 100, values, channels, source=Source("walk.c3d"))
+    kept, (finding,) = without_impossible({"forces": forces})
+    assert kept["forces"].names == ("plate_1_fz",)
+    assert (finding.severity, finding.channel) == ("refused", "plate_2_fz")
+    assert finding.what.startswith("-103 N in frame 1 (t = 0 s) is beyond what it can be, -100 to 20000 N")
+    with pytest.raises(ReadError, match="plate_2_fz needs a plausible force"):
+        without_impossible({"forces": forces.selected(names[1:])})

@@ -23,14 +23,16 @@ from manufactured_body import (
 )
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.laboratory import WalkingFrame
 from gaitdisc.kinematics.marker_set import marker_set
-from gaitdisc.kinematics.motion import chosen_marker_set, joint_angles, motion
+from gaitdisc.kinematics.motion import angles_of_poses, chosen_marker_set, joint_angles, motion
+from gaitdisc.kinematics.pose import Pose
 from gaitdisc.recording import Recording
 
 MIRRORED = Laboratory(np.diag([1.0, 1.0, -1.0]))
@@ -342,3 +344,24 @@ def test_hip_rotation_has_opensim_s_sign_on_both_sides(gait_data):
     for side in "lr":
         theirs = np.interp(found.time, angles.time, angles[f"hip_rotation_{side}"])
         assert np.corrcoef(found[f"hip_rotation_{side}"], theirs)[0, 1] > 0.4
+
+
+def test_the_place_in_a_turn_is_the_path_walked_wherever_the_laboratory_has_its_origin():
+    """On a circle the walker goes forward by the arc and never aside; seen from 5 m away nothing leaps."""
+    time, radius, speed = np.arange(400) / 100, 3.0, 1.2
+    angle = speed * time / radius
+    ahead = np.column_stack([np.cos(angle), 0 * angle, -np.sin(angle)])
+    aside = np.column_stack([np.sin(angle), 0 * angle, np.cos(angle)])
+    rotation = np.stack([ahead, np.tile([0.0, 1.0, 0.0], (400, 1)), aside], axis=2)
+    origin = np.array([5.0, 1.0, -4.0]) + radius * aside
+    origin[150:160] = np.nan
+    still = {f"{part}_{side}": Pose(origin, rotation) for part in ("thigh", "shank", "foot") for side in "lr"}
+    poses = {"pelvis": Pose(origin, rotation), **still}
+    base = Recording(time, np.zeros((400, 1)), (Channel("a", "signal", "1"),))
+    doubt = {name: np.zeros(400, bool) for name in poses}
+    found = angles_of_poses(base, poses, doubt, WalkingFrame(rotation, ""))
+    known = np.isfinite(found["pelvis_tx"])
+    assert list(np.flatnonzero(~known)) == list(range(150, 160))
+    assert np.abs(found["pelvis_tx"] - found["pelvis_tx"][0] - speed * time)[known].max() < 0.01
+    assert np.ptp(found["pelvis_tz"][known]) < 0.01
+    assert found["pelvis_ty"][known] == pytest.approx(1.0)

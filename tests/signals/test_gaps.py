@@ -75,6 +75,14 @@ def test_findings_tell_short_from_long():
     assert gap_findings(recording(np.sin(TIME))) == []
 
 
+@pytest.mark.parametrize(("samples", "severity"), [(5, "note"), (30, "warning")])
+def test_a_short_gap_at_an_end_is_a_note_and_stays_open(samples, severity):
+    """A recording that begins 50 ms later would be said to lack nothing."""
+    late = broken(np.sin(TIME), 0, samples)
+    assert [one.severity for one in gap_findings(late)] == [severity]
+    assert np.isnan(filled(late).values[:samples]).all()
+
+
 def test_an_empty_channel_is_one_gap():
     finding = gap_findings(recording(np.full(1000, np.nan)))[0]
     assert finding.severity == "warning"
