@@ -1,47 +1,69 @@
-"""A closed list of units; every number is converted once, at ingest.
+"""Units: one table and one parser; a recording may be in a closed list of them, and is converted once, at ingest.
 
 Inside the package there is one unit for each dimension: deg for angles (rad enters only where dynamics are computed),
 m, s, N, N m, V, W, kg, and 1 for ratios. A rate is the unit per second (`deg/s`, `deg/s2`); a squared error has a
-squared unit.
+squared unit. A simulation file may use any product of units with powers: `N m s/rad`, `kg m^2`, `1/s^2`.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import UnitError
 
-# unit -> (the one used inside, factor to it)
-_UNITS: dict[str, tuple[str, float]] = {
-    "deg": ("deg", 1.0),
-    "rad": ("deg", math.degrees(1.0)),
-    "m": ("m", 1.0),
-    "cm": ("m", 1e-2),
-    "mm": ("m", 1e-3),
-    "s": ("s", 1.0),
-    "ms": ("s", 1e-3),
-    "N": ("N", 1.0),
-    "kN": ("N", 1e3),
-    "N m": ("N m", 1.0),
-    "N mm": ("N m", 1e-3),
-    "N cm": ("N m", 1e-2),
-    "V": ("V", 1.0),
-    "mV": ("V", 1e-3),
-    "uV": ("V", 1e-6),
-    "W": ("W", 1.0),
-    "kg": ("kg", 1.0),
-    "N/kg": ("N/kg", 1.0),
-    "N m/kg": ("N m/kg", 1.0),
-    "N mm/kg": ("N m/kg", 1e-3),
-    "W/kg": ("W/kg", 1.0),
-    "%": ("%", 1.0),
-    "1": ("1", 1.0),
-}
+_BASES = ("kg", "m", "s", "rad", "V")
+Dimension = tuple[float, ...]
 
+
+def _of(factor: float, **powers: float) -> tuple[float, Dimension]:
+    return factor, tuple(float(powers.get(base, 0)) for base in _BASES)
+
+
+_FACTORS = {
+    "1": _of(1.0),
+    "%": _of(0.01),
+    "kg": _of(1.0, kg=1),
+    "g": _of(1e-3, kg=1),
+    "m": _of(1.0, m=1),
+    "cm": _of(1e-2, m=1),
+    "mm": _of(1e-3, m=1),
+    "s": _of(1.0, s=1),
+    "ms": _of(1e-3, s=1),
+    "Hz": _of(1.0, s=-1),
+    "rad": _of(1.0, rad=1),
+    "deg": _of(math.radians(1.0), rad=1),
+    "N": _of(1.0, kg=1, m=1, s=-2),
+    "kN": _of(1e3, kg=1, m=1, s=-2),
+    "J": _of(1.0, kg=1, m=2, s=-2),
+    "W": _of(1.0, kg=1, m=2, s=-3),
+    "V": _of(1.0, V=1),
+    "mV": _of(1e-3, V=1),
+    "uV": _of(1e-6, V=1),
+}
+_PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?\Z")
+
+
+_CLOSED = {  # of a recording: the unit used inside, and what is converted to it
+    "deg": ("rad",),
+    "m": ("cm", "mm"),
+    "s": ("ms",),
+    "N": ("kN",),
+    "N m": ("N mm", "N cm"),
+    "V": ("mV", "uV"),
+    "W": (),
+    "kg": (),
+    "N/kg": (),
+    "N m/kg": ("N mm/kg",),
+    "W/kg": (),
+    "%": (),
+    "1": (),
+}
+_INNER = {unit: inner for inner, others in _CLOSED.items() for unit in (inner, *others)}
 _SPELLINGS = {
     "degree": "deg",
     "degrees": "deg",
@@ -76,12 +98,12 @@ _SPELLINGS = {
     "percent": "%",
     "": "",
 }
-_BY_LOWER_CASE = {unit.lower(): unit for unit in _UNITS}
+_BY_LOWER_CASE = {unit.lower(): unit for unit in _INNER}
 
 
 def known_units() -> tuple[str, ...]:
     """List the units that may appear in a file."""
-    return tuple(_UNITS)
+    return tuple(_INNER)
 
 
 def parsed_unit(text: str) -> str | None:
@@ -91,7 +113,7 @@ def parsed_unit(text: str) -> str | None:
     ('N mm', 'mV', None)
     """
     text = re.sub(r"\s+", " ", text.strip())
-    if text in _UNITS:
+    if text in _INNER:
         return text
     spelled = _SPELLINGS.get(text.lower(), _BY_LOWER_CASE.get(text.lower()))
     return spelled or None
@@ -103,7 +125,13 @@ def inner_unit(unit: str) -> str:
     >>> inner_unit("N mm")
     'N m'
     """
-    return _known(unit)[0]
+    if unit not in _INNER:
+        raise UnitError(
+            "a unit of the closed list is needed",
+            f"{unit!r} is not in it",
+            f"Use one of: {', '.join(_INNER)}.",
+        )
+    return _INNER[unit]
 
 
 def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floating]:
@@ -115,17 +143,15 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
     >>> float(convert(np.array(250.0), "mm", "m"))
     0.25
     """
-    inner, factor = _known(unit)
-    inner_to, factor_to = _known(to)
+    inner, inner_to = inner_unit(unit), inner_unit(to)
     if inner != inner_to:
         raise UnitError(
             f"a value in {unit!r} is to be given in {to!r}",
             f"{unit!r} is measured in {inner!r}, {to!r} in {inner_to!r}",
             "Correct the unit where the file or the study states it.",
         )
-    if factor == factor_to:
-        return values
-    return values * (factor / factor_to)
+    factor = unit_factor(unit, to)
+    return values if factor == 1 or factor is None else values * factor
 
 
 def rate_unit(unit: str, order: int = 1) -> str:
@@ -139,11 +165,47 @@ def rate_unit(unit: str, order: int = 1) -> str:
     return f"{unit}/s" if order == 1 else f"{unit}/s{order}"
 
 
-def _known(unit: str) -> tuple[str, float]:
-    if unit not in _UNITS:
-        raise UnitError(
-            "a unit of the closed list is needed",
-            f"{unit!r} is not in it",
-            f"Use one of: {', '.join(_UNITS)}.",
-        )
-    return _UNITS[unit]
+def unit_factor(unit: str, to: str) -> float | None:
+    """Factor from one unit to another.
+
+    unit, to: products of base units with powers; what stands after a stroke divides
+    returns: none where a unit is unknown; NaN where both are known and measure different things
+
+    >>> round(unit_factor("deg/s", "rad/s"), 6), unit_factor("N mm", "N m"), unit_factor("furlong", "m")
+    (0.017453, 0.001, None)
+    >>> unit_factor("N m", "W s")
+    1.0
+    """
+    one, other = _parsed(unit), _parsed(to)
+    if one is None or other is None:
+        return None
+    return one[0] / other[0] if one[1] == other[1] else math.nan
+
+
+@cache
+def _parsed(unit: str) -> tuple[float, Dimension] | None:
+    """Factor to the base units, and the power of each."""
+    factor, powers, sign = 1.0, [0.0] * len(_BASES), 1
+    for number, group in enumerate(re.split(r"\s*/\s*", unit.strip()[:80])):
+        sign = 1 if number == 0 else -1
+        for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
+            found = _PART.match(part)
+            if not found or found[1] not in _FACTORS:
+                return None
+            power = sign * int(found[2] or 1)
+            own, dimension = _FACTORS[found[1]]
+            factor *= own**power
+            powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
+    return factor, tuple(powers)
+
+
+def dimension_of(unit: str) -> Dimension | None:
+    """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
+
+    >>> dimension_of("N m s/rad") == dimension_of("kg m^2/s")
+    True
+    """
+    found = _parsed(unit)
+    return (
+        None if found is None else tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
+    )

@@ -10,7 +10,7 @@ import pandas as pd
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED
 from gaitdisc.report.panels import Room, decades, draw_box, in_style, legend, panels
-from gaitdisc.report.wording import counted, listed, unit_text
+from gaitdisc.words import counted, listed, unit_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

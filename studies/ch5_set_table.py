@@ -9,8 +9,8 @@ import pandas as pd
 
 from gaitdisc.report.reconstruction_page import NOT_MSE
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import number
 from gaitdisc.results.reconstruction import mean_over_people
+from gaitdisc.words import number
 
 MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
 LESS_THAN_NOTHING = (

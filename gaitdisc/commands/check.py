@@ -72,7 +72,7 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from gaitdisc.report.wording import plain
+    from gaitdisc.words import plain
 
     console = Console()
     table = Table("light", "who", "trial", "channels", "strides", "warnings", box=box.SIMPLE)

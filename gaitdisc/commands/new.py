@@ -37,7 +37,7 @@ def new(
         return
     from gaitdisc.ingest.new_study import found_study
     from gaitdisc.ingest.study_file import write_study
-    from gaitdisc.report.wording import counted
+    from gaitdisc.words import counted
 
     file = out / "study.toml"
     claim_file(file)
@@ -74,7 +74,7 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
 def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | None, Path | None]) -> None:
     from gaitdisc.engines.tracked_files import drafted_tracked
     from gaitdisc.engines.tracked_mapping import write_tracked_mapping
-    from gaitdisc.report.wording import counted
+    from gaitdisc.words import counted
 
     _claim_mapping(file, model)
     tracked, engine = drafted_tracked(model, *files)

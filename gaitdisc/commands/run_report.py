@@ -123,7 +123,7 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
     seconds : float
         That it took [s].
     """
-    from gaitdisc.report.wording import counted
+    from gaitdisc.words import counted
 
     for refusal in refusals:
         who = " ".join(part for part in (refusal.participant, refusal.condition) if part)

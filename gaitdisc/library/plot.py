@@ -385,7 +385,7 @@ def _refuse_other(given: object, kind: str, made_by: str) -> None:
 
 
 def _stride_axis(axes: Axes, channel: str, unit: str) -> None:
-    from gaitdisc.report.wording import label, unit_text
+    from gaitdisc.words import label, unit_text
 
     axes.set_xlim(0, 100)
     axes.set_xlabel(STRIDE)

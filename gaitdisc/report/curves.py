@@ -14,10 +14,10 @@ from gaitdisc.recording import Recording
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
-from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
 from gaitdisc.results.pooled_cycles import mean_curve
 from gaitdisc.results.study_run import StudyRun
 from gaitdisc.results.walk_summary import WALK, WalkSummary
+from gaitdisc.words import counted, label, sideless, unit_text, upwards
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

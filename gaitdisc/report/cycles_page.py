@@ -26,11 +26,11 @@ from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_blo
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
-from gaitdisc.report.wording import SIDE_WORDS, counted, label, listed, sideless, unit_text, upwards
 from gaitdisc.results.leg_curves import FEET
 from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.study_run import StudyRun
+from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless, unit_text, upwards
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,9 +9,9 @@ import pandas as pd
 
 from gaitdisc.recording import PERCENT, Recording
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import NONE, SIDE_WORDS, number
 from gaitdisc.results.leg_curves import FEET
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, SPATIOTEMPORAL, PooledCycles
+from gaitdisc.words import NONE, SIDE_WORDS, number
 
 VALUES = {  # column -> words, unit, digits
     "speed_m_per_s": ("speed", "m/s", 2),

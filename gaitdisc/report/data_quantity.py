@@ -12,10 +12,10 @@ from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.r2 import LOWEST, held_out_text, models_key
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import counted, label, number
 from gaitdisc.results.over_participants import WHOLE
 from gaitdisc.results.participant_response import DataQuantity
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.words import counted, label, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,7 +14,6 @@ from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
-from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
 from gaitdisc.results.effect_words import (
     amount,
@@ -26,6 +25,7 @@ from gaitdisc.results.effect_words import (
     with_unit,
     would_distinguish,
 )
+from gaitdisc.words import NONE, counted, p_cell
 
 VERDICTS = {
     "no_gap": "no gap: nothing is added to the simulation",

@@ -15,9 +15,9 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels, panels_for, sheets
 from gaitdisc.report.r2 import r2_by_variable
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, StrideMean, mean_over_strides
+from gaitdisc.words import MODEL_WORDS, counted, label, number, unit_text, upwards
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

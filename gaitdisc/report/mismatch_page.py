@@ -18,8 +18,8 @@ from gaitdisc.report.page import write_page
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables, seen_table
-from gaitdisc.report.wording import NONE, amount, counted, label, p_cell, plain, spoken, unit_text, upwards, with_unit
 from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.words import NONE, amount, counted, label, p_cell, plain, spoken, unit_text, upwards, with_unit
 
 if TYPE_CHECKING:
     import rich.table

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gaitdisc.report.wording import (
+from gaitdisc.results.mismatch import Exchange, Mismatch
+from gaitdisc.words import (
     amount,
     counted,
     direction_words,
@@ -17,7 +18,6 @@ from gaitdisc.report.wording import (
     spoken,
     with_unit,
 )
-from gaitdisc.results.mismatch import Exchange, Mismatch
 
 MOST_NAMED = 3
 MOST_LISTED = 8

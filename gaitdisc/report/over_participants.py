@@ -15,8 +15,8 @@ from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.r2 import held_out_text, models_key
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

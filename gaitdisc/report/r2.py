@@ -13,9 +13,9 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS, NULL
 from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.words import MODEL_WORDS, counted, label, number, unit_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,9 +15,9 @@ from gaitdisc.report.r2 import (
     r2_by_variable,
     sample_counts,
 )
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number, plain
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.words import MODEL_WORDS, counted, label, listed, number, plain
 
 if TYPE_CHECKING:
     import rich.table

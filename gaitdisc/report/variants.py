@@ -12,8 +12,8 @@ from gaitdisc.report.page import write_page
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.table import Table, save_table, save_tables
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results.variants import VariantRun
+from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
 
 ALL = "all inputs"
 GROUPS = {"angles": "joint angles predicted", "EMG": "EMG predicted"}

@@ -14,8 +14,8 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import DROPPED, KEPT, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
 from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.words import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

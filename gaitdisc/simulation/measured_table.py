@@ -17,7 +17,7 @@ from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.unit_factor import unit_factor
+from gaitdisc.units import unit_factor
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,7 @@ from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.unit_factor import Dimension, dimension_of, unit_factor
+from gaitdisc.units import Dimension, dimension_of, unit_factor
 
 _SAME = frozenset(["+", "-", "max", "min"])
 _OF_PURE = frozenset({"sin", "cos", "tan", "atan", "tanh", "exp", "log"})

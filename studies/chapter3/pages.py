@@ -14,7 +14,7 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import Look
 from gaitdisc.report.panels import Room, decades, in_style, legend, lines_of, panels
 from gaitdisc.report.table import Table, words_table
-from gaitdisc.report.wording import unit_text
+from gaitdisc.words import unit_text
 
 from .discrepancy_cell import (
     FORECAST,

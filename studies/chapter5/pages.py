@@ -15,7 +15,7 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, Look
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import number
+from gaitdisc.words import number
 
 from .reconstruct_field import FieldCell, field_cells_table
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from gaitdisc.discovery.effect_units import channel_unit, divided, places_unit, unit_of, unit_of_channel
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.simulation_file import bundled
-from gaitdisc.simulation.unit_factor import unit_factor
+from gaitdisc.units import unit_factor
 
 UNITS = ("N m", "N", "rad", "rad/s", "m/s", "kg m^2", "1", "N m s/rad", "1/s")
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from gaitdisc.report.clinic.words import ENGLISH, PageWords, noted_sentences
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import save_tables, words_table
-from gaitdisc.report.wording import NONE, counted, number
 from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.study_run import StudyRun
 from gaitdisc.whole_file import write_whole
+from gaitdisc.words import NONE, counted, number
 
 RANKS = {"red": 0, "amber": 1, "green": 2}
 COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")

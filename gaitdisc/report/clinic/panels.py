@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.palette import SIDES
-from gaitdisc.report.wording import SIDE_WORDS, label, number, sideless
 from gaitdisc.results.clinical_reading import Band, ClinicalReading, Contrast
 from gaitdisc.results.clinical_variables import KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
 from gaitdisc.results.leg_curves import FEET
 from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.words import SIDE_WORDS, label, number, sideless
 
 WIDTH, HEIGHT = 240, 165
 LEFT, RIGHT, TOP, BOTTOM = 34, 236, 8, 143  # of the axes

@@ -32,12 +32,12 @@ from gaitdisc.report.clinic.words import (
 from gaitdisc.report.figure import file_names
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import Table, save_table, words_table
-from gaitdisc.report.wording import SIDE_WORDS
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.clinical_variables import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.whole_file import write_whole
+from gaitdisc.words import SIDE_WORDS
 
 FEWEST_COLUMNS = 4  # so that few panels are no larger than many
 SCRIPT = Path(__file__).parents[1] / "templates" / "cursor.js"

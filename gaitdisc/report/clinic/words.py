@@ -15,11 +15,11 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.report.clinic.panels import Panel
 from gaitdisc.report.cycles_tables import VALUES
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import SIDE_WORDS, counted, number, p_words, unit_text
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, DifferingSpan, Noted, Score
 from gaitdisc.results.clinical_variables import BY_NAME, VARIABLES
 from gaitdisc.results.leg_curves import FEET
 from gaitdisc.whole_file import write_whole
+from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text
 
 TEMPLATES = ("person.html.j2", "people.html.j2")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out

@@ -2,7 +2,7 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from gaitdisc.report.wording import (
+from gaitdisc.words import (
     counted,
     direction_words,
     label,

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from gaitdisc.simulation.unit_factor import dimension_of, unit_factor
+from gaitdisc.units import dimension_of, unit_factor
 
 
 @pytest.mark.parametrize(
