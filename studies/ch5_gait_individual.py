@@ -24,12 +24,21 @@ GIVEN = command_line(
 
 from collections.abc import Mapping
 
-import ch5_gait as gait
 import pandas as pd
-from ch5_disturbance import against_missing, against_noise
-from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell
-from ch5_set_figures import disturbance_figure, sensor_sets_figure
-from ch5_set_table import sensor_sets_table
+from chapter5 import gait
+from chapter5.gait import (
+    DATA,
+    NOTHING_PRINTED,
+    PELVIS,
+    SENSORS,
+    Result,
+    against_missing,
+    against_noise,
+    cell,
+    disturbance_figure,
+    sensor_sets_figure,
+    sensor_sets_table,
+)
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks

@@ -24,9 +24,20 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import pandas as pd
-from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
-from ch5_set_figures import sensor_sets_figure
-from ch5_set_table import sensor_sets_table
+from chapter5.gait import (
+    DATA,
+    NOTHING_PRINTED,
+    PELVIS,
+    SENSORS,
+    Result,
+    cell,
+    cohort,
+    exotendon,
+    first_person,
+    printed,
+    sensor_sets_figure,
+    sensor_sets_table,
+)
 
 from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
 from gaitdisc.report.page import Block, write_blocks
