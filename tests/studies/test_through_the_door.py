@@ -35,6 +35,7 @@ INSIDE = {
 LONG = {
     "as_a_user": 159,
     "c3d_in_place": 147,
+    "ch5_further": 128,
     "device_from_files": 147,
     "engine_cases": 124,
     "engines": 187,
