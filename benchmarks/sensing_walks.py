@@ -19,7 +19,7 @@ from gaitdisc.sensing.state_errors import angle_columns
 from gaitdisc.sensing.windows import Lags
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
-from ch5_gait import treadmill
+from chapter5.gait import treadmill
 
 SENSORS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
 LAGS = Lags(25, 4)

@@ -21,7 +21,6 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import numpy as np
-from ch3_report import Result, written
 from chapter3.augmented_run import with_learned_rates
 from chapter3.burgers import burgers, local_cell, places, recorded_field
 from chapter3.cell import NOISES, cell_of, learned_model
@@ -30,6 +29,7 @@ from chapter3.error_signal import APPROACHES
 from chapter3.methods import Method, MethodSettings
 from chapter3.pages import field_figure, grid_table, statements_table
 from chapter3.record import Conditions, Record, recorded
+from chapter3.report import Result, written
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

@@ -33,8 +33,8 @@ GIVEN = command_line(
 import warnings
 
 import pandas as pd
-from ch3_cells import said_of
 from ch3_further_numbers import numbers
+from chapter3.kept_cells import said_of
 from markdown_table import markdown_table
 
 from gaitdisc.report.table import save_table

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import ch3_lorenz
 import ch3_van_der_pol
 import numpy as np
-from ch3_cells import LYAPUNOV_PER_S
 from chapter3.augmented_run import with_learned_rates
 from chapter3.cell import cell_of, learned_model
 from chapter3.discrepancy_cell import FORECAST, PartAccuracy
 from chapter3.error_signal import error_samples
 from chapter3.gaussian_process import fit_gaussian_process
+from chapter3.kept_cells import LYAPUNOV_PER_S
 from chapter3.methods import MethodSettings
 from chapter3.pages import METHOD_WORDS
 from chapter3.record import NOISE_KINDS, Conditions, recorded

@@ -18,12 +18,12 @@ GIVEN = command_line(
 
 import numpy as np
 import pandas as pd
-from ch3_cells import LYAPUNOV_PER_S
-from ch3_report import Cells, Result, blocks_of, written
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
 from chapter3.error_signal import APPROACHES
+from chapter3.kept_cells import LYAPUNOV_PER_S
 from chapter3.record import Conditions
+from chapter3.report import Cells, Result, blocks_of, written
 from chapter3.system import System, system_of
 
 import gaitdisc as gd

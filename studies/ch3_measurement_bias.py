@@ -18,11 +18,11 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import numpy as np
-from ch3_report import Result, blocks_of, written
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.methods import MethodSettings
 from chapter3.pages import statements_table
 from chapter3.record import Conditions, Record, recorded
+from chapter3.report import Result, blocks_of, written
 from chapter3.starts import Uncertainty, linear_kalman, unscented_kalman
 from chapter3.system import System, system_of
 from numpy.typing import NDArray

@@ -33,9 +33,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 from ch3_cell_sets import CellSet, cell_sets, chosen_sets
-from ch3_cells import CELLS, measured, sets_tables
 from chapter3.cell import cell_of
 from chapter3.discrepancy_cell import METHODS, DiscrepancyCell
+from chapter3.kept_cells import CELLS, measured, sets_tables
 from chapter3.methods import Method
 from chapter3.recommend import FOUND, evidence_of
 from chapter3.record import recorded

@@ -19,9 +19,16 @@ GIVEN = command_line(
 
 import numpy as np
 import pandas as pd
-from ch3_cells import NUMBERS, START_WORDS, measured, set_table, sets_tables
-from ch3_recommended import evidence_table, recommended_table
 from chapter3.discrepancy_cell import FORECAST, ORACLE
+from chapter3.kept_cells import (
+    NUMBERS,
+    START_WORDS,
+    evidence_table,
+    measured,
+    recommended_table,
+    set_table,
+    sets_tables,
+)
 from chapter3.pages import METHOD_WORDS
 from markdown_table import markdown_table
 

@@ -18,11 +18,11 @@ GIVEN = command_line(
     __name__, __doc__, argument("folder", "where the report goes", Path("ch3_van_der_pol")), QUICK
 )  # before the slow imports
 
-from ch3_report import Result, blocks_of, written
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.discrepancy_cell import DiscrepancyCell
 from chapter3.error_signal import APPROACHES
 from chapter3.record import Conditions
+from chapter3.report import Result, blocks_of, written
 from chapter3.system import System, system_of
 
 import gaitdisc as gd

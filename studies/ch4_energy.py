@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from ankle_exo_walks import PEOPLE, SETTINGS, read_walks
-from ch5_gait import DATA
+from chapter5.gait import DATA
 from further import Number
 
 import gaitdisc as gd

@@ -20,9 +20,7 @@ from command_line import tables_line
 TABLES = ("band", "people", "terms", "search", "curve")
 GIVEN = tables_line(__name__, __doc__, "ch4_further", TABLES)  # before the slow imports
 
-from ch4_band import band, curve, people, quartiles
-from ch4_search import search
-from ch4_terms import terms
+from chapter4.runners import band, curve, people, quartiles, search, terms
 from further import Made, main
 
 MADE = {

@@ -24,9 +24,9 @@ from dataclasses import replace
 
 import numpy as np
 from ch4_energy import energy
-from ch5_gait import DATA
+from chapter5.gait import DATA
+from chapter5.people import ANGLES, CUTOFF_HZ
 from further import Made, Number, main
-from real_people import ANGLES, CUTOFF_HZ
 
 import gaitdisc as gd
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge

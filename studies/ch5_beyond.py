@@ -25,10 +25,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from ch5_gait import DATA, exotendon, first_person
-from ch5_runner import LAGS, SAGITTAL, TOLD, parts_of, rmse, runner
-from ch5_simulated import simulated
-from ch5_speed import speed
+from chapter5.gait import DATA, exotendon, first_person
+from chapter5.people import LAGS, SAGITTAL, TOLD, parts_of, rmse, runner, simulated, speed
 from further import Made, Number, main
 
 import gaitdisc as gd

@@ -24,12 +24,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 from ch5_fields import fields
-from ch5_forecasts import ahead, turns
-from ch5_runner import SAGITTAL, parts_of, rmse, runner
+from chapter5.people import SAGITTAL, ahead, parts_of, real_people, rmse, runner, turns
 from chapter5.reconstruct_field import reconstruct_field
 from chapter5.routes import fixed_at_random
 from further import Made, Number, main
-from real_people import real_people
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.report.curves import LATENT, course_numbers, draw_course

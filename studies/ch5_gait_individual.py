@@ -24,12 +24,8 @@ GIVEN = command_line(
 
 from collections.abc import Mapping
 
-import ch5_gait as gait
 import pandas as pd
-from ch5_disturbance import against_missing, against_noise
-from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell
-from ch5_set_figures import disturbance_figure, sensor_sets_figure
-from ch5_set_table import sensor_sets_table
+from chapter5 import gait
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
@@ -43,25 +39,25 @@ SAGITTAL = "3 sagittal"
 QUICK_KINDS = ("linear", "delay ridge", "fourier ridge")
 
 
-def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path = DATA) -> Result:
+def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path = gait.DATA) -> gait.Result:
     """Reconstruct everybody from own walks, with every sensor set, and write the page."""
     kinds = QUICK_KINDS if quick else tuple(KINDS)
     walks = studies(quick, folder, data)
     blocks, summaries = [], []
     for name, study in walks.items():
         settings = ReconstructionSettings(kinds=kinds, condition="nominal" if name == "cohort" else "")
-        sets = [words for words in SENSORS if name != "cohort" or words not in PELVIS]
-        cells = [cell(study, words, settings, folder / name / words.replace(" ", "_")) for words in sets]
+        sets = [words for words in gait.SENSORS if name != "cohort" or words not in gait.PELVIS]
+        cells = [gait.cell(study, words, settings, folder / name / words.replace(" ", "_")) for words in sets]
         summaries += [found["summary"].assign(data=name) for found in cells]
         errors = pd.concat([found["errors"] for found in cells])
-        blocks.append(Block(name, study.title, (), (sensor_sets_figure(errors, study.title, name, "temporal"),)))
+        blocks.append(Block(name, study.title, (), (gait.sensor_sets_figure(errors, study.title, name, "temporal"),)))
     table = pd.concat(summaries, ignore_index=True)
     first = Block(
-        "sets", "Table 5.2", (), tables=(sensor_sets_table(table, gait.printed("individual"), "sets", "temporal"),)
+        "sets", "Table 5.2", (), tables=(gait.sensor_sets_table(table, gait.printed("individual"), "sets", "temporal"),)
     )
     blocks = [first, *blocks, leaks(walks, kinds, folder), disturbed(walks["cohort"], kinds, folder)]
     page = write_blocks("Individual models, section 5.3.3", "Ebers 2023, chapter 5, computed anew.", blocks, folder)
-    return Result(table, page)
+    return gait.Result(table, page)
 
 
 def studies(quick: bool, folder: Path, data: Path) -> Mapping[str, Study]:
@@ -86,10 +82,10 @@ def leaks(walks: Mapping[str, Study], kinds: tuple[str, ...], folder: Path) -> B
     for rule in RULES:
         settings = ReconstructionSettings(split=rule, kinds=kinds, condition=condition)
         place = folder / name / f"{SAGITTAL}{'' if rule == 'temporal' else f' {rule.split()[0]}'}".replace(" ", "_")
-        found.append(cell(one, SAGITTAL, settings, place)["summary"].assign(data=f"{name}, {rule}"))
+        found.append(gait.cell(one, SAGITTAL, settings, place)["summary"].assign(data=f"{name}, {rule}"))
     rule = f"as named; {RANDOM}: {RULES[RANDOM]}"
     own = pd.concat(found).query("participant == @one.participants[0].id")
-    return Block("splits", "The split", (), tables=(sensor_sets_table(own, NOTHING_PRINTED, "splits", rule),))
+    return Block("splits", "The split", (), tables=(gait.sensor_sets_table(own, gait.NOTHING_PRINTED, "splits", rule),))
 
 
 def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:
@@ -97,15 +93,15 @@ def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:
     file = folder / "disturbed.csv"
     person = study.participants[0].id
     if not file.exists():
-        walks = sensed_walks(study, SENSORS[SAGITTAL], "nominal")
+        walks = sensed_walks(study, gait.SENSORS[SAGITTAL], "nominal")
         names = tuple(channel.name for channel in walks.channels)
-        what = sensing(names, SENSORS[SAGITTAL], ReconstructionSettings().lags(walks.rate_hz), walks.rate_hz)
+        what = sensing(names, gait.SENSORS[SAGITTAL], ReconstructionSettings().lags(walks.rate_hz), walks.rate_hz)
         channels = [channel for channel in walks.channels if channel.name in what.states]
         own = [(walk.recording, walk.phi) for walk in walks.people[person]]
         masked = (MASKED,) if "shred" in kinds else ()
-        missing = against_missing(own, what, channels, (*kinds, *masked))
-        save_table(pd.concat([against_noise(own, what, channels, kinds), missing]), file)
-    figure = disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors", "disturbed")
+        missing = gait.against_missing(own, what, channels, (*kinds, *masked))
+        save_table(pd.concat([gait.against_noise(own, what, channels, kinds), missing]), file)
+    figure = gait.disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors", "disturbed")
     return Block("disturbed", "Noise and missing readings", (), (figure,))
 
 

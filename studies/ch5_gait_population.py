@@ -24,9 +24,7 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import pandas as pd
-from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
-from ch5_set_figures import sensor_sets_figure
-from ch5_set_table import sensor_sets_table
+from chapter5 import gait
 
 from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
 from gaitdisc.report.page import Block, write_blocks
@@ -38,24 +36,27 @@ RULE = "one person left out"
 
 
 def run(
-    quick: bool = False, folder: Path = Path("ch5_population"), data: Path = DATA, kinds: tuple[str, ...] = tuple(KINDS)
-) -> Result:
+    quick: bool = False,
+    folder: Path = Path("ch5_population"),
+    data: Path = gait.DATA,
+    kinds: tuple[str, ...] = tuple(KINDS),
+) -> gait.Result:
     """Reconstruct everybody by models of the others, before and after ten strides, and write the page."""
     kinds = WITHOUT if quick else kinds
-    study = cohort(folder / "recordings", 4, 30.0) if quick else cohort(folder / "recordings")
+    study = gait.cohort(folder / "recordings", 4, 30.0) if quick else gait.cohort(folder / "recordings")
     settings = ReconstructionSettings(split=SUBJECT, condition="nominal", kinds=kinds)
-    sets = [words for words in SENSORS if words not in PELVIS]
-    cells = [cell(study, words, settings, folder / "cohort" / words.replace(" ", "_")) for words in sets]
+    sets = [words for words in gait.SENSORS if words not in gait.PELVIS]
+    cells = [gait.cell(study, words, settings, folder / "cohort" / words.replace(" ", "_")) for words in sets]
     table = pd.concat([found["summary"].assign(data="cohort") for found in cells], ignore_index=True)
     errors = pd.concat([found["errors"] for found in cells])
-    figure = sensor_sets_figure(errors, study.title, "population", RULE)
-    numbers = sensor_sets_table(table, printed("population"), "population", RULE)
+    figure = gait.sensor_sets_figure(errors, study.title, "population", RULE)
+    numbers = gait.sensor_sets_table(table, gait.printed("population"), "population", RULE)
     blocks = [
         Block("population", "Table 5.2", tuple(calibration_sentences(table)), (figure,), (numbers,)),
         *([across(data, kinds, folder)] if data.is_dir() and not quick else []),
     ]
     page = write_blocks("Population models, section 5.3.3", "Ebers 2023, chapter 5, computed anew.", blocks, folder)
-    return Result(table, page)
+    return gait.Result(table, page)
 
 
 def calibration_sentences(table: pd.DataFrame) -> list[str]:
@@ -74,14 +75,18 @@ def calibration_sentences(table: pd.DataFrame) -> list[str]:
 
 def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
     """One runner, without and with the device, each reconstructed by models of the other condition."""
-    one = first_person(exotendon(data))
+    one = gait.first_person(gait.exotendon(data))
     found = []
     for word in ("natural", "exotendon"):
         settings = ReconstructionSettings(split=CONDITION, condition=word, kinds=kinds)
-        for sensors in SENSORS:
+        for sensors in gait.SENSORS:
             place = folder / "exotendon_run" / word / sensors.replace(" ", "_")
-            found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} tested"))
-    table = sensor_sets_table(pd.concat(found), NOTHING_PRINTED, "conditions", "fitted to the other condition")
+            found.append(
+                gait.cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} tested")
+            )
+    table = gait.sensor_sets_table(
+        pd.concat(found), gait.NOTHING_PRINTED, "conditions", "fitted to the other condition"
+    )
     return Block("conditions", "Another condition", (), tables=(table,))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,19 +20,14 @@ KERNELS: tuple[KernelKind, ...] = ("squared_exponential", "matern_3_2", "matern_
 def kernel(
     kind: KernelKind, a: NDArray[np.float64], b: NDArray[np.float64], lengths: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Covariance of a process of size one between points (a's point, b's point).
+    """Covariance of a process of size one between points (a's point, b's point)."""
+    return _shape(kind, lengths)(a, b)
 
-    Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
-    """
-    a, b = a / lengths, b / lengths
-    apart = np.maximum(np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2 * a @ b.T, 0.0)
-    if kind == "squared_exponential":
-        return np.exp(-0.5 * apart)
-    if kind == "matern_3_2":
-        far = np.sqrt(3 * apart)
-        return (1 + far) * np.exp(-far)
-    far = np.sqrt(5 * apart)
-    return (1 + far + far**2 / 3) * np.exp(-far)
+
+def _shape(kind: KernelKind, lengths: Any, bounds: Any = "fixed") -> Any:
+    from sklearn.gaussian_process.kernels import RBF, Matern
+
+    return RBF(lengths, bounds) if kind == KERNELS[0] else Matern(lengths, bounds, nu=1.5 if "3_2" in kind else 2.5)
 
 
 MOST_EXACT = 1500  # samples: memory grows with their square, time with their cube
@@ -149,14 +144,9 @@ class Likeliest(NamedTuple):
 
 def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64], kind: KernelKind) -> Likeliest:
     from sklearn.gaussian_process import GaussianProcessRegressor
-    from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
+    from sklearn.gaussian_process.kernels import ConstantKernel, WhiteKernel
 
-    first, bounds = np.ones(x.shape[1]), (1e-2, 1e3)
-    shape = {
-        "squared_exponential": lambda: RBF(first, bounds),  # type: ignore[arg-type]
-        "matern_3_2": lambda: Matern(first, bounds, nu=1.5),  # type: ignore[arg-type]
-        "matern_5_2": lambda: Matern(first, bounds, nu=2.5),  # type: ignore[arg-type]
-    }[kind]()
+    shape = _shape(kind, np.ones(x.shape[1]), (1e-2, 1e3))
     whole = ConstantKernel(1.0, (1e-3, 1e6)) * shape + WhiteKernel(1e-2, (1e-10, 1e1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of length scales at their bounds, which are as good as without end
@@ -168,18 +158,12 @@ def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64], kind: KernelKind)
 def _exact_weights(
     x: NDArray[np.float64], y: NDArray[np.float64], _: NDArray[np.float64], found: Likeliest
 ) -> NDArray[np.float64]:
-    from scipy.linalg import cho_solve
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import ConstantKernel
 
-    return found.size * cho_solve(_noisy_factor(x, found), y)
-
-
-def _noisy_factor(x: NDArray[np.float64], found: Likeliest) -> tuple[NDArray[np.float64], bool]:
-    """Cholesky factor of the covariance of samples with their noise (sample, sample)."""
-    from scipy.linalg import cho_factor
-
-    covariance = found.size * kernel(found.kind, x, x, found.lengths)
-    covariance[np.diag_indices_from(covariance)] += found.noise + JITTER * found.size
-    return cho_factor(covariance, lower=True, overwrite_a=True)
+    whole = ConstantKernel(found.size, "fixed") * _shape(found.kind, found.lengths)
+    fit = GaussianProcessRegressor(whole, alpha=found.noise + JITTER * found.size, optimizer=None).fit(x, y)  # type: ignore[arg-type]
+    return found.size * np.asarray(fit.alpha_)
 
 
 def _projected_weights(
@@ -205,9 +189,7 @@ def _factors(
 
 def _exactly_known(x: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
     """Share of the variance that the samples take away, each sample a centre: Eq. 2.26 (centre, centre)."""
-    from scipy.linalg import cho_solve
-
-    return found.size * cho_solve(_noisy_factor(x, found), np.eye(len(x)))
+    return _exact_weights(x, np.eye(len(x)), x, found)
 
 
 def _known(x: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ STUDIES = Path(__file__).parents[2] / "studies"
 @pytest.fixture
 def study(monkeypatch):
     monkeypatch.syspath_prepend(STUDIES)
-    return importlib.import_module("ch3_report")
+    return importlib.import_module("chapter3.report")
 
 
 def test_the_system_is_drawn_with_the_rate_that_it_lacks(study):

@@ -18,7 +18,7 @@ def cell(augmented, diverged=None, seed=0, method="gp", seconds=1.0):
 @pytest.fixture
 def study(monkeypatch):
     monkeypatch.syspath_prepend(STUDIES)
-    return importlib.import_module("ch3_statements")
+    return importlib.import_module("chapter3.report")
 
 
 def test_a_statement_without_cells_is_not_answered(study):

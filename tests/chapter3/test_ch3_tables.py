@@ -2,11 +2,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from ch3_cell_sets import cell_sets
-from ch3_cells import CELLS, measured, set_table
 from ch3_seeds import gathered, rows_of
 from ch3_tables import printed
 from chapter3.cell import cell_of
 from chapter3.discrepancy_cell import FORECAST, ORACLE, PARTS
+from chapter3.kept_cells import CELLS, measured, set_table
 from chapter3.recommend import FOUND, evidence_of
 from chapter3.record import recorded
 from printed_blocks import apart, blocks

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from ch5_disturbance import NOISES, SHARES, against_missing, against_noise, noisy
+from chapter5.gait import NOISES, SHARES, against_missing, against_noise, noisy
 
 KINDS = ("linear", "delay ridge")
 

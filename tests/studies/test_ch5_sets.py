@@ -1,8 +1,7 @@
 import numpy as np
 import pandas as pd
 import pytest
-from ch5_set_figures import disturbance_figure, sensor_sets_figure
-from ch5_set_table import MEASURES, sensor_sets_table
+from chapter5.gait import MEASURES, disturbance_figure, sensor_sets_figure, sensor_sets_table
 
 from gaitdisc.report.reconstruction_page import search_sentences, search_table
 
