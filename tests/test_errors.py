@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from texts import says
 
 from gaitdisc.errors import ChannelError, GaitdiscError
 
@@ -54,7 +55,7 @@ def refused_by(name):
 
 def test_sentence_says_needed_found_remedy():
     error = ChannelError("strides need a vertical force", "walk.mot has none", "Name it in [channels].")
-    assert str(error) == "strides need a vertical force; walk.mot has none. Name it in [channels]."
+    assert says(str(error), "walk.mot", "none", "[channels]")
     assert (error.needed, error.found, error.remedy) == error.args
 
 

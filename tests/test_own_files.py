@@ -32,7 +32,7 @@ def test_the_list_names_each_file_with_its_hash_and_command(tmp_path):
 
 def test_another_command_replaces_it_no_more_than_another_program(tmp_path):
     write(tmp_path / "a.csv")
-    with pytest.raises(WriteError, match=r"a\.csv exists and was not written by gaitdisc angles\. Choose another"):
+    with pytest.raises(WriteError, match=r"a\.csv.*not written by gaitdisc"):
         write(tmp_path / "a.csv", command="gaitdisc angles")
 
 
@@ -55,7 +55,7 @@ def test_a_killed_command_knows_its_file_again(tmp_path, monkeypatch):
 def test_what_is_read_on_the_way_is_an_input(tmp_path):
     write(tmp_path / "a.csv")
     with (
-        pytest.raises(WriteError, match=r"a\.csv is an input of gaitdisc export\. Choose another output"),
+        pytest.raises(WriteError, match=r"a\.csv.*Choose another output"),
         guarded(EXPORT),
     ):
         note_inputs([tmp_path / "a.csv"])
@@ -89,13 +89,13 @@ def test_units_are_replaced_where_the_command_began_them_and_their_page_is_not(t
     (tmp_path / "walks" / "report.html").write_text("edited")
     with guarded("gaitdisc run"):
         claim_folder(tmp_path, mended=("walks",))
-        with pytest.raises(WriteError, match=r"report\.html exists and was changed since gaitdisc run wrote it"):
+        with pytest.raises(WriteError, match=r"report\.html.*changed since gaitdisc run"):
             write_whole(tmp_path / "walks" / "report.html", "three")
 
 
 def test_units_of_somebody_else_are_refused_at_once(tmp_path):
     (tmp_path / "walks").mkdir()
-    with pytest.raises(WriteError, match=r"walks exists and was not written by gaitdisc run"), guarded("gaitdisc run"):
+    with pytest.raises(WriteError, match=r"walks.*not written by gaitdisc"), guarded("gaitdisc run"):
         claim_folder(tmp_path, mended=("walks",))
 
 
@@ -116,7 +116,7 @@ def test_a_result_saved_before_there_were_lists_is_written_again_but_for_what_wa
 @pytest.mark.parametrize("text", ['{"own_sha256": "0"}', "{", "[]", sealed_text({"sha256": {}})[:-5]])
 def test_a_json_file_that_is_not_as_it_was_saved_is_somebody_elses(tmp_path, text):
     (tmp_path / "discovery.json").write_text(text)
-    with pytest.raises(WriteError, match=r"discovery\.json exists and was not written"), guarded("gaitdisc discover"):
+    with pytest.raises(WriteError, match=r"discovery\.json exists and was not"), guarded("gaitdisc discover"):
         claim_folder(tmp_path, "discovery.json")
 
 
@@ -125,7 +125,7 @@ def test_another_process_writes_as_this_command_does(tmp_path):
     with guarded(EXPORT), ProcessPoolExecutor(1, get_context("spawn")) as pool:
         claim_folder(tmp_path)
         pool.submit(under_this_guard(write_whole), tmp_path / "a.csv", "x").result()
-        with pytest.raises(WriteError, match=r"mine\.csv exists and was not written by gaitdisc export"):
+        with pytest.raises(WriteError, match=r"mine\.csv.*not written by gaitdisc"):
             pool.submit(under_this_guard(partial(write_whole)), tmp_path / "mine.csv", "x").result()
     write(tmp_path / "a.csv", "y")
 
@@ -138,5 +138,5 @@ def test_while_a_command_holds_a_folder_another_is_refused(tmp_path):
 
 def test_a_link_that_leads_nowhere_is_no_file_of_ours(tmp_path):
     (tmp_path / "a.csv").symlink_to(tmp_path / "none")
-    with pytest.raises(WriteError, match=r"a\.csv exists and was not written"):
+    with pytest.raises(WriteError, match=r"a\.csv exists and was not"):
         write(tmp_path / "a.csv")

@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from driven_walker import DrivenWalker
+from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
@@ -238,7 +239,7 @@ def painted(request):
 
 def test_a_run_holds_none_of_them(study, ran):
     assert planted(ran.replace(str(study), "")) == []
-    assert "refused: P04 exo: P04 exo, file 1" in " ".join(ran.split())
+    assert says(" ".join(ran.split()), "P04", "P04", "1")
     assert found_in(study) == {}
     page = (study / "run" / "report" / "report.html").read_text()
     assert "<h1>natural against exo</h1>" in page and "P01 natural, file 1" in page and "P04 exo, file 1" in page
@@ -292,7 +293,7 @@ def test_an_export_numbers_labels_of_no_vocabulary_unless_it_shall_keep_them(rec
     files = [folder / f"Zqfile_exo_{kind}" for kind in ("ik.mot", "emg.c3d", "markers.trc")]
     done = called("export", *files, "--out", tmp_path / f"all.{ending}")
     assert done.exit_code == 0, done.output
-    assert re.search(r"\d labels are outside the vocabulary and numbered; --labels keeps them", done.output)
+    assert re.search(r"\d labels .*--labels", done.output)
     assert found_in(tmp_path) == {}
     called("export", *files, "--out", tmp_path / f"kept.{ending}", "--labels")
     assert {"Zqcolumn", "Zqmarker"} <= set(found_in(tmp_path)[f"kept.{ending}"])

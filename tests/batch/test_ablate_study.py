@@ -1,4 +1,5 @@
 import pytest
+from texts import says
 
 from gaitdisc.batch.ablate_study import ablate_study, computed_quantity
 from gaitdisc.batch.participant_unit import response_key, unit_keys
@@ -53,4 +54,4 @@ def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
     person = person.model_copy(update={"trials": (person.trials[0], broken)})
     refused = computed_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
     assert isinstance(refused, Refusal)
-    assert "exo, file 1 is to be read" in refused.reason and "nowhere.mot" not in refused.reason
+    assert says(refused.reason, "1", "to be read") and "nowhere.mot" not in refused.reason

@@ -30,9 +30,7 @@ def test_one_channel_alone(lab):
 
 
 def test_a_file_against_itself_is_refused_in_words(lab):
-    with pytest.raises(
-        SchemaError, match=r"two different recordings; walk_exo_ik\.mot and walk_exo_ik\.mot hold the same"
-    ):
+    with pytest.raises(SchemaError, match=r"two different recordings; walk_exo_ik\.mot.*walk_exo_ik\.mot"):
         compare_files(lab / "walk_exo_ik.mot", lab / "walk_exo_ik.mot")
 
 
@@ -47,7 +45,7 @@ def test_a_participant_of_a_study_and_too_few_participants(lab):
     found = compare_study(study, "P01")
     assert (found.first, found.second) == ("P01 free", "P01 exo")  # second minus first
     assert found.ordered()[0].startswith("ankle")
-    with pytest.raises(SchemaError, match="P02 has none of 'free', 1 of 'exo'"):
+    with pytest.raises(SchemaError, match=r"P02.*none.*'free', 1.*'exo'"):
         compare_study(study, "P02")
     with pytest.raises(ComparisonError, match="1 have both"):
         compare_study(study)

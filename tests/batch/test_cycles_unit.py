@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from driven_walker import DrivenWalker
+from texts import says
 
 from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
 from gaitdisc.batch.participant_unit import computed_unit
@@ -96,9 +97,9 @@ def test_controls_without_the_device_are_pooled_beside_those_who_are_compared(st
         update={"conditions": Conditions(nominal="walk", device="exo"), "participants": (control, lonely)}
     )
     unit = computed_unit(with_device, control, tmp_path, lambda _: None)
-    assert unit.cycles and not unit.refusals and "P02 has 3 of 'walk', none of 'exo'" in unit.unfitted
+    assert unit.cycles and not unit.refusals and says(unit.unfitted, "P02", "3", "'walk', none", "'exo'")
     refused = computed_unit(with_device, lonely, tmp_path, lambda _: None)
-    assert not refused.cycles and "P01 has 4 of 'walk', none of 'exo'" in refused.refusals[0].reason
+    assert not refused.cycles and says(refused.refusals[0].reason, "P01", "4", "'walk', none", "'exo'")
 
 
 def test_a_file_that_could_not_be_read_is_tried_again(study, laboratory, tmp_path):

@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_joint import made_joint
+from texts import says
 
 from gaitdisc.batch.device_study import (
     DeviceWalks,
@@ -33,20 +34,20 @@ def trial(*keys, findings=()):
 
 def test_a_walk_whose_forces_do_not_carry_the_body_is_refused_with_the_balance():
     balance = Finding("warning", "force balance", "walk.c3d", "vertical rms 31.0 % of body weight (mean -29.4 %)", "")
-    with pytest.raises(SchemaError, match=r"forces that carry the body.*W01_exo: .*mean -29.4 %.*Correct mass_kg"):
+    with pytest.raises(SchemaError, match=r"W01_exo.*-29.4 %.*mass_kg"):
         check_kinetics(trial("emg", "moments", findings=[balance]))
 
 
 def test_moments_per_kg_that_say_newton_metres_are_refused():
     per_kg = Finding("warning", "per body mass", "id.sto", "peaks at 1.4 N m", "", "ankle_angle_r_moment")
-    with pytest.raises(SchemaError, match=r"ankle_angle_r_moment peaks at 1.4 N m.*N m/kg in \[channels\]"):
+    with pytest.raises(SchemaError, match=r"ankle_angle_r_moment.*1.4 N m.*m/kg.*\[channels\]"):
         check_kinetics(trial("emg", "moments", findings=[per_kg]))
 
 
 @pytest.mark.parametrize(("has", "lacks", "mend"), [("moments", "EMG", "file with the EMG"),
                                                     ("emg", "joint moments", "force platforms")])  # fmt: skip
 def test_a_walk_without_emg_or_forces_says_which(has, lacks, mend):
-    with pytest.raises(NoMomentsError, match=rf"named from {lacks} in both walks; W01_exo has no {lacks}.*{mend}"):
+    with pytest.raises(NoMomentsError, match=rf"{lacks}.*both.*W01_exo has no {lacks}.*{mend}"):
         check_kinetics(trial(has))
 
 
@@ -57,12 +58,12 @@ def one_walk(word="nominal", **others):
 
 
 def test_conditions_without_a_pair_are_refused():
-    with pytest.raises(SchemaError, match=r"both walks of W01 are needed; .*1 of 'nominal', none of 'exo'"):
+    with pytest.raises(SchemaError, match=r"both.*W01.*1.*'nominal', none.*'exo'"):
         device_walks(one_walk(), "W01")
 
 
 def test_a_joint_that_is_none_is_refused():
-    with pytest.raises(SchemaError, match=r"one of ankle_angle, knee_angle, hip_flexion; found 'toe'"):
+    with pytest.raises(SchemaError, match=r"ankle_angle, knee_angle, hip_flexion.*'toe'"):
         device_walks(one_walk(), "W01", "toe")
 
 
@@ -88,9 +89,9 @@ def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
 def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weighed(walks):
     said = [finding.what for finding in walks.findings]
     assert any("the ankle's moment model leaves" in one and "ms later" in one for one in said)
-    assert "not weighed: no marker shows the foot" in said
+    assert any(says(line, "not weighed", "no marker") for line in said)
     heavier = replace(walks, device=replace(walks.device, per_kg=0.5 * np.cos(walks.device.time)))
-    assert any("kg more at the foot would be as large" in finding.what for finding in heavier.findings)
+    assert any(says(finding.what, "more", "the foot would") for finding in heavier.findings)
 
 
 def loaded(seed, kg, per_kg):
@@ -123,7 +124,7 @@ def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscl
     at_hip = {"joint": "hip_flexion", "muscles": ("emg_ham_r", "emg_bf_r", "emg_rf_r")}
     hip = DeviceWalks(replace(walks.nominal, **at_hip), replace(walks.device, **at_hip), walks.model)
     said = hip.with_model_error(found).sentence
-    assert said.endswith("not to be trusted: no electrode is on the hip's gluteus maximus and iliopsoas.")
+    assert says(said, "not", "trusted: no")
     assert "trusted" not in walks.with_model_error(found).sentence
 
 
@@ -140,7 +141,7 @@ def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walk
     assert new.value == walks.changed.value
     assert new.high - new.low > 2 * 1.96 * walks.changed.spread
     assert estimate_text(new) in mended.sentence
-    assert mended.sentence.endswith("The written model has 140 N m/rad, fitted beside what moved in it.")
+    assert says(mended.sentence, "140 N m/rad")
 
 
 def test_a_walk_that_the_nominal_model_follows_lacks_nothing_whatever_a_search_makes_of_the_rest(walks):
@@ -160,7 +161,7 @@ def test_a_model_that_does_not_explain_the_nominal_walk_names_no_device(walks):
     check_calibrated(walks.model, walks.nominal)
     noise = np.random.default_rng(0).normal(0.0, 30.0, len(walks.nominal.time))
     model = nominal_moment(replace(walks.nominal, moment=noise))
-    with pytest.raises(SchemaError, match=r"the ankle of W01 has R2 -?0\.\d+, 24 strides. Record more strides"):
+    with pytest.raises(SchemaError, match=r"W01.*R2 -?0\.\d+, 24 strides..*more strides"):
         check_calibrated(model, walks.nominal)
 
 
@@ -172,4 +173,4 @@ def test_without_moments_the_motion_is_compared_and_nothing_is_named(tmp_path):
     write_study(study, tmp_path / "study.toml")
     found = discover_study(tmp_path / "study.toml", "W01")[0]
     assert "has no joint moments" in found.sentence
-    assert "it cannot be named. Of the motion alone: " in found.sentence
+    assert says(found.sentence, "cannot be named")

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
+from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
@@ -111,7 +112,7 @@ def test_what_the_engine_itself_does_not_bear_out_is_taken_back():
     assert found.rivals == (*said.effects, *said.rivals)
     assert found.held_out.after == said.held_out.before == found.held_out.before
     words = "miss the record as much with as without the one-sided spring at the ankle_moment port"
-    assert f"Nothing is named: MuJoCo's own runs over what was held out {words}" in found.sentence
+    assert says(found.sentence, "MuJoCo's", f"{words}")
     np.testing.assert_array_equal(found.runs.augmented, found.runs.simulated)
 
 
@@ -148,7 +149,7 @@ def test_a_spring_is_named_written_into_the_model_and_met_by_its_own_runs(lab, t
     words = ["discover", str(lab / "pendulum.xml"), str(lab / "trials.csv"), "--out", str(tmp_path), "-q"]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.exception
-    assert "a one-sided spring at the pivot_moment port" in done.output
+    assert says(done.output, "a one-sided spring", "pivot_moment")
     assert "<tendon>" in (tmp_path / "pendulum_augmented.xml").read_text()
     from gaitdisc import discover, load
 

@@ -43,7 +43,7 @@ def test_the_answer_carries_what_it_rests_on(files):
 
 def test_a_catalogue_is_read_before_anything_is_computed(files):
     (files / "mine.toml").write_text('[[shape]]\nname = "mine"\npieces = ["q**2"]\n')
-    with pytest.raises(SchemaError, match=r"mine.toml, shape 1, piece 'q\*\*2' has 'q'"):
+    with pytest.raises(SchemaError, match=r"mine.toml.*1.*'q\*\*2'.*'q'"):
         discover_files(files / "mass.toml", files / "walk.csv", files / "mine.toml")
 
 
@@ -96,5 +96,5 @@ def test_milliseconds_whose_slopes_overflow_are_refused_in_words(tmp_path):
     x = 0.5 * np.sin(3 * t) * np.exp(-0.05 * t) + 1e-3 * rng.normal(size=len(t))
     table = pd.DataFrame({"trial": (t >= 10).astype(int), "time": 1000 * t, "x": x, "v": np.gradient(x, t)})
     table.to_csv(tmp_path / "walk.csv", index=False)
-    with pytest.raises(SamplingError, match=r"samples are 10 s apart, .* Write times in seconds, not in milliseconds"):
+    with pytest.raises(SamplingError, match=r"10 s.*times in seconds, not"):
         discover_files(tmp_path / "pendulum.toml", tmp_path / "walk.csv")

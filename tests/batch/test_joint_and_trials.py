@@ -59,13 +59,13 @@ def test_weak_muscles_are_named_with_their_strength(model):
 
 def test_too_few_strides_are_refused_with_their_number(model):
     record = made_joint(strides=9)
-    with pytest.raises(StrideError, match=r"4 times 3 strides in a row.* has 9 strides, 3 times 3 in a row"):
+    with pytest.raises(StrideError, match=r"4 times 3 strides.*9 strides, 3 times 3"):
         tracked_trials(record, model, tracked_joint(record, model))
 
 
 def test_a_joint_without_a_muscle_of_its_own_is_refused():
     """Electrodes on the shank alone say nothing of the hip."""
     shank = replace(made_joint(seed=1), joint="hip_flexion")
-    said = r"at the hip is named from EMG of a muscle that turns the hip; .* has emg_.*Search another joint, as --part"
+    said = r"turns the hip; .* has emg_.*--part"
     with pytest.raises(ChannelError, match=said):
         nominal_moment(shank)

@@ -1,4 +1,5 @@
 import pytest
+from texts import says
 
 from gaitdisc.batch.participant_unit import computed_unit
 
@@ -27,7 +28,7 @@ def test_one_condition_only_is_refused_by_name(study, tmp_path):
     lonely, person = alone(study, trials=study.participants[0].trials[:1])
     unit = computed_unit(lonely, person, tmp_path, lambda _: None)
     assert unit.response is None
-    assert "P01 has 1 of 'nominal', none of 'exo'" in unit.refusals[0].reason
+    assert says(unit.refusals[0].reason, "P01", "1", "'nominal', none", "'exo'")
 
 
 def test_two_trials_of_one_condition_are_pooled_and_not_chosen_between(study, tmp_path):
@@ -35,7 +36,7 @@ def test_two_trials_of_one_condition_are_pooled_and_not_chosen_between(study, tm
     halves = [first.model_copy(update={"crop_s": crop}) for crop in ((0.0, 15.0), (15.0, 30.0))]
     twice, person = alone(study, trials=(*halves, second))
     unit = computed_unit(twice, person, tmp_path, lambda _: None)
-    assert "P01 has 2 of 'nominal', 1 of 'exo'" in unit.unfitted
+    assert says(unit.unfitted, "P01", "2", "'nominal', 1", "'exo'")
     assert unit.response is None and unit.refusals == ()
     nominal, exo = unit.cycles
     assert (nominal.trials, exo.trials) == (2, 1)
@@ -51,5 +52,5 @@ def test_an_excluded_person_is_left_out_with_the_reason(study, tmp_path):
 def test_a_held_out_part_longer_than_the_trial_is_refused(study, tmp_path):
     held = study.held_out.model_copy(update={"seconds": 60.0, "share": None})
     unit = computed_unit(study.model_copy(update={"held_out": held}), study.participants[0], tmp_path, lambda _: None)
-    assert "holding out the last 60 s" in unit.refusals[0].reason
+    assert says(unit.refusals[0].reason, "holding out the", "60 s")
     assert len(unit.walks) == 2

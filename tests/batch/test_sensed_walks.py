@@ -28,7 +28,7 @@ def test_one_condition_alone(study):
 
 
 def test_a_sensor_that_was_not_recorded(study):
-    with pytest.raises(ChannelError, match=r"all are refused, the first: .*channel 'knee_ange_r' is needed"):
+    with pytest.raises(ChannelError, match=r"refused, the first.*'knee_ange_r'"):
         sensed_walks(study, ("knee_ange_r",))
 
 
@@ -52,5 +52,5 @@ def test_one_unit_in_all_walks(study, tmp_path):
         files = (str(study.path_of(person.trials[0].files[0])), str(tmp_path / f"{person.id}.csv"))
         people.append(person.model_copy(update={"trials": (person.trials[0].model_copy(update={"files": files}),)}))
     both = study.model_copy(update={"participants": tuple(people)})
-    with pytest.raises(UnitError, match=r"emg_sol_r in one unit in all walks; .* has it in 'V', .* in '1'"):
+    with pytest.raises(UnitError, match=r"emg_sol_r.*'V'.*'1'"):
         sensed_walks(both, ("knee_angle_r",), targets="emg")

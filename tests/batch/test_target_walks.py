@@ -62,15 +62,15 @@ def test_a_dead_muscle_is_left_out_and_reported(trial):
 
 
 def test_refusals(trial):
-    with pytest.raises(SchemaError, match="has one kind of quantity; 'power' is none"):
+    with pytest.raises(SchemaError, match=r"kind of quantity; 'power'.*none"):
         target_walk(trial, STUDY, SENSORS, "power")
     with pytest.raises(ChannelError, match="'knee_ange_r' is needed"):
         target_walk(trial, STUDY, ("knee_ange_r",), "emg")
-    with pytest.raises(ChannelError, match="read for its moments; it has kinematics, emg, forces"):
+    with pytest.raises(ChannelError, match="moments; it has kinematics, emg"):
         target_walk(trial, STUDY, SENSORS, "moments")
     late = trial.stream("emg")
     late = replace(late, time=late.time + 100)
-    with pytest.raises(SamplingError, match="emg and sensors need a span of time in common; sensors last from 0"):
+    with pytest.raises(SamplingError, match=r"emg.*common; sensors last.*0"):
         target_walk(with_stream(trial, "emg", late), STUDY, SENSORS, "emg")
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.batch.tracked_pass import (
     balance,
@@ -36,8 +37,8 @@ def test_noise_of_angles_leaves_its_size_in_the_angles_and_its_inertia_in_the_mo
 
 def test_a_mass_that_the_ground_does_not_carry_is_refused_and_one_that_it_does_is_told(leg_walk):
     (found,) = balance(leg_walk(carried=0.98))
-    assert found.what.startswith("pelvis_ty: 13.7 N (root mean square) that neither ground nor body explain")
-    with pytest.raises(SchemaError, match=r"moves 70.0 kg, pelvis_ty lacks 69 N in the mean: the forces carry 63.0 kg"):
+    assert says(found.what, "pelvis_ty: 13.7 N", "neither")
+    with pytest.raises(SchemaError, match=r"70.0 kg, pelvis_ty.*69 N.*63.0 kg"):
         balance(leg_walk(carried=0.9))
 
 
@@ -45,11 +46,11 @@ def test_residual_forces_that_balance_another_motion_are_refused(leg_walk):
     walk = leg_walk()
     pulls = walk.pulls.copy()
     pulls[:, 0, 0] = 150.0
-    with pytest.raises(SchemaError, match=r"pelvis_ty lacks 150 N \(root mean square\) of 687. Compute the forces"):
+    with pytest.raises(SchemaError, match=r"pelvis_ty.*150 N.*687."):
         refuse_other_motion(replace(walk, pulls=pulls))
     refuse_other_motion(walk)
 
 
 def test_without_muscles_the_residuals_are_what_can_be_said(leg_walk):
     said = only_residuals(leg_walk(carried=0.98))
-    assert said.startswith("Nothing can be named at a joint") and "13.7 N at pelvis_ty" in said
+    assert says(said, "can be named") and "13.7 N at pelvis_ty" in said

@@ -4,6 +4,7 @@ import time
 from pathlib import Path
 
 import pytest
+from texts import says
 
 from gaitdisc.batch.workers import (
     ClusterError,
@@ -83,7 +84,7 @@ def test_a_participant_whose_process_is_killed_is_refused(study):
     first, second = found
     assert first == "P01"
     assert (second.participant, second.condition) == ("P02", "")
-    assert "2 times it was killed (SIGKILL)" in second.reason
+    assert says(second.reason, "2 times", "(SIGKILL)")
 
 
 def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):
@@ -155,10 +156,7 @@ def test_a_process_that_is_killed_twice_is_lost_in_words_and_the_others_are_not(
     found = dict(computed_in_processes(2, Squared(tmp_path, victim=victim, kills=9), [1, 2, 3, 4, 5]))
     lost = found.pop(victim)
     assert isinstance(lost, Lost)
-    assert (
-        "2 times it was killed (SIGKILL)" in lost.reason
-        and "run it with --jobs 1, or on a machine with more" in lost.reason
-    )
+    assert says(lost.reason, "2 times", "(SIGKILL)") and says(lost.reason, "--jobs 1", "more")
     assert found == {number: number**2 for number in (1, 2, 3, 4, 5) if number != victim}
     assert computed(tmp_path) == dict.fromkeys(found, 1)
     assert len(list(tmp_path.glob("killed*"))) == 2
@@ -170,7 +168,7 @@ def too_large(_):
 
 def test_memory_that_runs_out_is_as_a_kill():
     [(_, lost)] = computed_in_processes(1, too_large, [1])
-    assert "2 times it ran out of memory" in lost.reason and "; use a machine with more memory." in lost.reason
+    assert says(lost.reason, "2 times", "out of memory") and says(lost.reason, "use a machine", "more")
 
 
 def wrong(_):

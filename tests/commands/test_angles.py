@@ -13,6 +13,7 @@ from manufactured_body import (
     static_of,
     without,
 )
+from texts import says
 
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.ingest.reading import read_trial
@@ -60,7 +61,7 @@ def test_widths_may_be_given(tmp_path, called):
     words = ("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.csv")
     refused = called(*words)
     assert refused.returncode == REFUSED
-    assert "needs the width of the knee; neither static.trc nor the measures have it" in refused.stderr
+    assert says(refused.stderr, "neither static.trc nor the measures")
     done = called(*words, "--widths", 0.1, 0.1, 0.07, 0.07, "--forward", 1, 0, 0)
     assert done.returncode == 0, done.stderr
     angles = read_trial(tmp_path / "a.csv").stream("kinematics")
@@ -73,7 +74,7 @@ def test_a_walk_without_a_marker_is_refused_in_one_sentence(tmp_path, called):
     done = called("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.csv",
                   "--marker-set", "rajagopal")  # fmt: skip
     assert done.returncode == REFUSED
-    assert "static.trc has no LMFC. Name the marker" in done.stderr
+    assert says(done.stderr, "static.trc", "no LMFC")
     assert not (tmp_path / "a.csv").exists()
 
 
@@ -112,4 +113,4 @@ def test_segments_need_no_static_trial_and_markers_do(tmp_path, called):
     write_trc(markers_of(known, RAJAGOPAL), tmp_path / "walk.trc")
     refused = called("angles", tmp_path / "walk.trc", "--out", tmp_path / "b.mot")
     assert refused.returncode == REFUSED
-    assert "angles from markers need a static trial of the person" in refused.stderr
+    assert says(refused.stderr, "angles", "need a static")

@@ -1,4 +1,5 @@
 from manufactured_discovery import manufactured
+from texts import says
 
 import gaitdisc
 from gaitdisc.commands.exit_codes import REFUSED
@@ -17,4 +18,4 @@ def test_bibtex_is_printed_or_written_with_what_each_entry_is_for(called, tmp_pa
 
 def test_a_folder_without_a_result_is_refused(called, tmp_path):
     done = called("cite", tmp_path)
-    assert done.returncode == REFUSED and "a saved result is a folder with one of" in done.stderr
+    assert done.returncode == REFUSED and says(done.stderr, "a saved result")

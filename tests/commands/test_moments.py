@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.ingest.reading import read_trial
@@ -21,9 +22,9 @@ def test_moments_of_a_walk(tmp_path, called, files, ending):
     out = tmp_path / f"moments.{ending}"
     done = called("moments", walk, "--static", static, "--out", out, "--marker-set", "plug_in_gait")
     assert done.returncode == 0, done.stderr
-    assert "side r alone on plate_2 from 0.18 to 0.79 s" in done.stdout
+    assert says(done.stdout, "plate_2", "0.18", "0.79 s")
     assert "force balance over " in done.stdout and "24 channels, 197 samples" in done.stdout
-    assert "plate 1 carries 451 N where LGroundReactionForce is 9.845" in done.stdout  # what the reader found
+    assert says(done.stdout, "plate 1", "451 N", "LGroundReactionForce", "9.845")  # what the reader found
     assert len(set(done.stdout.splitlines())) == len(done.stdout.splitlines())
     written = read_trial(out).stream("moments")
     channel = written.channels[written.index("ankle_angle_r_moment")]
@@ -36,7 +37,7 @@ def test_a_mass_in_grams_is_refused_in_one_sentence(tmp_path, called, files):
     walk, static = files
     done = called("moments", walk, "--static", static, "--out", tmp_path / "a.csv", "--mass", 45800)
     assert done.returncode == REFUSED
-    assert "body mass of 5 to 300 kg; the mass given is 45800 kg. Give it in kg." in done.stderr
+    assert says(done.stderr, "5", "300 kg", "45800 kg")
     assert not (tmp_path / "a.csv").exists()
 
 
@@ -44,7 +45,7 @@ def test_who_stands_on_one_plate_with_both_feet_has_no_moments(tmp_path, called,
     _, static = files
     done = called("moments", static, "--static", static, "--out", tmp_path / "a.csv", "--marker-set", "plug_in_gait")
     assert done.returncode == REFUSED
-    assert "HC030A01.c3d has plate_1 at 0.00 s: both feet stand on it" in done.stderr
+    assert says(done.stderr, "HC030A01.c3d", "plate_1", "0.00 s: both")
 
 
 def test_markers_and_forces_in_two_files_need_the_mass(tmp_path, called, gait_data):
@@ -53,7 +54,7 @@ def test_markers_and_forces_in_two_files_need_the_mass(tmp_path, called, gait_da
              walk / "subject01_static.trc", "--out", tmp_path / "a.sto", "--marker-set", "gait2354")  # fmt: skip
     refused = called(*words)
     assert refused.returncode == REFUSED
-    assert "need the person's body mass [kg]; none is given" in refused.stderr
+    assert says(refused.stderr, "person's body mass [kg]; none")
     done = called(*words, "--mass", 72.6, "--sex", "m")
     assert done.returncode == 0, done.stderr
     written = read_trial(tmp_path / "a.sto").stream("moments")

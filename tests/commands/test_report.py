@@ -3,6 +3,7 @@ import shutil
 import pytest
 from made_clinic import made_controls, made_person, made_run
 from manufactured_discovery import manufactured
+from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
@@ -33,7 +34,7 @@ def test_a_folder_with_no_page_to_draw_is_refused(tmp_path, called):
     (tmp_path / "model.json").write_text("{}")
     done = called("report", tmp_path)
     assert done.returncode == REFUSED
-    assert "holds a saved model, which has none. Name the folder above its `models`" in done.stderr
+    assert says(done.stderr, "none", "above", "`models`")
     done = called("report", tmp_path / "nowhere")
     assert done.returncode == REFUSED and "nowhere is no folder" in done.stderr
 
@@ -67,7 +68,7 @@ def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
     nobody = called("report", run_folder, "--person", "P99")
     assert nobody.returncode == 1 and "'P99'; there are P07, P08" in nobody.stderr
     half = called("report", run_folder, "--before", "s1")
-    assert "a comparison needs --person, --before and --after" in half.stderr
+    assert says(half.stderr, "--person, --before", "--after")
     none = called("report", run_folder, "--reference", tmp_path / "none")
     assert "gaitdisc reference CONTROLS --out FOLDER" in none.stderr
 
@@ -86,7 +87,7 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
     assert page.stat().st_mtime_ns == written
     page.write_text("edited")
     edited = called("report", run_folder)
-    assert edited.returncode == 1 and "P08.html exists and was changed since gaitdisc report wrote it" in edited.stderr
+    assert edited.returncode == 1 and says(edited.stderr, "P08.html", "changed", "report")
     assert page.read_text() == "edited"
     assert called("report", run_folder, "--overwrite").returncode == 0 and page.read_bytes() == drawn
     save_reference(made_controls(6), tmp_path)

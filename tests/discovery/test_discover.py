@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two_rods, with_load
+from texts import says
 
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, refuse_blow_up
@@ -245,9 +246,9 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     assert [effect.name for effect in found.effects] == ["one_sided_spring"]
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
-    assert "what is held out never goes where it would act: other data are held out" in progress
+    assert any(says(line, "never", "where it would") for line in progress)
     note = next(finding for finding in found.findings if finding.kind == "held out")
-    assert note.what == "with and without what was found, trial 4 runs alike; trial 3 is held out in its place"
+    assert says(note.what, "trial 4", "trial 3")
 
 
 @pytest.mark.slow
@@ -262,13 +263,13 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
     seen = states[:, :, :1] + 0.03 * np.random.default_rng(0).normal(size=states[:, :, :1].shape)
     found, _ = discover(still, Measured(rest, seen, ("1",), measured.channels))
     assert [effect.name for effect in found.effects] == ["coulomb_friction"]
-    assert "trial 1, first quarter is held out in its place" in found.findings[-1].what
+    assert says(found.findings[-1].what, "trial 1", "quarter is held")
 
 
 def test_every_step_is_told():
     said = []
     discover(mass(), record(mass(), SEED), progress=said.append)
-    assert said[0] == "fitting the simulation as it was read"
+    assert says(said[0], "fitting the simulation")
     assert any("weighing" in one and "explanations" in one for one in said)
 
 
@@ -312,5 +313,5 @@ def test_samples_that_are_too_far_apart_for_a_simulation_are_told_from_slow_ones
 
 def test_where_it_blows_up_and_what_drives_it_is_told(short):
     wild = mass().with_effect(Term("load", "port", "wild", "k*exp(300*abs(x))"))
-    with pytest.raises(SimulationError, match=r"leaves it in trial \d after t = .* s, first in 'v'.*Check 'k'"):
+    with pytest.raises(SimulationError, match=r"trial.*t =.*'v'.*'k'"):
         refuse_blow_up(wild, short)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+from texts import says
 
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.influence import nearly_off
@@ -43,30 +44,27 @@ def test_a_port_times_0_is_said_and_the_others_are_searched(measured):
 
 def test_a_state_that_nothing_sees_and_the_port_that_moves_it_are_said(measured):
     port, state = findings_of(HEAT, measured)
-    assert "port 'warmth' has no effect on what is measured" in port
-    assert "no influence: state 'heat' has no effect on what is measured" in state
+    assert says(port, "'warmth'", "no", "what is measured")
+    assert says(state, "no", "'heat'", "no")
 
 
 def test_a_parameter_without_influence_is_no_candidate(measured):
     more = MASS.replace("[ports.load]", "[parameters.colour]\nvalue = 3.0\n[ports.load]")
     problem = set_up_problem(simulation_of(more), measured)
-    assert "parameter 'colour' has no effect on what is measured" in problem.measured.findings[-1].what
+    assert says(problem.measured.findings[-1].what, "'colour'", "no", "what is measured")
     assert all(one.place != "colour" for one in problem.search.candidates)
     assert any(one.place == "k" for one in problem.search.candidates)
 
 
 def test_where_no_port_shows_the_simulation_is_refused(measured):
-    with pytest.raises(SimulationError, match=r"\[ports\] load: an effect can be found where it changes what is "
-                       r"measured; no effect on any of x comes of 'load'. Check what each is"):  # fmt: skip
+    with pytest.raises(SimulationError, match=r"\[ports\].*no.*'load'."):  # fmt: skip
         discover(simulation_of(MASS.replace("push + load", "push + 0*load")), measured)
 
 
 @pytest.mark.parametrize("expression", ["0*x", "k", "3.5"])
 def test_an_observation_that_never_changes_is_refused(measured, expression):
     text = MASS.replace('[observations]\nx = "x"', f'[observations]\nx = "{expression}"')
-    with pytest.raises(SimulationError, match=r"\[observations\] x: a measured channel depends on a state or an input"
-                       r"; "
-                       r"'x' is '.*', the same in every sample of 'A mass on a spring.*Correct"):  # fmt: skip
+    with pytest.raises(SimulationError, match=r"\[observations\].*measured channel depends.*'x'"):  # fmt: skip
         discover(simulation_of(text), measured)
 
 
@@ -100,6 +98,6 @@ def test_an_answer_that_takes_two_inputs_nearly_away_is_said():
     (said,) = nearly_off(effects, "walk.csv")
     assert (said.severity, said.kind) == ("warning", "inputs switched off")
     assert said.line().startswith("warning: walk.csv")
-    assert said.what == "'net' (0.13 times) and 'others' (-0.2 times) are nearly switched off"
-    assert "let signals of one recording enter as one input" in said.spoils
+    assert says(said.what, "'net' (0.13 times)", "'others' (-0.2 times)")
+    assert says(said.spoils, "one recording enter", "input")
     assert nearly_off(effects[1:], "walk.csv") == ()

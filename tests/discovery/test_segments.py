@@ -43,7 +43,7 @@ def test_only_the_trials_that_are_asked_for():
 
 
 def test_a_trial_of_three_samples_is_refused():
-    with pytest.raises(SamplingError, match=r"at least 4 samples; one has 3. Leave it out."):
+    with pytest.raises(SamplingError, match=r"least 4 samples.*3."):
         cut_segments(np.array([50, 3]), (0, 1), 20)
 
 
@@ -74,7 +74,7 @@ def test_margins_are_run_and_not_compared():
     assert segments.begin.tolist() == [0, 16, 32, 48, 64, 0, 16, 32]
     inner = segments.of(np.stack([np.arange(100), np.arange(100)]))[:, segments.compared]
     assert inner[:2].tolist() == [[10, 13, 16, 19, 22, 25], [26, 29, 32, 35, 38, 41]]
-    with pytest.raises(SamplingError, match="a trial needs at least 24 samples; one has 23"):
+    with pytest.raises(SamplingError, match=r"least 24 samples.*23"):
         cut_segments(np.array([23]), (0,), 18, 10)
 
 

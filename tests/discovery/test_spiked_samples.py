@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
+from texts import says
 
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.spiked_samples import spiked, without_spikes
@@ -91,7 +92,7 @@ def test_spikes_are_emptied_with_channel_trial_number_and_time():
     assert np.isfinite(found.observed[[0, 2]]).all()
     (finding,) = found.findings
     assert (finding.severity, finding.kind, finding.channel) == ("warning", "spike", "x")
-    assert f"trial '2': {len(here)} of 300 samples, the first at {here[0] / 50:.4g} s" in finding.what
+    assert says(finding.what, f"'2': {len(here)} of 300 samples", f"{here[0] / 50:.4g} s")
     assert [span[0] for span in finding.spans] == pytest.approx(here / 50)
 
 

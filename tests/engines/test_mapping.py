@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import (
@@ -36,7 +37,7 @@ def test_a_walk_whose_motion_is_prescribed_has_nothing_to_run_forward(pendulum, 
     tracked = Tracked(tmp_path / "leg.osim", (tmp_path / "grf.xml", tmp_path / "grf.mot"))
     monkeypatch.setattr("gaitdisc.engines.mapping.read_tracked", lambda _: tracked)
     pendulum.with_suffix(".toml").write_text("[tracked]\n")
-    with pytest.raises(GaitdiscError, match=r"pendulum.toml holds .tracked.: its motion is prescribed, and only disc"):
+    with pytest.raises(GaitdiscError, match=r"pendulum.toml.*motion is prescribed"):
         read_mapping(pendulum)
 
 
@@ -70,11 +71,11 @@ def test_a_number_that_is_not_the_models_is_told(pendulum):
     mapping, model = read_mapping(pendulum)
     assert other_values(mapping, model) == ()
     (said,) = other_values(mapping.with_values({"rod_mass": 3.0}), model)
-    assert said.what == "rod_mass is 3 in the mapping and 2 in the model"
+    assert says(said.what, "rod_mass", "3", "2")
 
 
 def test_a_mapping_is_no_simulation_that_runs_by_itself(pendulum):
-    with pytest.raises(GaitdiscError, match=r"are in pendulum.xml. Give its path to gaitdisc discover"):
+    with pytest.raises(GaitdiscError, match=r"pendulum.xml..*to gaitdisc discover"):
         compile_simulation(drafted(read_model(pendulum)))
 
 
@@ -82,7 +83,7 @@ def test_equations_beside_a_model_are_refused(pendulum):
     file = pendulum.with_suffix(".toml")
     write_mapping(read_model(pendulum), file)
     file.write_text(file.read_text() + '\n[equations]\npivot = "pivot_speed"\n')
-    with pytest.raises(GaitdiscError, match="the equations stand in the file or in a model of an engine"):
+    with pytest.raises(GaitdiscError, match="the equations stand"):
         read_simulation(file)
 
 

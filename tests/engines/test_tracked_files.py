@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.engines.engine import Coordinate
 from gaitdisc.engines.tracked_files import check_loads, drafted_tracked, tracked_motion
@@ -90,27 +91,27 @@ def test_forces_on_a_body_that_is_not_there_are_refused(walk):
     (walk / "grf.xml").write_text(LOADS.format(body="calc_r"))
     with pytest.raises(SchemaError) as refused:
         motion(walk)
-    assert "force 'right' acts on 'calc_r'; leg.osim has no such body. Did you mean 'calcn_r'?" in str(refused.value)
+    assert says(str(refused.value), "'right'", "'calc_r'; leg.osim", "no", "'calcn_r'?")
 
 
 def test_columns_that_the_loads_need_and_are_not_there_are_refused(walk):
     storage(walk / "grf.mot", {f"ground_force_v{axis}": TIME for axis in "xyz"})
-    with pytest.raises(ChannelError, match="force 'right' needs 'ground_force_px'; there is none"):
+    with pytest.raises(ChannelError, match=r"'right'.*'ground_force_px'.*none"):
         motion(walk)
 
 
 def test_missing_and_unknown_columns_of_forces_are_refused(walk):
     storage(walk / "forces.sto", {"soleus_r": TIME})
-    with pytest.raises(ChannelError, match=r"forces.sto lacks 'ankle_angle_r_reserve'. Export all forces"):
+    with pytest.raises(ChannelError, match=r"forces.sto.*'ankle_angle_r_reserve'. Export all forces"):
         motion(walk)
     storage(walk / "forces.sto", dict.fromkeys((*ACTUATORS, "FX"), TIME))
-    with pytest.raises(ChannelError, match=r"forces.sto has 'FX', which is none.*name it in .tracked. as actuators"):
+    with pytest.raises(ChannelError, match=r"forces.sto.*'FX'.*none"):
         motion(walk)
 
 
 def test_files_that_share_no_time_are_refused(walk):
     storage(walk / "forces.sto", dict.fromkeys(ACTUATORS, TIME), time=TIME + 5)
-    with pytest.raises(SamplingError, match=r"forces.sto begins at 5 s, .* ends at 1.99 s. Put both on one clock"):
+    with pytest.raises(SamplingError, match=r"forces.sto.*5 s.*1.99 s..*both"):
         motion(walk)
 
 
@@ -135,7 +136,7 @@ def test_the_ends_of_angles_are_left_out_where_rates_come_from_them(walk):
 def test_degrees_that_are_said_to_be_radians_are_refused(walk):
     angle = 40 * np.sin(2 * np.pi * TIME)
     storage(walk / "walk.mot", {"pelvis_ty": 1 + 0 * TIME, "ankle_angle_r": angle}, degrees="no")
-    with pytest.raises(UnitError, match=r"ankle_angle_r reaches 40, which looks like degrees. Write inDegrees=yes"):
+    with pytest.raises(UnitError, match=r"ankle_angle_r.*40.*inDegrees=yes"):
         motion(walk)
 
 
@@ -143,7 +144,7 @@ def test_radians_of_a_whole_leg_that_are_said_to_be_degrees_are_refused(walk):
     swing = np.sin(2 * np.pi * TIME)
     columns = {"pelvis_ty": 1 + 0 * TIME, "hip_flexion_r": 0.5 * swing, "ankle_angle_r": 0.2 * swing}
     storage(walk / "walk.mot", columns, degrees="yes")
-    with pytest.raises(UnitError, match=r"which looks like radians. Write inDegrees=no"):
+    with pytest.raises(UnitError, match=r"looks like radians..*inDegrees=no"):
         motion(walk)
 
 
@@ -158,7 +159,7 @@ def test_a_coordinate_of_a_name_that_nobody_else_uses_is_in_the_unit_of_the_head
         assert np.ptp(read.q[:, 1]) == pytest.approx(2 * np.radians(10.0), rel=0.02)
     text = (walk / "walk.mot").read_text().replace("inDegrees=no\n", "")
     (walk / "walk.mot").write_text(text)
-    with pytest.raises(UnitError, match=r"walk.mot says whether its angles are degrees; its header does not"):
+    with pytest.raises(UnitError, match=r"walk.mot.*angles are degrees.*not"):
         tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
 
 
@@ -167,13 +168,13 @@ def test_markers_in_the_place_of_angles_are_refused(walk, name):
     (walk / name).write_bytes(b"\x02P")
     tracked = read_tracked(walk / "leg.osim")
     assert tracked is not None
-    with pytest.raises(ReadError, match=rf"{name} is a file of another kind. Run OpenSim's inverse kinematics"):
+    with pytest.raises(ReadError, match=rf"{name}.*OpenSim's"):
         tracked_motion(tracked, walk / name, JOINTS, ACTUATORS)
 
 
 def test_the_forces_themselves_in_the_place_of_external_loads_are_refused(walk):
     (walk / "leg.toml").write_text('[tracked]\nexternal_loads = "grf.mot"\n')
-    with pytest.raises(ReadError, match=r"grf.mot holds the forces themselves. Give the .xml of OpenSim's inverse dyn"):
+    with pytest.raises(ReadError, match=r"grf.mot.*forces themselves. Give.*OpenSim's"):
         read_tracked(walk / "leg.osim")
 
 
@@ -182,10 +183,10 @@ def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):
     model.write_text("<OpenSimDocument/>")
     (tmp_path / "grf.mot").write_text("")
     for given, words in {
-        (tmp_path / "leg.xml", tmp_path / "grf.xml"): "leg.xml is none. Leave out --external-loads",
+        (tmp_path / "leg.xml", tmp_path / "grf.xml"): "leg.xml .*--external-loads",
         (model, None): "Add --external-loads grf.xml",
         (model, tmp_path / "grf.xml"): "there is none at .*grf.xml",
-        (model, tmp_path / "grf.mot"): "grf.mot holds the forces themselves. Give the .xml",
+        (model, tmp_path / "grf.mot"): r"grf\.mot .*\.xml",
     }.items():
         with pytest.raises(GaitdiscError, match=words):
             drafted_tracked(*given)

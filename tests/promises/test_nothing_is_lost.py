@@ -238,7 +238,7 @@ def test_save_replaces_nothing_that_save_did_not_write(tmp_path, monkeypatch, ki
         folder = tmp_path / f"foreign {file}"
         folder.mkdir()
         (folder / file).write_text(MINE)
-        with pytest.raises(WriteError, match=r"was not written by \.save\. .*, or give overwrite=True"):
+        with pytest.raises(WriteError, match=r"not written by \.save.*overwrite=True"):
             result.save(folder)
         assert {path.name for path in folder.iterdir()} == {file}
         assert (folder / file).read_text() == MINE
@@ -249,7 +249,7 @@ def test_save_replaces_nothing_that_save_did_not_write(tmp_path, monkeypatch, ki
     folder.mkdir()
     (folder / other).write_text("{}")
     for overwrite in (False, True):
-        with pytest.raises(WriteError, match=f"holds another kind of result \\({other}\\)"):
+        with pytest.raises(WriteError, match=f"another kind of result \\({other}\\)"):
             result.save(folder, overwrite=overwrite)
     assert [path.name for path in folder.iterdir()] == [other]
 
@@ -272,13 +272,13 @@ def test_what_writes_in_python_replaces_its_own_files_alone(tmp_path, write, nam
     path = write(tmp_path / "own" / name)
     assert write(tmp_path / "own" / name) == path
     path.write_bytes(path.read_bytes() + b"\n")
-    with pytest.raises(WriteError, match=rf"{name} exists and was changed since gd\.\w+ wrote it\. .*overwrite=True"):
+    with pytest.raises(WriteError, match=rf"{name} .*changed since gd\.\w+.*overwrite=True"):
         write(path)
     write(path, overwrite=True)
     other = tmp_path / "other" / name
     other.parent.mkdir()
     other.write_text(MINE)
-    with pytest.raises(WriteError, match=rf"{name} exists and was not written by gd\.\w+"):
+    with pytest.raises(WriteError, match=rf"{name} .*not written by gd\.\w+"):
         write(other)
     assert contents(other.parent) == {other: MINE.encode()}
 
@@ -313,7 +313,7 @@ def test_after_a_full_disk_the_earlier_result_stands_whole(tmp_path, monkeypatch
     save("new", sentence="Another answer.")
     assert load_discovery(tmp_path).sentence == "Another answer."
     (tmp_path / "augmented.toml").write_text("changed")
-    with pytest.raises(gd.GaitdiscError, match=r"augmented\.toml is changed since it was saved"):
+    with pytest.raises(gd.GaitdiscError, match=r"augmented\.toml is changed"):
         load_discovery(tmp_path)
 
 

@@ -28,9 +28,9 @@ def walk(name, seed, strides=20, gap=0.0, channel=1, shift=0):
 
 def test_the_first_sentence_is_the_answer():
     first, *rest = mismatch_sentences(compare_walks(walk("model", 0, gap=-8.0), walk("measured", 1)))
-    assert re.match(r"In measured the right ankle is up to [78]\.\d deg", first)
+    assert re.match(r"In measured the right ankle .* [78]\.\d deg", first)
     assert says(first, "more", "model", "12", "55 %")
-    assert " stride-to-stride sd, p < .001); 3." in first
+    assert says(first, "stride-to-stride sd", "p < .001); 3.")
     assert says(first, "the whole curve")
     assert says(rest[-1], "right", "95 %")
 
@@ -65,7 +65,7 @@ def test_an_offset_is_distinguished_from_a_change_of_shape():
     higher = replace(higher, curves=higher.curves + np.array([0.0, 6.0, 0.0]))
     first = mismatch_sentences(compare_walks(higher, walk("measured", 1, strides=40)))[0]
     assert says(first, "more", "model throughout the stride")
-    assert re.search(r"\): an offset, for without its mean the shape agrees to within \S+ deg\.$", first)
+    assert re.search(r"\): an offset, .* \S+ deg\.$", first)
 
 
 def test_what_is_smaller_than_a_clinician_would_call_one_is_not_named():
@@ -94,8 +94,8 @@ def test_the_smallest_p_that_so_few_strides_can_give_is_said():
     found = compare_walks(walk("sim", 6, strides=1, gap=-8.0), walk("measured", 7, strides=9))
     assert found.exchange.permutations == 256 and len(found.regions)
     have = int((found.regions["p"] == 1 / 256).sum())
-    said = f"p = 0.0039 is the smallest value that 9 strides can give; {have} of "
-    assert said in " ".join(mismatch_sentences(found)) and said in " ".join(method_sentences(found))
+    for sentences in (mismatch_sentences(found), method_sentences(found)):
+        assert says(" ".join(sentences), "p = 0.0039", "9 strides", f"{have} of ")
     many = compare_walks(walk("sim", 6, gap=-8.0), walk("measured", 7))
     assert says(" ".join(method_sentences(many)), "p = 0.0005", "2000 permutations")
 

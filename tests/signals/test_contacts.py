@@ -30,6 +30,12 @@ def test_missed_and_extra_are_counted_within_the_span_of_both():
     assert says(found.line(), "3 pairs", "+10 ms", "10 ms", "1 missed, 1 extra")
 
 
+def test_the_interquartile_range_of_0_to_100_ms_is_50_ms():
+    times = np.arange(101.0)
+    found = contacts(times).compared(contacts(times + np.arange(101) / 1000))
+    assert (found.median_ms, found.iqr_ms) == pytest.approx((50.0, 50.0))
+
+
 def test_without_contacts_there_are_no_pairs():
     assert np.isnan(contacts([]).compared(contacts([1.0])).median_ms)
 

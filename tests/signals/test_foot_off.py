@@ -28,6 +28,9 @@ def _toe(speed=1.2):
 
 def test_a_window_lies_in_the_stance_after_each_contact_and_before_the_first():
     assert stance_windows(np.array([1.0, 2.0]), 1.0) == [(0.25, 0.85), (1.25, 1.85), (2.25, 2.85)]
+    assert np.array(stance_windows(np.array([0.0, 2.0]), 2.0)) == pytest.approx(
+        np.array([(-1.5, -0.3), (0.5, 1.7), (2.5, 3.7)])
+    )
     assert stance_windows(np.empty(0), 1.0) == []
 
 

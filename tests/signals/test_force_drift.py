@@ -35,8 +35,10 @@ def test_a_planted_drift_is_found(sign):
 
 
 def test_an_offset_is_found():
-    (finding,) = drift_findings(belt(offset_n=-15.0))
+    forces = belt(offset_n=-15.0)
+    (finding,) = drift_findings(Recording(forces.time + 10.0, forces.values, forces.channels))
     assert says(finding.what, "-15.0 N", "29 swings")
+    assert np.ravel(finding.spans) == pytest.approx([10.0 + 0.8 * 1.1, 10.0 + 28.8 * 1.1], abs=0.05)
 
 
 def test_a_good_plate_is_not_accused():
@@ -45,10 +47,7 @@ def test_a_good_plate_is_not_accused():
 
 def test_few_swings_are_said():
     (finding,) = drift_findings(belt(steps=4))
-    assert (finding.severity, finding.what) == (
-        "note",
-        "3 unloaded phases between steps where 5 are needed to see a drift",
-    )
+    assert finding.severity == "note" and says(finding.what, "3 unloaded phases", "5")
 
 
 def test_real_belts_rest_at_zero(gait_data, real):

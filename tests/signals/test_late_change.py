@@ -66,7 +66,7 @@ def test_too_few_strides_are_refused_and_noted(made):
     with pytest.raises(StrideError, match=r"24 whole strides.*walk\.mot.*19.*'r'"):
         late_change(recording, strides)
     (finding,) = late_change_findings(recording, strides)
-    assert (finding.severity, finding.what) == ("note", "not looked for: walk.mot has 19 of side 'r'")
+    assert finding.severity == "note" and says(finding.what, "not looked for", "walk.mot", "19 of side 'r'")
 
 
 def test_same_seed_same_p(made):

@@ -41,6 +41,14 @@ def test_samples_taken_by_a_shaken_clock_are_moved_to_even_times():
     assert "moved to even times" in finding.what and finding.kind == "clock"
 
 
+def test_a_phase_that_a_shaken_clock_took_is_moved_and_stays_below_one():
+    shaken = _shaken(0.09)
+    even, _, _ = on_even_time(_trial(shaken, inputs=((shaken * 0.9 + 0.02) % 1)[:, None]), ("phase",), "walk.csv")
+    truth = (even.time * 0.9 + 0.02) % 1
+    apart = (even.inputs[:, 0] - truth + 0.5) % 1 - 0.5
+    assert np.abs(apart).max() < 1e-6 and even.inputs.max() < 1
+
+
 def test_samples_taken_evenly_and_stamped_late_are_left_as_they_are():
     x = _x(np.arange(COUNT) / RATE)
     even, rate, (finding,) = on_even_time(_trial(_shaken(0.09), x), ("u",), "walk.csv")

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from statsmodels.stats.multitest import multipletests
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by, largest_family, step_levels
+from gaitdisc.statistics.holm_sidak import check_level, holm_sidak, holm_sidak_by, largest_family, step_levels
 
 PROBABILITIES = st.lists(st.floats(0, 1), min_size=1, max_size=24)
 
@@ -95,3 +95,9 @@ def test_the_largest_family_that_can_reject():
         most = largest_family(2 / 2**n)
         assert holm_sidak([2 / 2**n] + [1.0] * (most - 1)).rejected[0]
         assert not holm_sidak([2 / 2**n] + [1.0] * most).rejected[0]
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, 5.0, float("nan")])
+def test_a_level_is_between_0_and_1(level):
+    with pytest.raises(ComparisonError, match=f"alpha .*{level:g}"):
+        check_level(level, "alpha")

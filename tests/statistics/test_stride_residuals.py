@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -84,6 +86,13 @@ def test_effective_strides_of_known_correlation():
         worth = effective_strides(autoregressive_strides(4000, rho, 1, columns=3))
         np.testing.assert_allclose(worth / 4000, (1 - rho) / (1 + rho), rtol=0.1)
     assert effective_strides(np.ones((30, 101, 1)) * np.array([1.0, -1.0] * 15)[:, None, None])[0] == 30
+
+
+def test_an_interval_that_ends_at_zero_holds_it():
+    found = mean_over_strides(autoregressive_strides(10, 0.0, 0))
+    one, zero = np.ones_like(found.mean), np.zeros_like(found.mean)
+    for low, high, share in ((-one, zero, 0.0), (zero, one, 0.0), (-one, -1e-9 * one, 1.0), (1e-9 * one, one, 1.0)):
+        assert replace(found, low=low, high=high).share_beyond_zero == pytest.approx([share])
 
 
 def test_points_with_too_few_strides_have_no_mean():
