@@ -28,18 +28,10 @@ LEAST_BURST = 1.5  # largest over smallest value of the curve: below it, nothing
 
 @dataclass(frozen=True, eq=False)
 class Walks:
-    """Median stride of every person and setting.
+    """Median stride of every person and setting."""
 
-    Parameters
-    ----------
-    curves : mapping of (str, str) to DataFrame (phase bin, signal) [N; EMG of its unknown reference]
-        30 bins from right initial contact on.
-    energy_w : DataFrame (person, setting) [W]
-        Metabolic power as the source has it.
-    """
-
-    curves: Mapping[tuple[str, str], pd.DataFrame]
-    energy_w: pd.DataFrame
+    curves: Mapping[tuple[str, str], pd.DataFrame]  # (bin, signal) [N; EMG: unknown], from right initial contact on
+    energy_w: pd.DataFrame  # (person, setting) [W]
     strides: int
 
 
@@ -54,13 +46,7 @@ def read_walks(folder: Path) -> Walks:
 
 
 def part_of_stride(force: NDArray[np.float64]) -> NDArray[np.str_]:
-    """Part of the stride that each phase bin belongs to, from the leg's own vertical force.
-
-    Parameters
-    ----------
-    force : ndarray (phase bin,) [N]
-        Of one leg over one stride, in a circle; the sign does not matter.
-    """
+    """Part of the stride that each phase bin belongs to, from the leg's own vertical force."""
     on_ground = np.abs(force) > LOADED * np.abs(force).max()
     contacts = np.flatnonzero(on_ground & ~np.roll(on_ground, 1))
     lengths = [int(np.argmin(np.roll(on_ground, -start))) or len(force) for start in contacts]

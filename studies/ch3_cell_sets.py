@@ -21,19 +21,13 @@ LONG, SHORT = 50.0, 10.0
 
 @dataclass(frozen=True, eq=False)
 class CellSet:
-    """Cells that stand in one table.
-
-    Parameters
-    ----------
-    noises : tuple of float
-        As shares of each channel's standard deviation.
-    """
+    """Cells that stand in one table."""
 
     system: System
     conditions: Conditions
     approach: Approach = "dynamics"
     methods: tuple[Method, ...] = FOUR
-    noises: tuple[float, ...] = NOISES
+    noises: tuple[float, ...] = NOISES  # shares of each channel's standard deviation
     seeds: int = SEEDS
     settings: MethodSettings | None = None
 

@@ -23,7 +23,7 @@ from chapter3.methods import MethodSettings
 from chapter3.pages import statements_table
 from chapter3.record import Conditions, Record, recorded
 from chapter3.report import Result, blocks_of, written
-from chapter3.starts import Uncertainty, linear_kalman, unscented_kalman
+from chapter3.starts import Uncertainty, unscented_kalman
 from chapter3.system import System, system_of
 from numpy.typing import NDArray
 
@@ -78,7 +78,7 @@ def filters(record: Record) -> str:
 
     jacobian = np.column_stack([(turn(np.eye(3)[[k]] * 1e-4) - turn(np.zeros((1, 3))))[0] / 1e-4 for k in range(3)])
     walking = Uncertainty(noise.first, np.array([1e-5, 1e-4, 2e-4]), sd)  # an offset that is to follow a gain
-    linear = linear_kalman(jacobian, np.array([1.0, 0.0, 1.0]), y, start, walking).states
+    linear = unscented_kalman(lambda p: p @ jacobian.T, lambda p: p[:, 0] + p[:, 2], y, start, walking).states
     unscented = unscented_kalman(turn, lambda p: (1 + p[:, 2]) * p[:, 0], y, start, noise)
     states, known = unscented.states, record.truth[:, 0]
     seen = {"linear (offset)": linear[:, 0] + linear[:, 2], "unscented (gain)": (1 + states[:, 2]) * states[:, 0]}

@@ -36,20 +36,12 @@ EVERY, RATE_HZ, STRETCH_S = 10, 100.0, 0.5
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What was found.
-
-    Parameters
-    ----------
-    friction_n : float
-        Its force [N].
-    left_mm : dict of str to tuple
-        Free-run error before and after, of the held-out stretches and of the pulses [mm].
-    """
+    """What was found."""
 
     named: str
     place: str
-    friction_n: float
-    left_mm: dict[str, tuple[float, float]]
+    friction_n: float  # [N]
+    left_mm: dict[str, tuple[float, float]]  # free-run error before and after, held-out stretches and pulses
     whole: gd.Discovery | None
 
 

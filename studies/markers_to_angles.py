@@ -17,11 +17,11 @@ DATA = argument("data", "folder of the real recordings", SHARED)
 OUT = argument("--out", "folder of the pictures; none are drawn without it")
 GIVEN = command_line(__name__, __doc__, DATA, OUT, QUICK)  # before the slow imports
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from markdown_table import markdown_table
-from markers_to_angles_pictures import draw
 from plug_in_gait_angles import HELD_BACK, WRITTEN_WITH, Row, against_plug_in_gait, drawn_curves, people, rms
 
 import gaitdisc as gd
@@ -30,6 +30,7 @@ JOINTS = ("free", "held", "planar")
 PLUG_IN_GAIT = "angle | goal | straight, 4 people | 2 held back | all 6 | turn, 4 people | 2 held back | all 6"
 OPENSIM = "angle | goal | segments free | joints held | held, planar as the model"
 SAGITTAL = ("hip_flexion", "knee_angle", "ankle_angle")
+Pairs = Mapping[str, tuple[np.ndarray, np.ndarray]]  # angle -> ours, theirs [deg]
 
 
 def opensim(data: Path) -> tuple[gd.Trial, gd.Trial, gd.Recording]:
@@ -68,6 +69,38 @@ def main() -> None:
     if GIVEN.out:
         straight = {p.name + " (held back)" * (p.name in HELD_BACK): drawn_curves(p) for p in several}
         draw(straight, opensim_curves(GIVEN.data, "planar"), Path(GIVEN.out))
+
+
+def draw(people: Mapping[str, Pairs], opensim: Pairs, folder: Path) -> None:
+    """Plug-in Gait's and ours of each person's straight walk; OpenSim's and ours."""
+    from matplotlib.figure import Figure
+
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = list(next(iter(people.values())))
+    drawn = Figure(figsize=(3 * len(people), 1.7 * len(rows)), layout="constrained")
+    panels = drawn.subplots(len(rows), len(people), squeeze=False)
+    for column, (person, pairs) in enumerate(people.items()):
+        for row, name in enumerate(rows):
+            panel(panels[row][column], pairs[name], f"{name} [deg]" if column == 0 else "")
+        panels[0][column].set_title(person)
+    drawn.legend(("Plug-in Gait, in the file", "gaitdisc, from the markers"), loc="outside lower center", ncols=2)
+    drawn.savefig(folder / "markers_to_angles_plug_in_gait.png", dpi=90)
+    drawn = Figure(figsize=(10, 8), layout="constrained")
+    places = drawn.subplots(4, 2).ravel()
+    for place, (name, pair) in zip(places, opensim.items(), strict=False):
+        panel(place, pair, f"{name} [deg]")
+    places[-1].remove()
+    drawn.legend(("OpenSim, planar model", "gaitdisc, planar"), loc="outside lower center", ncols=2)
+    drawn.savefig(folder / "markers_to_angles_opensim.png", dpi=90)
+
+
+def panel(axes, pair: tuple[np.ndarray, np.ndarray], label: str) -> None:
+    """One angle over the frames."""
+    axes.plot(pair[1], color="0.6", lw=3)
+    axes.plot(pair[0], color="tab:blue", lw=1)
+    axes.set_ylabel(label, fontsize=7)
+    axes.set_xlabel("frame", fontsize=6)
+    axes.tick_params(labelsize=7)
 
 
 if __name__ == "__main__":

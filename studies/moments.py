@@ -17,10 +17,9 @@ GIVEN = command_line(__name__, __doc__, DATA, PICTURE, QUICK)  # before the slow
 
 from pathlib import Path
 
-from curves_over_each_other import over_each_other
 from gait10dof_segments import against_opensim
 from markdown_table import markdown_table
-from moments_tables import NAMES, SETS, Curves, Walk, against_plug_in_gait, balances, filter_effect
+from moments_tables import NAMES, SETS, Curves, Walk, against_plug_in_gait, balances, filter_effect, over_each_other
 from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 
 import gaitdisc as gd

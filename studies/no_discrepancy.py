@@ -50,13 +50,7 @@ def run(quick: bool = False) -> NDArray[np.float64]:
 
 
 def difference(person: Person, duration_s: float, seed: int) -> NDArray[np.float64]:
-    """R2 of a Nominal model on a second walk, minus R2 on the held-out part of its own.
-
-    Parameters
-    ----------
-    duration_s : float
-        Length of each walk [s]; the last eighth is held out.
-    """
+    """R2 of a Nominal model on a second walk, minus R2 on the held-out part of its own."""
     train, held = _parts(person, None, duration_s, seed)
     _, other = _parts(person, Spring(0.0), duration_s, seed + 1)
     model = fit_linear(train).model

@@ -233,18 +233,12 @@ def on_states(
     states = system.known.run(start[None], dt, len(time) - 1)[0]
     values = learned(time[:, None] if learned.inputs == ("t",) else states)
     if summed:
-        values = _integrated(learned, values.shape, dt)
+        error, values = np.zeros((1, len(learned.inputs))), np.zeros(values.shape)
+        with np.errstate(all="ignore"):  # De/dt = delta(e) from zero
+            for sample in range(1, len(values)):
+                error = rk4_step(learned, error, dt)
+                values[sample] = error[0, : values.shape[1]]
     return AugmentedRun(states[:, : len(system.channels)] + values, None)
-
-
-def _integrated(learned: Model, shape: tuple[int, ...], dt_s: float) -> NDArray[np.float64]:
-    """De/dt = delta(e) from zero, by Runge-Kutta of order 4."""
-    error, found = np.zeros((1, len(learned.inputs))), np.zeros(shape)
-    with np.errstate(all="ignore"):
-        for sample in range(1, shape[0]):
-            error = rk4_step(learned, error, dt_s)
-            found[sample] = error[0, : shape[1]]
-    return found
 
 
 def _program(known: KnownRates) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:

@@ -37,36 +37,26 @@ from .system import System
 PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
 
 
-def cell(
-    system: System, method: Method, approach: Approach, conditions: Conditions, settings: MethodSettings | None = None
-) -> DiscrepancyCell:
-    """Learn one error signal by one method, and test the augmented model."""
-    return cell_of(recorded(system, conditions), method, approach, settings)
-
-
 def cell_of(
     record: Record, method: Method, approach: Approach, settings: MethodSettings | None = None
 ) -> DiscrepancyCell:
-    """Learn one error signal of a record that is there already."""
+    """Learn one error signal of a record by one method, and test the augmented model."""
     made, settings = record.conditions, settings or MethodSettings()
     if made.published and settings.threshold is None:
         settings = replace(settings, threshold=PUBLISHED_THRESHOLDS[approach])
-    variant = "as published" if made.published else "right"
+    variant, system = "as published" if made.published else "right", record.system
+    head = (system.name, method, approach, variant, made.noise, made.seed, system.channels)
     begun = clock.process_time()
     try:
         with threadpool_limits(1):  # on matrices of this size, and beside other work, threads wait for each other
             learned = learned_model(record, method, approach, settings)
     except GaitdiscError as error:
-        return DiscrepancyCell(
-            record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, {},
-            clock.process_time() - begun, 0.0, refused=str(error), units=record.system.units,
-        )  # fmt: skip
+        fit_s = clock.process_time() - begun
+        return DiscrepancyCell(*head, {}, fit_s, 0.0, refused=str(error), units=system.units)
     fit_s, begun = clock.process_time() - begun, clock.process_time()
     parts = {name: part(record, learned, approach, name) for name in PARTS}
-    return DiscrepancyCell(
-        record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, parts,
-        fit_s, clock.process_time() - begun, terms_of(learned), units=record.system.units,
-    )  # fmt: skip
+    run_s = clock.process_time() - begun
+    return DiscrepancyCell(*head, parts, fit_s, run_s, terms_of(learned), units=system.units)
 
 
 def learned_model(record: Record, method: Method, approach: Approach, settings: MethodSettings) -> Model:

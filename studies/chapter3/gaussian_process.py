@@ -120,7 +120,7 @@ def fit_gaussian_process(
         return process
     memory = autocorrelation_time(samples.y - process(samples.x), FORGOTTEN)
     slow = [each._replace(noise=each.noise * float(memory[k])) for k, each in enumerate(found)]
-    known = [_exactly_known(x, each) if exact else _known(x, centres, each) for each in slow]
+    known = [_exact_weights(x, np.eye(len(x)), x, each) if exact else _known(x, centres, each) for each in slow]
     return replace(process, known=np.array(known))
 
 
@@ -187,13 +187,8 @@ def _factors(
     return across, np.sqrt(found.noise + JITTER * found.size) * root
 
 
-def _exactly_known(x: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
-    """Share of the variance that the samples take away, each sample a centre: Eq. 2.26 (centre, centre)."""
-    return _exact_weights(x, np.eye(len(x)), x, found)
-
-
 def _known(x: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
-    """The same on fewer centres: Eq. 8.27 without the noise of what is measured next (centre, centre)."""
+    """Share of the variance that samples take away, on fewer centres: Eq. 8.27 without the noise of what comes next."""
     across, root = _factors(x, centres, found)
     r = np.linalg.qr(np.vstack([across, root]), mode="r")
     noise = found.noise + JITTER * found.size

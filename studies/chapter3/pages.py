@@ -96,10 +96,6 @@ def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> 
     return table
 
 
-def _rate_unit(unit: str) -> str:
-    return unit_text(f"{unit}2" if unit.endswith("/s") else f"{unit}/s")
-
-
 def _unit(cell: DiscrepancyCell, channel: int) -> str:
     return unit_text(cell.units[channel]) if cell.units else "1"
 
@@ -128,7 +124,8 @@ def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str
             panel.set_ylabel(said[k])
             panel.set_xlabel("time [s]")
     table["missing rate"], table["residual"] = missing[some, lacking], (found.truth - found.known)[some, 0]
-    rate = _rate_unit(_unit(cell, lacking))
+    unit = _unit(cell, lacking)
+    rate = unit_text(f"{unit}2" if unit.endswith("/s") else f"{unit}/s")
     for panel, column, words, label in zip(
         (grid[0][2], grid[1][2]),
         ("missing rate", "residual"),
@@ -201,7 +198,8 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
             if cell.approach != approach:
                 continue
             part, look = cell.parts[FORECAST], METHOD_LOOKS[cell.method]
-            horizons = _horizons(float(part.time[-1]))
+            last_s = float(part.time[-1])
+            horizons = [each for each in HORIZONS_S if each < last_s] + [last_s]
             change = part.change(horizons)
             axes.plot(horizons, np.clip(change, -100, 100), color=look.colour, linestyle=look.line)
             row = {"approach": approach, "method": cell.method, "horizon_s": horizons, "accuracy": change}
@@ -218,11 +216,6 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
         f"start estimated from the data; grey: the truth’s first jump. Noise {cells[0].noise:g}."
     )
     return Figure(name, caption, "Curves of accuracy against horizon", pd.concat(tables), drawn)
-
-
-def _horizons(last_s: float) -> list[float]:
-    """Horizons within a forecast, its end among them [s]."""
-    return [each for each in HORIZONS_S if each < last_s] + [last_s]
 
 
 @in_style
@@ -364,11 +357,10 @@ def _found(cells: list[DiscrepancyCell]) -> str:
         return refused[0] + (f" ({len(refused)} of {len(cells)} seeds)" * (len(cells) > 1))
     kinds = [re.sub(COEFFICIENT, "", cell.terms) for cell in cells]
     same = f" (the same terms in {kinds.count(kinds[0])} of {len(cells)} seeds)" * (len(cells) > 1)
-    return _short(cells[0].terms) + same if cells[0].terms else ""
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= MOST_TERMS else f"{text[:MOST_TERMS]}… ({text.count('*')} products)"
+    terms = cells[0].terms
+    if len(terms) > MOST_TERMS:
+        terms = f"{terms[:MOST_TERMS]}… ({terms.count('*')} products)"
+    return terms + same if terms else ""
 
 
 def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> Table:

@@ -37,14 +37,9 @@ def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
 
 def library(inputs: int, degree: int) -> NDArray[np.int64]:
     """Powers of every product of the inputs up to a degree, (term, input), the constant first."""
-    from itertools import combinations_with_replacement
+    from sklearn.preprocessing import PolynomialFeatures
 
-    rows = [
-        np.bincount(np.array(chosen, int), minlength=inputs)
-        for total in range(degree + 1)
-        for chosen in combinations_with_replacement(range(inputs), total)
-    ]
-    return np.array(rows, np.int64)
+    return PolynomialFeatures(degree).fit(np.zeros((1, inputs))).powers_
 
 
 def products(x: NDArray[np.float64], powers: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -142,10 +137,6 @@ class Sindy:
         """Terms of one output with their coefficients, as a simulation file writes them."""
         column = self.coefficients[:, self.outputs.index(output)]
         return {written(self.inputs, row): float(column[k]) for k, row in enumerate(self.powers) if column[k]}
-
-    def expression(self, output: str) -> str:
-        """Return one output as an expression that a simulation file understands."""
-        return " + ".join(f"{value:.8g}*{term}" for term, value in self.terms(output).items()) or "0"
 
 
 def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None, bags: int = 0, seed: int = 0) -> Sindy:

@@ -39,29 +39,6 @@ class Uncertainty:
     measured: float | NDArray[np.float64]  # float or (channel,), of what is measured
 
 
-def linear_kalman(
-    turn: NDArray[np.float64], seen: NDArray[np.float64], y: NDArray[np.float64], start: NDArray[np.float64],
-    noise: Uncertainty,
-) -> Filtered:  # fmt: skip
-    """Kalman filter.
-
-    Source: Kalman 1960, J. Basic Eng. 82:35.
-    """
-    x, p = np.array(start, float), np.diag(noise.first**2)
-    states, sd = np.empty((len(y), len(x))), np.empty((len(y), len(x)))
-    likelihood = 0.0
-    for k, value in enumerate(y):
-        if k:
-            x, p = turn @ x, turn @ p @ turn.T + np.diag(noise.step**2)
-        variance = float(seen @ p @ seen + noise.measured**2)
-        gain, missed = p @ seen / variance, float(value - seen @ x)
-        likelihood += _log_density(np.array([missed]), np.array([[variance]]))
-        x = x + gain * missed
-        p = p - np.outer(gain, seen @ p)
-        states[k], sd[k] = x, np.sqrt(np.diag(p))
-    return Filtered(states, sd, likelihood)
-
-
 def unscented_kalman(
     turn: Step, seen: Step, y: NDArray[np.float64], start: NDArray[np.float64], noise: Uncertainty
 ) -> Filtered:

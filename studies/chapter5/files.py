@@ -58,18 +58,15 @@ def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     try:
         with netcdf_file(path, mmap=False) as file:
             _refuse_absent(path, names, tuple(file.variables))
-            found = {name: file.variables[name] for name in names}
-            return {name: Variable(_native(each.data), dict(each._attributes)) for name, each in found.items()}
+            found = {name: (np.asarray(file.variables[name].data), file.variables[name]._attributes) for name in names}
+            native = {name: values.astype(values.dtype.newbyteorder("=")) for name, (values, _) in found.items()}
+            return {name: Variable(native[name], dict(own)) for name, (_, own) in found.items()}
     except (TypeError, ValueError, IndexError, KeyError) as error:
         if isinstance(error, ReadError):
             raise
         raise ReadError(
             f"{path.name} is to be read as netCDF", f"it cannot be: {error}", "Fetch the file again, whole."
         ) from error
-
-
-def _native(values: NDArray[Any]) -> NDArray[Any]:
-    return np.asarray(values).astype(np.asarray(values).dtype.newbyteorder("="))
 
 
 def _number(attributes: Mapping[str, Any], name: str, without: float) -> float:

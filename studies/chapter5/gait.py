@@ -87,13 +87,7 @@ def first_person(study: Study) -> Study:
 
 
 def cohort(folder: Path, people: int = PEOPLE, walk_s: float = WALK_S) -> Study:
-    """The embedded cohort, walking; ten joint angles, no pelvis and no trunk.
-
-    Parameters
-    ----------
-    walk_s : float
-        Length of each walk [s].
-    """
+    """The embedded cohort, walking; ten joint angles, no pelvis and no trunk."""
     if not (folder / "study.toml").exists():
         write_demonstration(folder, walk_s, people)
     return load_study(folder)
@@ -143,13 +137,6 @@ def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int 
     """Add white noise to the readings of the sensors, and to nothing else.
 
     share: standard deviation of the noise, by that of the sensor in this trial
-
-    >>> from gaitdisc.channel import Channel
-    >>> time = np.arange(4000) / 100
-    >>> walk = Recording(time, np.sin(time)[:, None], (Channel("a", "signal", "V"),))
-    >>> more = noisy(walk, ["a"], 0.1).values - walk.values
-    >>> round(float(more.std() / walk.values.std()), 2)
-    0.1
     """
     rng = np.random.default_rng(seed)
     values = recording.values.copy()

@@ -264,7 +264,8 @@ def record_turbulence(
             rows.append(_row(box, u, settings.viscosity, snapshot))
         if (snapshot + 1) % KEPT_EVERY == 0 or snapshot + 1 == settings.snapshots:
             values.flush()
-            _keep(folder, u, snapshot + 1, rows)
+            with whole_file(folder / STATE) as part, part.open("wb") as file:
+                np.savez(file, u=u, done=np.array(snapshot + 1), rows=np.array(json.dumps(rows)))
         if progress:
             progress(1 - (settings.snapshots - snapshot - 1) * settings.every / whole)
     return _field(settings, folder), pd.DataFrame(rows)
@@ -316,11 +317,6 @@ def _values(settings: FlowSettings, folder: Path, done: int) -> np.memmap:
     if done and path.exists():
         return np.lib.format.open_memmap(path, mode="r+")
     return np.lib.format.open_memmap(path, mode="w+", dtype=np.float32, shape=shape)
-
-
-def _keep(folder: Path, u: NDArray[np.complexfloating], done: int, rows: list[dict[str, float]]) -> None:
-    with whole_file(folder / STATE) as part, part.open("wb") as file:
-        np.savez(file, u=u, done=np.array(done), rows=np.array(json.dumps(rows)))
 
 
 def _field(settings: FlowSettings, folder: Path) -> Field:

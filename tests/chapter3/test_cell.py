@@ -1,9 +1,13 @@
 import numpy as np
 import pytest
-from chapter3.cell import cell, cell_of
+from chapter3.cell import cell_of
 from chapter3.discrepancy_cell import FORECAST, ORACLE, PARTS, RECONSTRUCTION
 from chapter3.methods import MethodSettings
-from chapter3.record import Conditions
+from chapter3.record import Conditions, recorded
+
+
+def cell(system, method, approach, conditions, settings=None):
+    return cell_of(recorded(system, conditions), method, approach, settings)
 
 
 @pytest.mark.parametrize("method", ["sindy", "gp"])

@@ -1,10 +1,25 @@
 import numpy as np
 import pytest
-from chapter3.starts import Uncertainty, ensemble_kalman, linear_kalman, unscented_kalman
+from chapter3.starts import Filtered, Uncertainty, ensemble_kalman, unscented_kalman
 
 NOISE = Uncertainty(np.array([1.0, 2.0]), np.array([0.01, 0.02]), 0.3)
 TURN, SEEN = np.array([[1.0, 0.1], [-0.2, 0.97]]), np.array([1.0, 0.0])
 Y = np.random.default_rng(0).standard_normal(60)
+
+
+def linear_kalman(turn, seen, y, start, noise):
+    """The filter of Kalman 1960, J. Basic Eng. 82:35, of one channel: what the others are where all is linear."""
+    x, p = np.array(start, float), np.diag(noise.first**2)
+    states, sd, likelihood = np.empty((len(y), len(x))), np.empty((len(y), len(x))), 0.0
+    for k, value in enumerate(y):
+        if k:
+            x, p = turn @ x, turn @ p @ turn.T + np.diag(noise.step**2)
+        variance, missed = seen @ p @ seen + noise.measured**2, value - seen @ x
+        gain = p @ seen / variance
+        likelihood -= 0.5 * (np.log(2 * np.pi * variance) + missed**2 / variance)
+        x, p = x + gain * missed, p - np.outer(gain, seen @ p)
+        states[k], sd[k] = x, np.sqrt(np.diag(p))
+    return Filtered(states, sd, likelihood)
 
 
 def test_both_filters_agree_where_everything_is_linear():
