@@ -22,6 +22,10 @@ from .system import LONGEST_STEP_S, KnownRates, Rates, System, rk4_step
 
 BOUND = 1e6  # a state beyond has diverged
 PRODUCTS, KERNELS, LAYERS, TIMES = 0, 1, 2, 3  # what `tables` holds
+Tables = tuple[NDArray[np.float64], ...]
+TABLES = 6
+LAYER_NAMES = ("sigmoid", "radial")
+LEARNED_STEP_S = 2.5e-3  # of Runge-Kutta order 4 with a learned term: its error is below that of any fit
 
 
 @compiled
@@ -138,10 +142,6 @@ def integrate_augmented(program, learned, start, plan, found):
         found[sample + 1] = x
 
 
-Tables = tuple[NDArray[np.float64], ...]
-TABLES = 6
-
-
 @dataclass(frozen=True, eq=False)
 class LearnedTerm:
     """Features and weights."""
@@ -186,15 +186,9 @@ def _layer_tables(model: Model) -> Tables:
     return np.vstack(first), np.vstack(second), np.vstack(third), scale, np.concatenate(offset)
 
 
-LAYER_NAMES = ("sigmoid", "radial")
-
-
 def _six(*tables: NDArray) -> Tables:
     full = [np.ascontiguousarray(np.atleast_2d(np.array(table, float))) for table in tables]
     return tuple(full + [np.zeros((1, 1))] * (TABLES - len(full)))
-
-
-LEARNED_STEP_S = 2.5e-3  # of Runge-Kutta order 4 with a learned term: its error is below that of any fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,7 +227,7 @@ def on_states(
     states = system.known.run(start[None], dt, len(time) - 1)[0]
     values = learned(time[:, None] if learned.inputs == ("t",) else states)
     if summed:
-        error, values = np.zeros((1, len(learned.inputs))), np.zeros(values.shape)
+        error, values = np.zeros((1, len(learned.inputs))), np.zeros_like(values)
         with np.errstate(all="ignore"):  # De/dt = delta(e) from zero
             for sample in range(1, len(values)):
                 error = rk4_step(learned, error, dt)

@@ -23,6 +23,8 @@ from .system import LONGEST_STEP_S, System, rk4_step
 POINTS, LENGTH = 256, 16.0  # of the text, and of the published code
 BOUND = 1e6
 HIGH_WAVES, ABOVE, MARGIN = 0.75, 5.0, 1.5  # as `smoothing`, over space: share of the waves that is noise alone
+LOCAL = ("u", "slope", "bend")  # of the field at a point
+MOST_SAMPLES = 3000  # of all points at all times
 
 
 @dataclass(frozen=True)
@@ -82,10 +84,6 @@ def burgers(cubic: float, sign: float = -1.0) -> System:
     names = tuple(f"u{k:03d}" for k in range(POINTS))
     start = np.exp(sign * (places() + 2) ** 2)
     return System("Burgers' equation", names, BurgersRates(), BurgersRates(cubic=cubic), start, np.eye(POINTS))
-
-
-LOCAL = ("u", "slope", "bend")  # of the field at a point
-MOST_SAMPLES = 3000  # of all points at all times
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,6 +35,9 @@ from .starts import forecast_start
 from .system import System
 
 PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
+NOISES = (0.0, 0.001, 0.01, 0.1)
+WARMING = 600  # samples
+ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "bopdmd", "gp", "nn")
 
 
 def cell_of(
@@ -139,11 +142,6 @@ def terms_of(learned: Model) -> str:
         if terms:
             said.append(f"{output}: " + " + ".join(f"{value:.3g}*{term}" for term, value in terms.items()))
     return "; ".join(said) or "nothing"
-
-
-NOISES = (0.0, 0.001, 0.01, 0.1)
-WARMING = 600  # samples
-ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "bopdmd", "gp", "nn")
 
 
 def grid(

@@ -19,6 +19,7 @@ UNEVEN = 1e-6  # of a sample
 MOST_ITERATIONS = 60  # of variable projection
 MOST_COLUMNS = 600  # of the Hankel matrix: evenly in time, since neighbours hold the same samples
 SMALLEST = 1e-12  # of the largest eigenvalue, a millionth in size: rounding, about 1e-15, stays far below
+SMALLEST_TURN = 1e-6  # |eigenvalue| of the map below which a mode dies within a sample: rounding, or noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +82,11 @@ def delayed(samples: Samples, delays: int, rank: int) -> Hankel:
             f"there are {len(samples)}, {least - len(samples)} too few",
             "Record longer, or take fewer delays or modes.",
         )
-    _varying(samples).trainable(least)
+    still, moving = scale_of(samples.y).constant, samples
+    if still.any() and not still.all():  # a field may have many outputs that stand still
+        names = tuple(name for name, rests in zip(samples.outputs, still, strict=True) if not rests)
+        moving = replace(samples, y=samples.y[:, ~still], outputs=names)
+    moving.trainable(least)
     steps = np.diff(samples.time)
     if np.ptp(steps) > UNEVEN * steps.mean():
         worst = int(np.argmax(np.abs(steps - np.median(steps))))
@@ -98,15 +103,6 @@ def delayed(samples: Samples, delays: int, rank: int) -> Hankel:
     values, axes = np.linalg.eigh(stacked @ stacked.T)
     most = min(rank, int(np.sum(values > SMALLEST * values[-1])))
     return Hankel(stacked, axes[:, ::-1][:, :most], size)
-
-
-def _varying(samples: Samples) -> Samples:
-    """Samples without outputs that stand still, of which a field may have many; all where none moves."""
-    still = scale_of(samples.y).constant
-    if still.all() or not still.any():
-        return samples
-    names = tuple(name for name, rests in zip(samples.outputs, still, strict=True) if not rests)
-    return replace(samples, y=samples.y[:, ~still], outputs=names)
 
 
 def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[int, int, int]):
@@ -137,9 +133,6 @@ def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[
         ) from error
     finally:
         np.random.set_state(state)  # noqa: NPY002
-
-
-SMALLEST_TURN = 1e-6  # |eigenvalue| of the map below which a mode dies within a sample: rounding, or noise
 
 
 def fit_exact_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK) -> Dmd:

@@ -15,6 +15,13 @@ from gaitdisc.recording.autocorrelation import autocorrelation_time
 
 KernelKind = Literal["squared_exponential", "matern_3_2", "matern_5_2"]
 KERNELS: tuple[KernelKind, ...] = ("squared_exponential", "matern_3_2", "matern_5_2")
+MOST_EXACT = 1500  # samples: memory grows with their square, time with their cube
+MOST_FOR_LENGTHS = 300  # samples, evenly in time, that the length scales are found on
+INDUCING = 300
+LEAST_SAMPLES = 20
+NOTHING_KNOWN = np.empty((0, 0, 0))
+FORGOTTEN = 0.05  # correlation that counts as none
+JITTER = 1e-9  # of the signal's variance, so that a matrix stays positive
 
 
 def kernel(
@@ -28,15 +35,6 @@ def _shape(kind: KernelKind, lengths: Any, bounds: Any = "fixed") -> Any:
     from sklearn.gaussian_process.kernels import RBF, Matern
 
     return RBF(lengths, bounds) if kind == KERNELS[0] else Matern(lengths, bounds, nu=1.5 if "3_2" in kind else 2.5)
-
-
-MOST_EXACT = 1500  # samples: memory grows with their square, time with their cube
-MOST_FOR_LENGTHS = 300  # samples, evenly in time, that the length scales are found on
-INDUCING = 300
-LEAST_SAMPLES = 20
-NOTHING_KNOWN = np.empty((0, 0, 0))
-FORGOTTEN = 0.05  # correlation that counts as none
-JITTER = 1e-9  # of the signal's variance, so that a matrix stays positive
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,13 @@ NUMBERS = {
     "valid": ("valid_s", LYAPUNOV_PER_S, (FORECAST, ORACLE)),
     "jump": ("to_jump", 1.0, (FORECAST, ORACLE)),
 }
+RECORDS = (
+    *((False, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
+    *((False, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
+    *((True, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
+    *((True, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
+    (True, 0.0, 0.001, 12001),
+)  # chaotic, noise, step [s], samples
 
 
 def measured() -> pd.DataFrame:
@@ -66,15 +73,6 @@ def sets_tables(table: pd.DataFrame) -> str:
             said.append(f"## {name}: {unit.get(number, 'the same until the first jump [%]')}\n")
             said.append(set_table(table, str(name), number))
     return "\n".join(said)
-
-
-RECORDS = (
-    *((False, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
-    *((False, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
-    *((True, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
-    *((True, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
-    (True, 0.0, 0.001, 12001),
-)  # chaotic, noise, step [s], samples
 
 
 def recommended_table() -> str:

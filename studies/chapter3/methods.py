@@ -16,6 +16,10 @@ from .dmd import DELAYS, RANK, fit_dmd, fit_exact_dmd
 from .gaussian_process import MOST_EXACT, fit_gaussian_process
 from .sindy import fit_sindy, fit_weak_sindy
 
+Method = Literal["sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"]
+OF_TIME: tuple[Method, ...] = ("dmd", "exactdmd", "bopdmd")  # what they learn is a function of time
+BAGS, SINDY_BAGS = 10, 20  # of BOP-DMD and of SINDy's ensemble, where no number is given
+
 
 @dataclass(frozen=True)
 class ByOutput:
@@ -42,11 +46,6 @@ def fitted_by_output(samples: Samples, fit: Callable[[Samples], Model]) -> ByOut
     """Fit a model to each output by itself, so that one that is noise decides nothing about another."""
     alone = [replace(samples, y=samples.y[:, [k]], outputs=(name,)) for k, name in enumerate(samples.outputs)]
     return ByOutput(tuple(fit(each) for each in alone))
-
-
-Method = Literal["sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"]
-OF_TIME: tuple[Method, ...] = ("dmd", "exactdmd", "bopdmd")  # what they learn is a function of time
-BAGS, SINDY_BAGS = 10, 20  # of BOP-DMD and of SINDy's ensemble, where no number is given
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ from .system import KnownRates, System
 
 ANSWERS = ("named", "tied", "among others", "wrong name", "curve", "nothing", "refused")
 TOOLS = ("discover", "sindy", "dmd", "gp", "nn")
+NOTHING = 1e-6  # of the known model's own rates or states: an error signal below it is rounding
 
 
 @dataclass(frozen=True)
@@ -65,9 +66,6 @@ class Naming:
 def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
     """Return all answers, one row each."""
     return pd.DataFrame([asdict(naming) | {"right": naming.right} for naming in namings])
-
-
-NOTHING = 1e-6  # of the known model's own rates or states: an error signal below it is rounding
 
 
 @dataclass(frozen=True, eq=False)

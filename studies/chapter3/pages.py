@@ -60,6 +60,21 @@ MOST_TERMS = 110  # characters
 COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
 WORST_SAID = -1000.0  # %: how much worse a run is whose error is eleven times the known model's, rounding decides
 MOST_CHANNELS = 4  # that are listed one by one
+MOST_WORDS = 120  # characters of an answer
+TOOL_WORDS = {"discover": "discover", "sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "network"}
+RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
+EDGE = "#555555"
+LOOKS = {
+    "right": (RIGHT, "N", "right, and nothing else"),
+    "tied": (HALF, "T", "right or another, tied"),
+    "among others": (HALF, "A", "right among others"),
+    "wrong name": (WRONG, "W", "wrong name"),
+    "curve": (CURVE, "C", "a curve, no name"),
+    "nothing": (SILENT, "–", "nothing found"),
+    "refused": (SILENT, "R", "refused"),
+}
+ROW, LEFT = 0.27, 1.75  # inch
+FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 
 
 @in_style
@@ -262,7 +277,9 @@ def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source
         axes.set_xlabel("place [1]")
     grid[0][0].set_ylabel("time in the record [s]")
     beyond = "both" if np.nanmax(np.abs(errors["augmented"])) > most else "neither"
-    bar = drawn.colorbar(drawn_maps[-1], cax=_beside(grid[0][-1]), extend=beyond)
+    place = grid[0][-1].get_position()
+    beside = drawn.add_axes((place.x1 + 0.015, place.y0, 0.012, place.height))
+    bar = drawn.colorbar(drawn_maps[-1], cax=beside, extend=beyond)
     bar.set_label("error of u [1]")
     numbers = pd.DataFrame({
         "t_s": time, **{f"rmse_{m}": np.sqrt(np.mean(e**2, axis=1)) for m, e in errors.items()},
@@ -274,12 +291,6 @@ def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source
         numbers,
         drawn,
     )
-
-
-def _beside(axes: Axes) -> Axes:
-    """Room for a colour bar at the right of a panel."""
-    drawn, place = axes.figure, axes.get_position()
-    return drawn.add_axes((place.x1 + 0.015, place.y0, 0.012, place.height))
 
 
 def _patches(looks: dict[str, Look]) -> list[Artist]:
@@ -368,23 +379,6 @@ def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> T
     columns = ("where", "dissertation", "ours")
     caption = "The dissertation's statements beside what was found here."
     return words_table(name, caption, columns, statements)
-
-
-MOST_WORDS = 120  # characters of an answer
-TOOL_WORDS = {"discover": "discover", "sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "network"}
-RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
-EDGE = "#555555"
-LOOKS = {
-    "right": (RIGHT, "N", "right, and nothing else"),
-    "tied": (HALF, "T", "right or another, tied"),
-    "among others": (HALF, "A", "right among others"),
-    "wrong name": (WRONG, "W", "wrong name"),
-    "curve": (CURVE, "C", "a curve, no name"),
-    "nothing": (SILENT, "–", "nothing found"),
-    "refused": (SILENT, "R", "refused"),
-}
-ROW, LEFT = 0.27, 1.75  # inch
-FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 
 
 def naming_table(namings: Sequence[Naming], name: str) -> Table:

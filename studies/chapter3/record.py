@@ -18,6 +18,12 @@ NOISE_KINDS: tuple[NoiseKind, ...] = ("normal", "student_t", "outliers", "colour
 FREEDOM = 3  # degrees of Student's t: its variance is finite, its fourth moment is not
 OUTLYING, FARTHER = 0.02, 10.0  # share of the samples, and how many times farther these are thrown
 MEMORY_S = 0.1  # after which coloured noise has forgotten all but 1/e
+ORDER = 4
+HIGH_BAND = 0.75  # of half the rate: nothing but noise is looked for above
+ABOVE, NEIGHBOURS, MARGIN = 5.0, 5, 1.5
+EDGE_PERIODS = 1.8  # of the cut-off, over which the filter's ends are not to be trusted (as in `signals.butterworth`)
+STARTS_SEED, OTHER_NOISE = 41, 1000  # of further starts; what is added to the seed of their noise
+LEAST_SAMPLES = 60  # a training part shorter than this carries no smoothing and no inner block
 
 
 def drawn_noise(
@@ -39,18 +45,14 @@ def drawn_noise(
     return noise
 
 
-ORDER = 4
-HIGH_BAND = 0.75  # of half the rate: nothing but noise is looked for above
-ABOVE, NEIGHBOURS, MARGIN = 5.0, 5, 1.5
-EDGE_PERIODS = 1.8  # of the cut-off, over which the filter's ends are not to be trusted (as in `signals.butterworth`)
-
-
 def smoothed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float | None = None) -> NDArray[np.float64]:
     """Low-passed channels, (sample, channel)."""
     columns = []
     for column in np.asarray(values, float).T:
         cutoff = noise_cutoff_hz(column, rate_hz) if cutoff_hz is None else cutoff_hz
-        columns.append(_lowpassed(column, rate_hz, cutoff))
+        sections = butter(ORDER, cutoff, fs=rate_hz, output="sos")
+        padding = min(len(column) - 2, int(np.ceil(3 * rate_hz / cutoff)))
+        columns.append(np.asarray(sosfiltfilt(sections, column, padtype="odd", padlen=padding)))
     return np.column_stack(columns)
 
 
@@ -76,16 +78,6 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
 def edge_samples(rate_hz: float, cutoff_hz: float = 4.0) -> int:
     """Samples at each end that the filter's start and end still shape."""
     return int(np.ceil(EDGE_PERIODS / cutoff_hz * rate_hz))
-
-
-def _lowpassed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float) -> NDArray[np.float64]:
-    sections = butter(ORDER, cutoff_hz, fs=rate_hz, output="sos")
-    padding = min(len(values) - 2, int(np.ceil(3 * rate_hz / cutoff_hz)))
-    return np.asarray(sosfiltfilt(sections, values, padtype="odd", padlen=padding))
-
-
-STARTS_SEED, OTHER_NOISE = 41, 1000  # of further starts; what is added to the seed of their noise
-LEAST_SAMPLES = 60  # a training part shorter than this carries no smoothing and no inner block
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,10 @@ APART = "the time evolution diverges quickly with only an eps-small difference i
 COST = "SINDy costs least, then DMD, GPR and NN, in both approaches; NN in the dynamics over 500 s, up to 2,100 s"
 HORIZON = "dynamics: near 100 % at first, falls at the first jump (about 5 s), settles near 0"
 HORIZONS_S = (0.3, 1.0, 5.0, 20.0)
+ARTEFACT = (
+    "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "
+    "itself is evaluated in the cells done right. That is why the chapter finds that SINDy learns no residual."
+)
 
 
 def of_figures(cells: Cells, figures: Mapping[str, str]) -> list[tuple[str, str, str]]:
@@ -96,12 +100,6 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
         some = f" ({len(lost)} of {len(cells)} seeds)" * (len(cells) > 1)
         words.append(f"diverged at t = {min(lost):.2f} s{some}" if lost else said)
     return f"{words[0]} ({words[1]}; {words[2]})"
-
-
-ARTEFACT = (
-    "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "
-    "itself is evaluated in the cells done right. That is why the chapter finds that SINDy learns no residual."
-)
 
 
 @dataclass(frozen=True, eq=False)

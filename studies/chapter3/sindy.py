@@ -14,6 +14,19 @@ from numpy.typing import NDArray
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
 
+THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, -0.5, 16))  # of the output's size, where none is given
+NEAR_BEST = 0.02  # of the least error on the inner block: the sparsest model so close is taken
+GOOD_ENOUGH = 1e-4  # of the outputs' mean square: a hundredth of their size
+SMALL = 0.05  # of the largest output: a smaller one is weighed as if it were so large
+PASSES = 10  # of thresholding, as the published code
+LEAST_APART = 1e-8  # of a term's length from its nearest sum of simpler terms: nearer, half of all digits are lost
+NAMED = 1e-5  # of a term's length: what a simpler term must hold of it to be named
+Sizes = tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]
+Rows = tuple[NDArray[np.float64], NDArray[np.float64]]
+SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
+LEAST_BEFORE_INNER = 20
+WINDOW_S, OVERLAP = 0.5, 8  # of test functions; how many begin within the length of one
+
 
 def chapter3_library(name: str) -> ModuleType:
     """Library of the extra `chapter3`."""
@@ -50,18 +63,6 @@ def products(x: NDArray[np.float64], powers: NDArray[np.int64]) -> NDArray[np.fl
             if power:
                 columns[:, k] *= x[:, name] ** int(power)
     return columns
-
-
-THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, -0.5, 16))  # of the output's size, where none is given
-NEAR_BEST = 0.02  # of the least error on the inner block: the sparsest model so close is taken
-GOOD_ENOUGH = 1e-4  # of the outputs' mean square: a hundredth of their size
-SMALL = 0.05  # of the largest output: a smaller one is weighed as if it were so large
-PASSES = 10  # of thresholding, as the published code
-LEAST_APART = 1e-8  # of a term's length from its nearest sum of simpler terms: nearer, half of all digits are lost
-NAMED = 1e-5  # of a term's length: what a simpler term must hold of it to be named
-
-Sizes = tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]
-Rows = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def sizes_of(columns: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -112,10 +113,6 @@ def thresholded(triangle: Rows, sizes: Sizes, threshold: float) -> NDArray[np.fl
         warnings.simplefilter("ignore")  # that nothing is left, which the coefficients say themselves
         optimizer.fit(triangle[0] / sizes[0], triangle[1] / sizes[1])
     return np.asarray(optimizer.coef_, float).T
-
-
-SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
-LEAST_BEFORE_INNER = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,9 +187,6 @@ def _thresholded(
 def _triangle(samples: Samples, powers: NDArray[np.int64]) -> Rows:
     """Library and outputs of samples in the axes of the library."""
     return in_axes((products(samples.x, powers), samples.y), powers, samples)
-
-
-WINDOW_S, OVERLAP = 0.5, 8  # of test functions; how many begin within the length of one
 
 
 def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S) -> Sindy:

@@ -19,6 +19,18 @@ from .record import Record
 SPREAD = 1e-1  # alpha of the sigma points
 MEMBERS, INFLATION = 60, 1.02  # of an ensemble
 Step = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+WINDOWS = (10, 20, 40, 80, 160, 320)  # samples, of which the longest that the shorter ones agree with is taken
+AGREEMENT = 2.5  # standard errors to either side; with the windows chosen on seeds 101 to 104, that no table holds
+MOST_STEPS = 5  # of Levenberg and Marquardt
+LEAST_GAIN = 1e-6  # of a step, as a share of the sum of squares
+NOISE_FLOOR = 1e-9  # of a channel's standard deviation: rounding
+Run = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+MOST_STATES = 12  # of a fit by differences; a field begins at its last smoothed sample
+Filter = Literal["unscented", "ensemble"]
+LAST = 600  # samples that are filtered
+STEPS = 4  # of Runge-Kutta, between two samples
+PROCESS_NOISE = (0.0, 1e-4, 1e-3, 1e-2, 1e-1)  # of a state's standard deviation after a second
+FIRST_OFF = 3.0  # standard deviations of the noise, by which the first smoothed sample may be off
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,14 +132,6 @@ def _sigma_points(x: NDArray[np.float64], p: NDArray[np.float64], scale: float) 
     return np.vstack([x, x + root, x - root])
 
 
-WINDOWS = (10, 20, 40, 80, 160, 320)  # samples, of which the longest that the shorter ones agree with is taken
-AGREEMENT = 2.5  # standard errors to either side; with the windows chosen on seeds 101 to 104, that no table holds
-MOST_STEPS = 5  # of Levenberg and Marquardt
-LEAST_GAIN = 1e-6  # of a step, as a share of the sum of squares
-NOISE_FLOOR = 1e-9  # of a channel's standard deviation: rounding
-Run = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
-
-
 @dataclass(frozen=True, eq=False)
 class EstimatedStart:
     """A state with its uncertainty."""
@@ -222,9 +226,6 @@ def _slopes(
     return slopes, end_slopes
 
 
-MOST_STATES = 12  # of a fit by differences; a field begins at its last smoothed sample
-
-
 def forecast_start(record: Record, learned: Model | None, approach: Approach) -> NDArray[np.float64]:
     """State at the end of the training part, estimated under the model that forecasts, (state,)."""
     system, time = record.system, record.time[: record.split]
@@ -252,13 +253,6 @@ def _smoothed_states(record: Record) -> NDArray[np.float64]:
     first = system.start if system.assumed is None else system.assumed
     run = system.known.run(first[None], record.conditions.dt_s, record.split - 1)[0]
     return np.column_stack([record.filtered, run[:, len(system.channels) :]])
-
-
-Filter = Literal["unscented", "ensemble"]
-LAST = 600  # samples that are filtered
-STEPS = 4  # of Runge-Kutta, between two samples
-PROCESS_NOISE = (0.0, 1e-4, 1e-3, 1e-2, 1e-1)  # of a state's standard deviation after a second
-FIRST_OFF = 3.0  # standard deviations of the noise, by which the first smoothed sample may be off
 
 
 def filtered_start(record: Record, learned: Model, by: Filter) -> NDArray[np.float64]:

@@ -35,6 +35,11 @@ from gaitdisc.response.samples import gait_samples
 
 SETTINGS = ResponseSettings(ANGLES)
 Parts = tuple[gd.Samples, gd.Samples]
+FRESH = range(70_000, 70_040)  # seeds; those from 50,000 on were developed on
+SIDES = 1.645  # standard deviations of a normal law's 90 %
+Values = NDArray[np.float64]
+REFITS, BLOCKS = 50, 16
+RIGHT_LEG = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
 
 
 @cache
@@ -46,11 +51,6 @@ def run(who: str, condition: str) -> Parts:
     trial = gd.read(next((DATA / "exotendon_run").rglob(name)))
     before, held = held_out_part(processed(trial, study).trajectory, SETTINGS)
     return gait_samples(before, ANGLES)[0], gait_samples(held, ANGLES)[0]
-
-
-FRESH = range(70_000, 70_040)  # seeds; those from 50,000 on were developed on
-SIDES = 1.645  # standard deviations of a normal law's 90 %
-Values = NDArray[np.float64]
 
 
 def band(quick: bool) -> Iterator[Number]:
@@ -196,10 +196,6 @@ def search(quick: bool) -> Iterator[Number]:
         ):
             yield Number(f"error taken off by the winner, 95 % {word} [%]", column, "", 100 * float(value))
         yield Number(f"winner: {left[0]}", column, "", 1.0)
-
-
-REFITS, BLOCKS = 50, 16
-RIGHT_LEG = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
 
 
 def discrepancy(nominal: gd.Samples, other: gd.Samples) -> gd.Samples:

@@ -19,6 +19,11 @@ from gaitdisc.recording import Axis, Field, Source
 from gaitdisc.regular_file import check_regular
 
 ATTRIBUTES = ("units", "scale_factor", "add_offset", "missing_value", "_FillValue")
+WEEK_DAYS = 7.0
+CELSIUS = ("degc", "c", "celsius", "degree_c", "degrees_c", "deg c", "degrees celsius")
+MAT_GRID = (180, 360)  # one degree, first row the northernmost, from the meridian of Greenwich eastwards
+NAMES = {"velocity": ("u", "v", "w"), "pressure": ("p",)}
+COORDINATES = ("zcoor", "ycoor", "xcoor")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,11 +86,6 @@ def _refuse_absent(path: Path, names: tuple[str, ...], there: tuple[str, ...]) -
             f"it lacks {', '.join(absent)}; it has {', '.join(there) or 'none'}",
             "Name the file that holds them.",
         )
-
-
-WEEK_DAYS = 7.0
-CELSIUS = ("degc", "c", "celsius", "degree_c", "degrees_c", "deg c", "degrees celsius")
-MAT_GRID = (180, 360)  # one degree, first row the northernmost, from the meridian of Greenwich eastwards
 
 
 def read_oisst(path: Path, mask: Path | None = None) -> Field:
@@ -219,10 +219,6 @@ def _arrays(path: Path, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
             f"it cannot be: {error}",
             "Fetch the file again, whole.",
         ) from error
-
-
-NAMES = {"velocity": ("u", "v", "w"), "pressure": ("p",)}
-COORDINATES = ("zcoor", "ycoor", "xcoor")
 
 
 def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity") -> Field:

@@ -54,6 +54,21 @@ RUNS = {
     },
     "welk002": {"natural": "welk002"},
 }
+NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
+SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
+DISTURBED = ("disturbance", "level", "model", "rmse_deg")
+Walks = Sequence[tuple[Recording, NDArray[np.float64]]]
+MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
+LESS_THAN_NOTHING = (
+    "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
+    "may be of something else than angles about zero. It has no model that sees history without being a network, and "
+    "does not say how time was split or how long the history was: no claim of better or worse is made."
+)
+STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
+AXES = {
+    "noise": "noise of the sensors [% of their standard deviation]",
+    "missing": "missing readings [%]",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,12 +142,6 @@ def _study(title: str, words: tuple[str, str], people: tuple[Participant, ...]) 
     return Study(title=title, conditions=both, participants=people, quality=Quality(late_change="report"))
 
 
-NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
-SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
-DISTURBED = ("disturbance", "level", "model", "rmse_deg")
-Walks = Sequence[tuple[Recording, NDArray[np.float64]]]
-
-
 def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int = 0) -> Recording:
     """Add white noise to the readings of the sensors, and to nothing else.
 
@@ -202,14 +211,6 @@ def _rmse(done: Reconstructor, test: Samples, channels: Sequence[Channel]) -> fl
     return float(np.sqrt(np.mean((done(test) - test.y)[:, angle_columns(channels)] ** 2)))
 
 
-MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
-LESS_THAN_NOTHING = (
-    "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
-    "may be of something else than angles about zero. It has no model that sees history without being a network, and "
-    "does not say how time was split or how long the history was: no claim of better or worse is made."
-)
-
-
 def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, rule: str) -> Table:
     """One row a data set, sensor set and model.
 
@@ -264,13 +265,6 @@ def _with_sd(mean: float, sd: float) -> str:
     if not np.isfinite(mean):
         return "–"
     return number(mean, 3) + (f" ± {number(sd, 3)}" if np.isfinite(sd) else "")
-
-
-STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
-AXES = {
-    "noise": "noise of the sensors [% of their standard deviation]",
-    "missing": "missing readings [%]",
-}
 
 
 @in_style

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.recording import Axis, Field
+from gaitdisc.recording import Field
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, Look
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
@@ -21,7 +21,6 @@ from .reconstruct_field import FieldCell, field_cells_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.collections import QuadMesh
 
 ROUTE_LOOKS = (
     Look("#111111", "-", "o"),
@@ -34,6 +33,8 @@ ROUTE_LOOKS = (
     Look("#a8326e", (0, (3.0, 1.0, 1.0, 1.0, 1.0, 1.0)), "*"),
     Look("#5b4a2f", (0, (8.0, 2.0)), "h"),
 )
+ROUTE_COLOURS = ("#c8102e", "#1f4fc8", "#00875a", "#d97700", "#7a3fa0")
+SHELL = re.compile(r"e_(\d+)")
 
 
 @in_style
@@ -211,11 +212,6 @@ def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
     return Table(name, caption, columns, tuple(rows), field_cells_table(cells))
 
 
-SENSOR_COLOUR = "#111111"
-ROUTE_COLOURS = ("#c8102e", "#1f4fc8", "#00875a", "#d97700", "#7a3fa0")
-SHELL = re.compile(r"e_(\d+)")
-
-
 @in_style
 def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
     """One quantity of a field on its grid, one panel a snapshot, all on one scale of colour."""
@@ -230,9 +226,12 @@ def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], nam
     panel_list = [axes for row in grid for axes in row]
     for axes in panel_list[len(planes) :]:
         axes.set_visible(False)
-    limits = (middle - reach, middle + reach)
     pairs = zip(panel_list, planes.values(), strict=False)
-    meshes = [_draw_map(axes, (vertical, across), plane, limits) for axes, plane in pairs]
+    meshes = []
+    for axes, plane in pairs:
+        axes.set_facecolor("#dddddd")
+        mesh = {"vmin": middle - reach, "vmax": middle + reach, "cmap": "RdBu_r", "rasterized": True}
+        meshes.append(axes.pcolormesh(across.coordinates, vertical.coordinates, plane, **mesh))
     for axes, title in zip(panel_list, planes, strict=False):
         axes.set_title(title)
     for row in grid:
@@ -269,13 +268,6 @@ def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name
     axes.set_ylabel(f"{vertical.name} [{vertical.unit}]")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(routes), borderaxespad=0.2)
     return Figure(name, f"{source}. Grey: points of the field.", "Routes of sensors on a map", pd.concat(rows), drawn)
-
-
-def _draw_map(axes: Axes, pair: tuple[Axis, Axis], plane: NDArray[np.float64], limits: tuple[float, float]) -> QuadMesh:
-    axes.set_facecolor("#dddddd")
-    return axes.pcolormesh(
-        pair[1].coordinates, pair[0].coordinates, plane, vmin=limits[0], vmax=limits[1], cmap="RdBu_r", rasterized=True
-    )
 
 
 def _plane(grid: NDArray[np.float64]) -> NDArray[np.float64]:

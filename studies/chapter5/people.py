@@ -27,6 +27,11 @@ JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_a
 ANGLES = tuple(f"{joint}_{side}" for side in "rl" for joint in JOINTS)
 CUTOFF_HZ, RATE_HZ = 6.0, 100
 MOST_WINDOWS = 600  # of one person: as many as a long walk has would outweigh everybody else
+SAGITTAL = SENSORS["3 sagittal"]
+TOLD = tuple(name for name in ANGLES if name not in SAGITTAL)  # of the angles that every real person has
+LAGS = Lags(25, 4)
+Values = NDArray[np.float64]
+AHEAD_S, STEP, RANK, SINDY_RANK = (0.04, 0.12, 0.2, 0.4, 0.8), 4, 12, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,12 +81,6 @@ def real_people() -> list[Person]:
     return [*children, *adults, *(Person(n, "running", (one,)) for n, one in zip(RUNS, first, strict=True))]
 
 
-SAGITTAL = SENSORS["3 sagittal"]
-TOLD = tuple(name for name in ANGLES if name not in SAGITTAL)  # of the angles that every real person has
-LAGS = Lags(25, 4)
-Values = NDArray[np.float64]
-
-
 def runner() -> tuple[SensedWalk, tuple[gd.Channel, ...]]:
     """A minute of one runner, and the states that no sagittal sensor measures and that are angles."""
     walks = sensed_walks(first_person(exotendon(DATA)), SAGITTAL, "natural")
@@ -98,9 +97,6 @@ def parts_of(walk: SensedWalk, angles: tuple[gd.Channel, ...], lags: Lags) -> tu
 def rmse(missed: Values) -> float:
     """Over windows and angles [deg]."""
     return float(np.sqrt(np.mean(missed**2)))
-
-
-AHEAD_S, STEP, RANK, SINDY_RANK = (0.04, 0.12, 0.2, 0.4, 0.8), 4, 12, 4
 
 
 def ahead(quick: bool) -> Iterator[Number]:

@@ -25,6 +25,15 @@ from gaitdisc.whole_file import write_whole
 from .modes import ENERGY, Modes, Season, fit_modes, season_of
 from .routes import Route, fixed
 
+BINS = 121
+REACH_SD = 4.0  # of the field's own standard deviation: how far the bins of errors reach
+SPLIT_SEED = 0  # windows drawn at random are the same ones in every run and for every route
+MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
+SIZES = (1, 2, 3, 5, 8, 12, 20, 32, 64)
+COLUMNS = ("nodes", "split", "quantity", "relative_l2", "r2", "energy_left")
+OWN, OTHER = "the fitted path", "another path, never fitted"
+ALONE, MANY, MANY_PLACED = "fitted on one path", "fitted on {} paths", "fitted on {} paths, places given"
+
 
 class Label(NamedTuple):
     """Which cell it is."""
@@ -58,10 +67,6 @@ class FieldTask:
     def named(self, kind: str) -> str:
         """Return what a kind of model is called in this task."""
         return f"{kind}, departures" if self.departures else kind
-
-
-BINS = 121
-REACH_SD = 4.0  # of the field's own standard deviation: how far the bins of errors reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,10 +177,6 @@ def snapshots_of(windows: Samples) -> NDArray[np.intp]:
 def with_coefficients(windows: Samples, coefficients: NDArray[np.float64], names: Sequence[str]) -> Samples:
     """Windows with the modes' coefficients of their snapshots as outputs."""
     return replace(windows, y=coefficients[snapshots_of(windows)], outputs=tuple(names))
-
-
-SPLIT_SEED = 0  # windows drawn at random are the same ones in every run and for every route
-MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,10 +299,6 @@ def _floors(ready: Prepared, task: FieldTask) -> dict[str, NDArray[np.float32]]:
     return found
 
 
-SIZES = (1, 2, 3, 5, 8, 12, 20, 32, 64)
-COLUMNS = ("nodes", "split", "quantity", "relative_l2", "r2", "energy_left")
-
-
 def latent_sizes(
     field: Field, route: Route, task: FieldTask, sizes: Sequence[int] = SIZES, epochs: int = 20
 ) -> pd.DataFrame:
@@ -324,10 +321,6 @@ def latent_sizes(
         for cell in field_cells(field, ready, label, ready.targets.fields(model(ready.test.x), ready.test)):
             rows.append((nodes, task.rule, cell.quantity, cell.relative_l2, cell.r2, left))
     return pd.DataFrame(rows, columns=pd.Index(list(COLUMNS)))
-
-
-OWN, OTHER = "the fitted path", "another path, never fitted"
-ALONE, MANY, MANY_PLACED = "fitted on one path", "fitted on {} paths", "fitted on {} paths, places given"
 
 
 def unseen_path(

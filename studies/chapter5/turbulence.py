@@ -18,6 +18,12 @@ from gaitdisc.recording import Axis, Field, Source
 from gaitdisc.whole_file import whole_file, write_whole
 
 LEAST_NODES = 8
+FORCED = 2.5  # wavenumbers up to it receive the power
+Modes = NDArray[np.complexfloating]
+SETTINGS, STATE, VALUES = "flow.json", "state.npz", "u.npy"
+NUMBERS_EVERY = 10  # snapshots from one reckoning of the flow's numbers to the next
+KEPT_EVERY = 50  # snapshots from one saved state to the next
+RESOLVED = 1.3  # largest wavenumber times Kolmogorov's length that the viscosity is chosen for
 
 
 @dataclass(frozen=True)
@@ -129,10 +135,6 @@ def flow_numbers(box: Box, u: NDArray[np.complexfloating], viscosity: float) -> 
     )
 
 
-FORCED = 2.5  # wavenumbers up to it receive the power
-Modes = NDArray[np.complexfloating]
-
-
 @dataclass(frozen=True)
 class Stepper:
     """Navier-Stokes without pressure, by Fourier modes: Heun's method, viscosity exact by an integrating factor.
@@ -192,12 +194,6 @@ def _curl(box: Box, u: Modes) -> Modes:
     k = box.k
     curl = [k[(i + 1) % 3] * u[(i + 2) % 3] - k[(i + 2) % 3] * u[(i + 1) % 3] for i in range(3)]
     return np.stack(curl) * u.dtype.type(1j)
-
-
-SETTINGS, STATE, VALUES = "flow.json", "state.npz", "u.npy"
-NUMBERS_EVERY = 10  # snapshots from one reckoning of the flow's numbers to the next
-KEPT_EVERY = 50  # snapshots from one saved state to the next
-RESOLVED = 1.3  # largest wavenumber times Kolmogorov's length that the viscosity is chosen for
 
 
 @dataclass(frozen=True)
@@ -261,7 +257,9 @@ def record_turbulence(
                 u = stepper.step(u)
         values[snapshot] = box.to_nodes(u)[0, : settings.cut, : settings.cut, : settings.cut].ravel()
         if snapshot % NUMBERS_EVERY == 0:
-            rows.append(_row(box, u, settings.viscosity, snapshot))
+            spectrum = energy_spectrum(box, u)[1 : box.largest + 1]
+            shells = {f"e_{k}": float(value) for k, value in enumerate(spectrum, 1)}
+            rows.append({"snapshot": snapshot, **asdict(flow_numbers(box, u, settings.viscosity)), **shells})
         if (snapshot + 1) % KEPT_EVERY == 0 or snapshot + 1 == settings.snapshots:
             values.flush()
             with whole_file(folder / STATE) as part, part.open("wb") as file:
@@ -269,12 +267,6 @@ def record_turbulence(
         if progress:
             progress(1 - (settings.snapshots - snapshot - 1) * settings.every / whole)
     return _field(settings, folder), pd.DataFrame(rows)
-
-
-def _row(box: Box, u: NDArray[np.complexfloating], viscosity: float, snapshot: int) -> dict[str, float]:
-    spectrum = energy_spectrum(box, u)[1 : box.largest + 1]
-    shells = {f"e_{k}": float(value) for k, value in enumerate(spectrum, 1)}
-    return {"snapshot": snapshot, **asdict(flow_numbers(box, u, viscosity)), **shells}
 
 
 def _begun(
