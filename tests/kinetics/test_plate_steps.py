@@ -40,7 +40,7 @@ def test_a_foot_swings_while_it_is_faster_forwards_than_one_that_bears_load_when
 
 def test_a_belt_carries_the_foot_backwards_while_it_stands():
     stands, y = (FRAMES > 0.5) & (FRAMES < 1.2), np.cumsum(np.where((FRAMES > 0.5) & (FRAMES < 1.2), -1.2, 3.0)) / 100
-    rolls = np.where(stands, 0.02 * np.sin(40 * FRAMES), 0.0)  # the toes beside the heel
+    rolls = np.where(stands, 0.1 * np.sin(np.pi * (FRAMES - 0.5) / 0.7) ** 2, 0.0)  # the toes beside the heel
     heel, toe = (np.stack([np.zeros(200), y + part, np.zeros(200)], 1) for part in (0.0, 0.18 + rolls))
     spans = FootPath("r", FRAMES, heel, toe).swings()
     assert np.ravel(spans) == pytest.approx([0.0, 0.5, 1.2, 1.99], abs=0.04)

@@ -23,6 +23,9 @@ def test_a_table_a_pair_and_one_of_the_families(tested):
     for table in list(tables.values())[:4]:
         assert sum(span for _, span in table.groups) == len(table.columns) == len(table.rows[0])
         assert says(table.caption, "n = 11 participants", "3 tests")
+    explained, *others = [table.caption for table in list(tables.values())[:4]]
+    assert "Hodges-Lehmann" in explained
+    assert all(says(caption, "columns as for", "Nominal and Augmented") for caption in others)
     row = dict(zip(tables["tests-augmented-exo"].columns, tables["tests-augmented-exo"].rows[1], strict=True))
     assert row["variable"] == "ankle angle, left"
     assert (row["n"], row["zeros"], row["W"], row["p"], row["adjusted p"]) == ("11", "0", "0", "0.000977", "0.00293")

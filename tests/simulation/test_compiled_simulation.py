@@ -203,6 +203,13 @@ def test_observations_and_their_delays():
     np.testing.assert_allclose(observed[1, :, 1], 1 + np.maximum(t - 0.055, 0), atol=1e-12)
 
 
+def test_a_late_input_of_a_row_comes_from_before_its_start():
+    seen = compile_simulation(_system(["x"], {"x": "0*u"}, ["u"], more='[observations]\nz = "delay(u, 0.1)"\n'))
+    drive, rows = Drive.of([np.arange(101.0)[:, None] / 100], 100.0), _rows([[0.0]], begin=50)
+    states, _ = seen.run(drive, rows, 20)
+    np.testing.assert_allclose(seen.observe(drive, rows, states)[0, :, 0], 0.4 + np.arange(21) / 100, atol=1e-12)
+
+
 def test_a_delay_without_a_history_is_refused():
     late = compile_simulation(_system(["x"], {"x": "-delay(x, 1)"}))
     with pytest.raises(SimulationError, match="signals are needed"):
