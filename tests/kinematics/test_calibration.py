@@ -62,7 +62,7 @@ def test_the_measured_distance_of_the_spines_comes_before_that_of_the_markers():
 
 def test_hips_after_davis_need_leg_lengths():
     chosen = with_methods("plug_in_gait", hip="davis")
-    with pytest.raises(ChannelError, match=r"lengths of both legs; static\.c3d and the measures have none"):
+    with pytest.raises(ChannelError, match=r"both.*static\.c3d.*none"):
         calibrated(static_of(PLUG_IN_GAIT), chosen, MEASURES)
     legs = BodyMeasures(
         marker_diameter_m=2 * RADIUS,
@@ -89,9 +89,7 @@ def test_plug_in_gait_takes_its_own_hips_where_leg_lengths_are_known():
     assert said == ["hips after Harrington, not Davis: static.c3d and the measures have no lengths of both legs"]
     other = calibrated(static, chosen.with_hip("harrington"), legs)
     np.testing.assert_allclose(other.points["pelvis"]["hip_r"], place, atol=1e-9)
-    with pytest.raises(
-        SchemaError, match=r"hip joint centres are harrington, davis; found 'davies', the nearest is 'd"
-    ):
+    with pytest.raises(SchemaError, match=r"hip.*harrington.*'davies'"):
         chosen.with_hip("davies")
 
 
@@ -104,7 +102,7 @@ def test_medial_markers_make_a_midpoint_and_without_them_the_width_is_needed():
     for segment in both.points:
         for name in set(both.points[segment]) & set(one.points[segment]):
             np.testing.assert_allclose(one.points[segment][name], both.points[segment][name], atol=1e-9)
-    with pytest.raises(ChannelError, match=r"needs the width of the knee; neither static\.c3d nor .* side 'l'"):
+    with pytest.raises(ChannelError, match=r"neither static\.c3d.*'l'"):
         calibrated(lateral, chosen)
 
 
@@ -146,7 +144,7 @@ def test_a_marker_with_gaps_and_one_frame_are_enough():
 
 
 def test_a_marker_missing_in_the_static_trial_is_named():
-    with pytest.raises(ChannelError, match=r"marker set rajagopal; static\.c3d has no RMFC\. Name the marker"):
+    with pytest.raises(ChannelError, match=r"rajagopal; static\.c3d.*no RMFC"):
         calibrated(without(static_of(RAJAGOPAL), "RMFC"), marker_set("rajagopal"))
 
 
@@ -160,17 +158,17 @@ def test_a_marker_never_seen_in_the_static_trial_is_missing():
 
 def test_too_few_markers_to_follow_a_segment_are_refused():
     static = without(static_of(GAIT2354), "R.Thigh.Front")
-    with pytest.raises(ChannelError, match=r"thigh_r needs 3 points .* has R\.Thigh\.Upper, R\.Thigh\.Rear, and no R"):
+    with pytest.raises(ChannelError, match=r"thigh_r.*3 points.*R\.Thigh\.Upper, R\.Thigh\.Rear.*no"):
         calibrated(static, marker_set("gait2354"))
 
 
 def test_a_walk_is_no_static_trial():
-    with pytest.raises(SamplingError, match=r"walk\.c3d they move by \d+ mm in the stillest half second"):
+    with pytest.raises(SamplingError, match=r"walk\.c3d"):
         calibrated(markers_of(known_angles(200), RAJAGOPAL), marker_set("rajagopal"))
 
 
 def test_a_mirrored_static_trial_is_refused():
-    with pytest.raises(ShapeError, match=r"static\.c3d: .* the frame is mirrored, or left and right are exchanged"):
+    with pytest.raises(ShapeError, match=r"static\.c3d.*left.*right"):
         calibrated(static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), marker_set("rajagopal"))
 
 
@@ -192,7 +190,7 @@ def test_two_exchanged_labels_spoil_their_segments_alone_and_are_named(pair, spo
 
 def test_labels_that_no_single_exchange_puts_right_are_refused():
     static = renamed(static_of(RAJAGOPAL), {"RCAL": "RTOE", "RTOE": "RCAL", "LCAL": "LTOE", "LTOE": "LCAL"})
-    with pytest.raises(ShapeError, match=r"in static\.c3d .TOE is not ahead of .CAL \(200 mm\)"):
+    with pytest.raises(ShapeError, match=r"static\.c3d .TOE.*not.*.CAL \(200 mm\)"):
         calibrated(static, marker_set("rajagopal"))
 
 
@@ -203,5 +201,5 @@ def test_landmarks_on_a_line_are_refused():
         middle = (static[f"LASI.{axis}"] + static[f"RASI.{axis}"]) / 2
         for label in ("LPSI", "RPSI"):
             values[:, static.index(f"{label}.{axis}")] = middle
-    with pytest.raises(ShapeError, match="frame of pelvis needs landmarks that make a plane"):
+    with pytest.raises(ShapeError, match="pelvis needs landmarks"):
         calibrated(static.with_values(values), marker_set("rajagopal"))

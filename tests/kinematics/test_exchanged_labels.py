@@ -15,6 +15,7 @@ from manufactured_body import (
     markers_of,
     static_of,
 )
+from texts import says
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinematics.calibration import calibrated
@@ -85,7 +86,7 @@ def test_heel_and_toe_are_told_apart_on_a_foot_whose_ankle_lies_on_their_line():
 def test_a_whole_walk_with_heel_and_toe_exchanged_loses_that_ankle_alone():
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     found = motion(exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE")), calibration, (1, 0, 0))
-    assert "exchanging RHEE and RTOE in this trial makes it fit in 120 of 120 frames: 0 mm" in said(found)[0].what
+    assert says(said(found)[0].what, "RHEE", "RTOE", "120 of 120 frames: 0", "mm")
     assert np.isnan(found.angles["ankle_angle_r"]).all()
     assert np.isnan(found.markers["RHEE.x"]).all()
     for name in ("knee_angle_r", "hip_flexion_r", "ankle_angle_l"):
@@ -96,7 +97,7 @@ def test_the_same_labels_exchanged_in_both_trials_are_said_of_the_static_one():
     static = exchanged(static_of(PLUG_IN_GAIT), ("RHEE", "RTOE"))
     walk = exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE"))
     found = motion(walk, calibrated(static, marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
-    assert "exchanging RHEE and RTOE in the static trial makes it fit" in said(found)[0].what
+    assert says(said(found)[0].what, "RHEE", "RTOE", "static trial makes")
     assert np.isnan(found.angles["ankle_angle_r"]).all()
     np.testing.assert_allclose(found.angles["ankle_angle_l"], KNOWN["ankle_angle_l"], atol=1e-6)
 
@@ -104,7 +105,7 @@ def test_the_same_labels_exchanged_in_both_trials_are_said_of_the_static_one():
 def test_a_pelvis_that_never_fits_refuses_the_trial_and_names_the_labels():
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     walk = exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RASI", "LASI"))
-    with pytest.raises(ShapeError, match="exchanging LASI and RASI in this trial makes it fit"):
+    with pytest.raises(ShapeError, match=r"LASI.*RASI.*makes it fit"):
         motion(walk, calibration, (1, 0, 0))
 
 

@@ -14,6 +14,7 @@ from manufactured_body import (
     markers_of,
     static_of,
 )
+from texts import says
 
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.functional_hips import functional_hips, sphere_centre
@@ -53,7 +54,7 @@ def test_known_hips_are_found_whatever_the_landmarks_say(name):
     for joint, place in true.items():
         np.testing.assert_allclose(hips[joint], place, atol=1e-5)
     assert [finding.kind for finding in findings] == ["functional hip"] * 2
-    assert "21 mm from the hip after the landmarks" in findings[0].what
+    assert says(findings[0].what, "21 mm", "after the landmarks")
 
 
 @pytest.mark.parametrize(("skin_mm", "within_mm"), [(1.0, 3.0), (5.0, 13.0)])
@@ -89,7 +90,7 @@ def test_one_plane_or_none_keeps_the_hip_of_the_landmarks(flexion, adduction, wo
     hips, findings = functional_hips(circled("rajagopal", flexion, adduction), calibration)
     assert not hips
     for finding in findings:
-        assert finding.severity == "warning" and "not by function but after the landmarks" in finding.what
+        assert finding.severity == "warning" and says(finding.what, "not", "function but after")
         assert re.search(words, finding.what)
 
 

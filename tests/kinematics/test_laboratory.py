@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from texts import says
 
 from gaitdisc.errors import ShapeError, StrideError
 from gaitdisc.kinematics.laboratory import check_right_handed, up_axis, walking_frame
@@ -32,18 +33,18 @@ def test_up_is_where_the_pelvis_is_above_the_feet(axis, sign):
 
 
 def test_a_tilted_frame_is_refused():
-    with pytest.raises(ShapeError, match=r"lying\.c3d: from feet to pelvis it is \(0, 0\.6, 0\.7\) m"):
+    with pytest.raises(ShapeError, match=r"lying\.c3d.*\(0, 0\.6, 0\.7\) m"):
         up_axis(np.array([[0, 0.6, 0.7]]), np.zeros((1, 3)), "lying.c3d")
 
 
 def test_a_trial_that_never_shows_pelvis_and_feet_is_refused():
-    with pytest.raises(ShapeError, match=r"markers of the pelvis and of a foot; a\.c3d has none"):
+    with pytest.raises(ShapeError, match=r"a\.c3d.*none"):
         up_axis(np.full((2, 3), np.nan), np.zeros((2, 3)), "a.c3d")
 
 
 def test_a_mirrored_pelvis_is_refused():
     mirrored = np.diag([1.0, -1.0, 1.0])[None]
-    with pytest.raises(ShapeError, match="frame is mirrored, or left and right are exchanged"):
+    with pytest.raises(ShapeError, match=r"frame is mirrored.*left.*right"):
         check_right_handed(mirrored, np.array([0.0, 1.0, 0.0]), "a.c3d")
     check_right_handed(np.eye(3)[None], np.array([0.0, 1.0, 0.0]))
 
@@ -56,7 +57,7 @@ def test_forward_is_along_a_straight_path(velocity):
     assert np.degrees(np.arccos(np.clip(frame.rotation[:, :, 0] @ forward, -1, 1))).max() < 1.0  # of sway
     np.testing.assert_allclose(frame.rotation[:, :, 2], np.cross(frame.rotation[:, :, 0], frame.rotation[:, :, 1]))
     np.testing.assert_allclose(np.linalg.det(frame.rotation), 1)
-    assert frame.how == "forward along the path of the pelvis"
+    assert says(frame.how, "forward along the")
 
 
 def test_gaps_of_the_pelvis_do_not_turn_forward():

@@ -74,7 +74,7 @@ def test_the_set_on_the_page_can_be_read(tmp_path):
 
 
 def test_the_nearest_name_is_given():
-    with pytest.raises(SchemaError, match="found 'plugin_gait', the nearest is 'plug_in_gait'"):
+    with pytest.raises(SchemaError, match="'plugin_gait', the nearest is 'plug_in_gait'"):
         marker_set("plugin_gait")
 
 
@@ -121,5 +121,5 @@ def test_recognition_prefers_the_set_with_more_of_the_markers():
 
 def test_labels_of_no_set_name_the_nearest_one():
     plain = [label for label in marker_labels(static_of(PLUG_IN_GAIT)) if label != "RTHI"]
-    with pytest.raises(ChannelError, match=r"a\.c3d has RASI, .* the nearest set is plug_in_gait, which lacks RTHI\."):
+    with pytest.raises(ChannelError, match=r"a\.c3d.*RASI.*plug_in_gait.*RTHI"):
         recognised_marker_set(plain, plain, "a.c3d")

@@ -22,6 +22,7 @@ from manufactured_body import (
     without,
 )
 from scipy.spatial.transform import Rotation
+from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ShapeError
@@ -131,7 +132,7 @@ def test_missing_markers_are_bridged_and_counted():
     found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
     check_angles(found.angles, known)
     bridged = next(finding for finding in found.findings if finding.kind == "bridged")
-    assert bridged.what == "thigh_r: a marker was missing in 30 of 150 frames; the others carry it"
+    assert says(bridged.what, "thigh_r", "missing", "30 of 150 frames")
     np.testing.assert_allclose(bridged.spans, [(0.2, 0.5)])
     assert found.angles.suspect is not None
     marked = dict(zip(found.angles.names, found.angles.suspect.sum(axis=0), strict=True))
@@ -170,7 +171,7 @@ def test_where_too_few_markers_are_left_the_angles_are_missing_and_said():
     assert missing["knee_angle_l"] == missing["pelvis_tilt"] == 0
     warning = next(finding for finding in found.findings if finding.kind == "gap")
     assert warning.severity == "warning"
-    assert warning.what.startswith("thigh_r is not known in 30 of 150 frames")
+    assert says(warning.what, "thigh_r", "not", "30 of 150 frames")
 
 
 def test_a_static_trial_of_another_person_is_said():
@@ -178,7 +179,7 @@ def test_a_static_trial_of_another_person_is_said():
     found = motion(markers_of(known_angles(60), RAJAGOPAL), calibrated(static_of(taller), marker_set("rajagopal")))
     said = [finding.what for finding in found.findings if finding.kind == "another shape"]
     assert said
-    assert "mm from where the static trial has them" in said[0]
+    assert says(said[0], "where the static")
     same = motion(markers_of(known_angles(60), RAJAGOPAL), calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")))
     assert not [finding for finding in same.findings if finding.kind == "another shape"]
 
@@ -186,13 +187,13 @@ def test_a_static_trial_of_another_person_is_said():
 def test_no_static_trial_is_refused():
     markers = markers_of(known_angles(60), RAJAGOPAL)
     for given_set in (None, "rajagopal"):
-        with pytest.raises(ChannelError, match="need a static trial of the person; there is none"):
+        with pytest.raises(ChannelError, match=r"need a static.*none"):
             joint_angles(markers, None, given_set)
 
 
 def test_a_mirrored_trial_is_refused():
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
-    with pytest.raises(ShapeError, match=r"walk\.c3d: .* the frame is mirrored, or left and right are exchanged"):
+    with pytest.raises(ShapeError, match=r"walk\.c3d.*left.*right"):
         motion(markers_of(known_angles(60), PLUG_IN_GAIT, MIRRORED), calibration)
 
 
@@ -208,19 +209,19 @@ def test_a_trial_whose_sides_are_exchanged_is_refused():
 def test_a_marker_that_the_trial_lacks_is_named():
     markers = without(markers_of(known_angles(60), PLUG_IN_GAIT), "RTHI")
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
-    with pytest.raises(ChannelError, match=r"thigh_r needs 3 points .*; walk\.c3d has hip, RKNE, and no RTHI"):
+    with pytest.raises(ChannelError, match=r"thigh_r.*3 points.*walk\.c3d.*RKNE.*no RTHI"):
         motion(markers, calibration)
 
 
 def test_labels_of_no_set_are_refused():
     markers = renamed(markers_of(known_angles(60), PLUG_IN_GAIT), {"RTHI": "Q1", "LKNE": "Q2"})
-    with pytest.raises(ChannelError, match="the nearest set is plug_in_gait, which lacks LKNE, RTHI"):
+    with pytest.raises(ChannelError, match=r"plug_in_gait.*LKNE, RTHI"):
         joint_angles(markers, markers, None, MEASURES)
 
 
 def test_markers_of_another_set_than_the_given_one_are_refused():
     static = static_of(PLUG_IN_GAIT)
-    with pytest.raises(ChannelError, match=r"landmark of the marker set gait2354; static\.c3d has no L\.ASIS and 1"):
+    with pytest.raises(ChannelError, match=r"gait2354; static\.c3d.*no L\.ASIS.*1"):
         joint_angles(static, static, "gait2354", MEASURES)
 
 
@@ -296,9 +297,7 @@ def test_a_real_static_trial_of_another_person_is_said(person, gait_data):
     other = calibrated(read_trial(path).stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
     kinds = ("another shape", "exchanged markers", "broken segment")
     assert not [one for one in motion(walk.stream("markers"), own).findings if one.kind in kinds]
-    with pytest.raises(
-        ShapeError, match=r"HC030A05\.c3d: pelvis: in 197 of 197 .* give the static trial of this person"
-    ):
+    with pytest.raises(ShapeError, match=r"HC030A05\.c3d.*197 of 197"):
         motion(walk.stream("markers"), other)
 
 

@@ -52,12 +52,12 @@ def test_arrays_are_read_only():
 def test_a_mirrored_frame_is_refused():
     mirrored = np.tile(np.eye(3), (2, 1, 1))
     mirrored[1] = np.diag([1.0, 1.0, -1.0])
-    with pytest.raises(ShapeError, match=r"right-handed; frame 1 has determinant -1 .* z to the right"):
+    with pytest.raises(ShapeError, match=r"frame 1.*-1.*right"):
         Pose(np.zeros((2, 3)), mirrored)
 
 
 def test_a_stretched_frame_is_refused():
-    with pytest.raises(ShapeError, match=r"length 1 by up to 0\.21"):
+    with pytest.raises(ShapeError, match=r"1 by up to 0\.21"):
         Pose(np.zeros((1, 3)), np.diag([1.1, 1.0, 1.0])[None])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from manufactured_body import body_frames, known_angles
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
@@ -49,14 +50,14 @@ def test_frames_without_a_pose_are_empty_and_counted():
     angles, findings = segment_angles(segments.with_values(values))
     assert np.isnan(angles["knee_angle_l"][20:30]).all() and np.isfinite(angles["knee_angle_r"]).all()
     (said,) = [finding.what for finding in findings if finding.kind == "gap"]
-    assert said == "l_shank: not known in 10 of 200 frames"
+    assert says(said, "l_shank: not", "10 of 200 frames")
 
 
 def test_a_segment_that_is_missing_and_axes_that_are_none_are_refused():
     segments = segments_of(known_angles(50))
-    with pytest.raises(ChannelError, match=r"theia\.c3d has no r_foot; it has l_foot, l_shank, l_thigh, pelvis"):
+    with pytest.raises(ChannelError, match=r"theia\.c3d.*no r_foot.*l_foot, l_shank, l_thigh"):
         segment_angles(segments.selected([name for name in segments.names if not name.startswith("r_foot")]))
     values = np.array(segments.values)
     values[9, segments.index("l_thigh.r11")] *= 1.2
-    with pytest.raises(ShapeError, match=r"theia\.c3d: l_thigh in frame 10 differs from that by"):
+    with pytest.raises(ShapeError, match=r"theia\.c3d: l_thigh.*frame 10"):
         segment_angles(segments.with_values(values))

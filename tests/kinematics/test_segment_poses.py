@@ -33,7 +33,7 @@ def test_markers_that_the_static_trial_lacks_are_not_followed():
 def test_too_few_points_in_the_trial_are_refused():
     calibration = calibrated(static_of(RAJAGOPAL), marker_set("rajagopal"))
     markers = without(markers_of(KNOWN, RAJAGOPAL), "LTB1", "LTB2")
-    with pytest.raises(ChannelError, match=r"shank_l needs 3 points .* has LTB3, LLMAL, and no LTB1, LTB2"):
+    with pytest.raises(ChannelError, match=r"shank_l.*3 points.*LTB3, LLMAL.*no LTB1, LTB2"):
         placed_markers(named_places(markers, calibration), calibration, markers.source.file)
 
 

@@ -55,24 +55,24 @@ def test_an_unknown_sex_takes_the_mean():
 
 @pytest.mark.parametrize("mass", [0.7, 700.0, -60.0])
 def test_a_mass_that_is_no_persons_is_refused(mass):
-    with pytest.raises(UnitError, match=rf"body mass of 5 to 300 kg; the mass given is {mass:g} kg\. Give it in kg"):
+    with pytest.raises(UnitError, match=rf"mass.*5.*300 kg.*mass.*{mass:g} kg"):
         Person(mass)
 
 
 @pytest.mark.parametrize("mass", [None, np.nan])
 def test_a_person_without_mass_is_refused(mass):
-    with pytest.raises(UnitError, match=r"need the person's body mass .*; none is given.*PROCESSING:BODYMASS"):
+    with pytest.raises(UnitError, match=r"mass.*none.*PROCESSING:BODYMASS"):
         Person(mass)
 
 
 def test_what_fits_no_leg_is_refused():
-    with pytest.raises(SchemaError, match=r"sex 'f' or 'm', .* the sex given is 'w'"):
+    with pytest.raises(SchemaError, match=r"'f'.*'m'.*the sex given.*'w'"):
         Person(60.0, "w")
-    with pytest.raises(UnitError, match=r"thigh of a person is 0.1 to 0.8 m long; thigh_r is 410 m"):
+    with pytest.raises(UnitError, match=r"thigh.*0.1.*0.8 m.*thigh_r.*410 m"):
         leg_inertia(Person(60.0), "r", {"shank": 0.4, "thigh": 410.0}, FOOT)
-    with pytest.raises(UnitError, match=r"by the person's stature .* no stature is given"):
+    with pytest.raises(UnitError, match=r"the person's stature.*no"):
         leg_inertia(Person(60.0, "f"), "r", LENGTHS, FOOT, "deleva1996")
-    with pytest.raises(SchemaError, match="one of dumas2007, deleva1996; 'winter' was named"):
+    with pytest.raises(SchemaError, match="dumas2007, deleva1996; 'winter'"):
         leg_inertia(Person(60.0), "r", LENGTHS, FOOT, "winter")
 
 
@@ -81,8 +81,8 @@ def test_lengths_are_those_between_joint_centres():
     at = {name: Pose(np.tile(place, (20, 1)), turned) for name, place in
           {"thigh_r": [0.0, 0.9, 0], "shank_r": [0.0, 0.5, 0], "foot_r": [0.3, 0.1, 0]}.items()}  # fmt: skip
     assert segment_lengths(at, "r") == pytest.approx({"thigh": 0.4, "shank": 0.5})
-    with pytest.raises(ShapeError, match="length of shank_l needs the poses of shank_l and foot_l"):
+    with pytest.raises(ShapeError, match=r"shank_l.*shank_l.*foot_l"):
         segment_lengths(at, "l")
     grows = np.column_stack([np.linspace(0.3, 0.6, 20), np.full(20, 0.1), np.zeros(20)])
-    with pytest.raises(ShapeError, match=r"shank_r needs one length .* it goes from 0\.50\d to 0\.7\d\d m"):
+    with pytest.raises(ShapeError, match=r"shank_r.*0\.50\d.*0\.7\d\d m"):
         segment_lengths({**at, "foot_r": Pose(grows, turned)}, "r")

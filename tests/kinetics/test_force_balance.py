@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plug_in_gait_bones import bones, feet
+from texts import says
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d import read_c3d
@@ -62,13 +63,13 @@ def test_few_frames_tell_nothing():
     loads["l"] = replace(loads["l"], known=np.full(len(TIME), False))
     balance = force_balance(found, loads, UP, person)
     assert (balance.frames, balance.tested) == (0, False)
-    assert balance.line() == "force balance: the load of both feet is known together in 0 frames only; not tested"
+    assert says(balance.line(), "both", "0 frames", "not")
 
 
 def test_one_leg_cannot_be_balanced():
     person = Person(64.0, "f")
     found, loads = bobbing(person)
-    with pytest.raises(ChannelError, match="needs both legs and the pelvis; there is the leg r"):
+    with pytest.raises(ChannelError, match=r"both.*and the pelvis"):
         force_balance({"r": found["r"]}, loads, UP, person)
 
 
@@ -80,11 +81,9 @@ def test_a_walk_is_balanced_and_exchanged_plates_or_a_wrong_mass_are_not(gait_da
     assert (right.rms, right.level_rms, abs(right.mean)) < (5.0, 5.0, 2.0)
     heavier = trial_kinetics(trial, poses, feet(trial), Person(52.7))
     assert any(f.kind == "force balance" and f.severity == "warning" for f in heavier.findings)
-    with pytest.raises(ChannelError, match=r"it shows 0\.7\d of the force that 588 N of body weight need on one leg"):
+    with pytest.raises(ChannelError, match=r"0\.7\d.*588 N"):
         trial_kinetics(trial, poses, feet(trial), Person(60.0))
 
 
 def test_the_line_of_a_balance():
-    assert ForceBalance(87, 7.44, 9.41, -4.71).line() == (
-        "force balance over 87 frames: vertical rms 7.4 % of body weight (mean -4.7 %), horizontal rms 9.4 %"
-    )
+    assert says(ForceBalance(87, 7.44, 9.41, -4.71).line(), "87 frames", "7.4 %", "-4.7 %", "9.4 %")

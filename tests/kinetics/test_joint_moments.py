@@ -118,14 +118,14 @@ def test_a_leg_without_a_segment_is_left_out():
 def test_a_foot_without_its_heel_is_refused():
     poses, paths, _, _ = walker()
     blind = FootPath("r", TIME, np.full((len(TIME), 3), np.nan), paths["r"].toe)
-    with pytest.raises(ShapeError, match="foot_r needs a frame with heel, toes and the foot's pose; no frame has all"):
+    with pytest.raises(ShapeError, match=r"foot_r needs a frame.*no"):
         legs(poses, {"r": blind}, PERSON, RAW)
 
 
 def test_settings_that_cannot_be_are_refused():
-    with pytest.raises(SamplingError, match=r"force_cutoff_hz must be positive; it is 0 Hz\. Give it in Hz"):
+    with pytest.raises(SamplingError, match=r"force_cutoff_hz.*0 Hz"):
         KineticsSettings(force_cutoff_hz=0.0)
-    with pytest.raises(SchemaError, match="inertia is one of dumas2007, deleva1996; 'winter' was named"):
+    with pytest.raises(SchemaError, match="dumas2007, deleva1996; 'winter'"):
         KineticsSettings(inertia="winter")
-    with pytest.raises(SchemaError, match="frame is one of joint, distal; 'global' was named"):
+    with pytest.raises(SchemaError, match="of joint, distal; 'global'"):
         KineticsSettings(frame="global")

@@ -74,13 +74,13 @@ def test_turned_sign_is_refused():
 
 
 def test_forces_without_a_place_are_refused():
-    with pytest.raises(ChannelError, match=r"wrench of plate_1 needs the corners of its surface; .* for no plate"):
+    with pytest.raises(ChannelError, match=r"plate_1.*no"):
         platforms(plate_trial(stance(), surfaces=()))
     vertical = Recording(TIME, stance()[:, None], (Channel("ground_force_r_vy", "vertical_force", "N", "r"),))
     with pytest.raises(ChannelError, match=r"lacks ground_force_r_vx, ground_force_r_vz"):
         platforms(Trial("walk", {"forces": vertical}))
     other = Recording(TIME, stance()[:, None], (Channel("load", "force", "N"),))
-    with pytest.raises(ChannelError, match=r"force and moment of the ground in three directions; walk has load"):
+    with pytest.raises(ChannelError, match=r"force.*walk.*load"):
         platforms(Trial("walk", {"forces": other}))
 
 

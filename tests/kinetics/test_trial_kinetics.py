@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plug_in_gait_bones import bones, feet
+from texts import says
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d import read_c3d
@@ -96,7 +97,7 @@ def test_a_turn_keeps_the_clean_step_and_names_the_other(gait_data):
     rows = (result.moments.time > left_out.start) & (result.moments.time < left_out.end)
     assert left_out.side == "l"
     assert np.isnan(result.moments["ankle_angle_l_moment"][rows]).all()
-    assert "toes stand 8 cm beyond its edge" in result.findings[0].line()
+    assert says(result.findings[0].line(), "8 cm beyond its edge")
 
 
 def test_a_trial_without_a_clean_step_is_refused(gait_data):
@@ -109,5 +110,5 @@ def test_a_trial_without_a_clean_step_is_refused(gait_data):
 def test_a_trial_without_forces_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
     markers = replace(trial, streams={"markers": trial.stream("markers")})
-    with pytest.raises(ChannelError, match="read for its forces; it has markers"):
+    with pytest.raises(ChannelError, match=r"for its forces.*markers"):
         trial_kinetics(markers, bones(trial), feet(trial), Person(45.8))

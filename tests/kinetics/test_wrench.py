@@ -33,5 +33,5 @@ def test_two_plates_under_one_foot_are_one_force_between_them():
 
 
 def test_a_wrench_of_unlike_shapes_is_refused():
-    with pytest.raises(ShapeError, match=r"shape \(sample, 3\); found \(4, 3\) and \(3, 3\)"):
+    with pytest.raises(ShapeError, match=r"shape \(sample, 3\).*\(4, 3\).*\(3, 3\)"):
         Wrench(np.zeros((4, 3)), np.zeros((3, 3)))

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
@@ -19,7 +20,7 @@ def test_force_goes_before_angles_and_both_are_compared(trial):
     assert choice.detector == "force"
     compared = [f for f in choice.findings if f.kind == "detectors compared"]
     assert len(compared) == 2
-    assert compared[0].what.startswith("angles against force, side l: 36 pairs")
+    assert says(compared[0].what, "force", "36 pairs")
 
 
 def test_the_detector_asked_for_is_taken(trial):
@@ -62,14 +63,14 @@ def test_one_step_on_a_plate_moves_all_contacts_by_the_offset_it_shows(trial):
     np.testing.assert_allclose(choice.contacts["r"].time, by_angles + choice.offset_s)
     np.testing.assert_allclose(choice.contacts["r"].time - choice.offset_s, by_angles)
     [said] = [f for f in choice.findings if f.kind == "contact offset"]
-    assert said.what == "contacts by angles moved 60 ms later, the median of the steps that a plate saw too"
+    assert says(said.what, "angles", "60 ms later")
 
 
 def test_without_a_plate_the_known_bias_is_said_once(trial):
     choice = chosen_contacts(only(trial, "kinematics"))
     assert choice.offset_s is None
     [said] = [f for f in choice.findings if f.kind == "contact offset"]
-    assert "no plate saw a step: they lie early by some 38 ms in walking (23 to 61 ms in 14 trials" in said.what
+    assert says(said.what, "no", "38 ms", "(23", "61 ms", "14 trials")
     assert not [f for f in chosen_contacts(trial).findings if f.kind == "contact offset"]  # force sees the ground
 
 
@@ -85,16 +86,16 @@ def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
     assert (alike.severity, alike.spoils) == ("note", "")
     moved = right.copy()
     moved[12] += 0.08
-    assert "the strides of 1 contact: 50 ms or more" in against([*left, *(("r", time) for time in moved)]).spoils
+    assert says(against([*left, *(("r", time) for time in moved)]).spoils, "1 contact: 50 ms", "more")
     missed = against([*left, *(("r", time) for time in np.delete(right, 12))])
     assert missed.severity == "warning"
-    assert f"about {right[12]:.2f} s: one detector has a contact there, the other none" in missed.spoils
+    assert says(missed.spoils, f"{right[12]:.2f} s", "detector has a", "none")
     late = against([*(("l", time) for _, time in left), *(("r", time + 0.15) for time in right)])
-    assert "they disagree by 50 ms more than such detectors do" in late.spoils
+    assert says(late.spoils, "50 ms more")
 
 
 def test_nothing_to_find_contacts_in(trial):
-    with pytest.raises(StrideError, match=r"needs? initial contacts.*P01_nominal has emg.*Add the file"):
+    with pytest.raises(StrideError, match=r"P01_nominal.*emg"):
         chosen_contacts(only(trial, "emg"))
 
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.reading import read_trial
@@ -32,7 +33,7 @@ def test_the_three_lights(folder):
 
 def test_moved_contacts_are_printed_without_asking_for_notes(folder):
     lines = inspected_file(folder / "good.mot").grouped()
-    assert sum("contact offset: contacts by angles, and no plate saw a step" in line for line in lines) == 1
+    assert sum(says(line, "contact offset: contacts", "no") for line in lines) == 1
 
 
 def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
@@ -45,10 +46,7 @@ def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
     write_study(study, folder / "study.toml")
     seen = list(inspected_study(load_study(folder)))
     assert [one.light for one in seen[1:]] == ["red", "amber", seen[3].light, "red"]
-    assert (
-        "a comparison needs one trial of 'a' and one of 'b'; P02 has 1 of 'a', none of 'b'; of other conditions: 1"
-        in seen[-1].refusal
-    )
+    assert says(seen[-1].refusal, "'a'", "'b'; P02", "1", "'a', none", "'b'", "1")
 
 
 def test_findings_of_one_kind_share_a_line(trial, tmp_path):
@@ -57,7 +55,7 @@ def test_findings_of_one_kind_share_a_line(trial, tmp_path):
     write_storage(trial.stream("kinematics").with_values(broken), tmp_path / "gappy.mot")
     lines = [line for line in inspected_file(tmp_path / "gappy.mot").grouped() if ": gap," in line]
     assert len(lines) == 1
-    assert "and 6 more: gap, 10 times" in lines[0]
+    assert says(lines[0], "6 more", "10 times")
 
 
 def test_calibration_trials_are_refused_as_walking(gait_data):
@@ -100,4 +98,4 @@ def test_a_walk_that_is_refused_keeps_what_its_reader_saw(gait_data, tmp_path):
     (seen,) = inspected_study(study)
     assert seen.light == "red"
     (finding,) = [finding for finding in seen.findings if finding.kind == "per body mass"]
-    assert "it looks like N m per kg of body mass" in finding.what
+    assert says(finding.what, "looks like N")

@@ -62,7 +62,7 @@ def test_moments_per_kg_need_a_mass(trial, record):
     )
     again = joint_record(lighter, STUDY, "ankle_angle", 60.0)
     np.testing.assert_allclose(again.moment, record.moment, atol=1e-9)
-    with pytest.raises(UnitError, match=r"body mass.*N m/kg, and no mass is stated.*Give mass_kg"):
+    with pytest.raises(UnitError, match=r"m/kg.*no.*mass_kg"):
         joint_record(lighter, STUDY, "ankle_angle", None)
 
 
@@ -76,13 +76,13 @@ def test_markers_of_the_foot_say_what_a_kilogram_there_would_add(record):
 def test_radians_that_say_degrees_are_refused(trial):
     angles = trial.stream("kinematics")
     small = replace(trial, streams={**trial.streams, "kinematics": replace(angles, values=np.radians(angles.values))})
-    with pytest.raises(UnitError, match=r"moves by more than 2 deg; .*ankle_angle_r moves by 0.\d+ deg.*inDegrees=no"):
+    with pytest.raises(UnitError, match=r"more.*2 deg.*ankle_angle_r.*0.\d+ deg.*inDegrees=no"):
         joint_record(small, STUDY, "ankle_angle", None)
 
 
 def test_a_leg_without_electrodes_is_refused(trial):
     bare = replace(trial, streams={**trial.streams, "emg": trial.stream("emg").selected(["emg_sol_l"])})
-    with pytest.raises(ChannelError, match=r"living EMG of side 'r'.*has none.*set side in \[strides\]"):
+    with pytest.raises(ChannelError, match=r"EMG.*'r'.*none.*\[strides\]"):
         joint_record(bare, STUDY, "ankle_angle", None)
 
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import StrideError
@@ -27,14 +28,14 @@ def test_streams_on_another_base_are_left_out_and_said():
     force = Recording(np.arange(1000) / 1000, np.ones((1000, 1)), (Channel("f", "vertical_force", "N", "r"),))
     walk = repeated_stride(Trial("sim", {"kinematics": stride(), "forces": force}))
     assert set(walk.streams) == {"kinematics"}
-    assert "forces left out: on another time base" in walk.findings[-1].what
+    assert says(walk.findings[-1].what, "forces left", "another time base")
 
 
 def test_half_a_stride_and_a_long_walk_are_refused_in_words():
-    with pytest.raises(StrideError, match=r"hip_flexion_r ends 60\.0 deg from where it began\. Give a whole stride"):
+    with pytest.raises(StrideError, match=r"hip_flexion_r.*60\.0 deg"):
         repeated_stride(Trial("half", {"kinematics": stride(51, end=0.5)}))
-    with pytest.raises(StrideError, match=r"lasts 0\.4 to 2\.5 s and ends where it began; long lasts 5\.01 s"):
+    with pytest.raises(StrideError, match=r"0\.4.*2\.5 s.*long.*5\.01 s"):
         repeated_stride(Trial("long", {"kinematics": stride(501, end=5.0)}))
     still = Recording(np.arange(100) / 100, np.ones((100, 1)), (HIP,))
-    with pytest.raises(StrideError, match="no angle of the legs that moves"):
+    with pytest.raises(StrideError, match=r"no.*legs that moves"):
         repeated_stride(Trial("still", {"kinematics": still}))

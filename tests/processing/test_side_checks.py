@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.reading import read_trial
@@ -34,7 +35,7 @@ def test_forces_that_bear_the_other_foots_name_are_found_in_a_published_walk(gai
     folder = gait_data / "opensim_walks" / "mrs_emg_walking"
     trial = read_trial([folder / "IK_gait.mot", folder / "GRF_gait.mot"], crop_s=(1.06, 3.23))
     (finding,) = side_findings(trial, {})
-    assert "left and right are swapped in the forces or in the angles" in finding.what
+    assert says(finding.what, "left", "right", "forces")
     moments = read_trial(folder / "ID_gait.sto").stream("moments")  # its authors' own, which know the feet
     left, named_right = moments["ankle_angle_l_moment"], trial.stream("forces")
     push_off = moments.time[left.argmin()]
@@ -81,7 +82,7 @@ def test_an_edge_under_the_sole_explains_what_is_missing_and_never_too_much(plat
     for gain, severity in ((0.77, "note"), (1.3, "warning")):
         (said,) = (one for one in plate_words(gained(cut, 2, gain)) if "plate_2" in one.what)
         assert said.severity == severity, said.what
-        assert ("of the force that 449 N of body weight need" in said.what) == (gain > 1)
+        assert (says(said.what, "449 N", "body weight need")) == (gain > 1)
         assert ("edge" in said.what) == (gain < 1)
 
 
@@ -102,11 +103,8 @@ def test_who_stands_on_the_plates_is_weighed(plates):
     assert weighed == pytest.approx(45.8 * 9.81, rel=0.005) and standing_weight_n(walk) is None
     assert check_weight(weighed, 45.8, "s.c3d") == [] == check_weight(None, 45.8, "s.c3d")
     (said,) = check_weight(weighed, 47.5, "s.c3d")
-    assert said.line() == (
-        "warning: s.c3d: body weight: the static trial weighs 45.9 kg on the force plates, 47.5 kg are stated; spoils "
-        "moments and powers, by 3 %; weigh again"
-    )
-    with pytest.raises(UnitError, match=r"weighs 45\.9 kg on the force plates, 49\.5 kg are stated"):
+    assert says(said.line(), "s.c3d", "45.9 kg", "47.5 kg", "3 %")
+    with pytest.raises(UnitError, match=r"45\.9 kg.*49\.5 kg"):
         check_weight(weighed, 49.5, "s.c3d")
     aside = replace(
         static, surfaces=tuple(replace(one, corners=np.add(one.corners, [0.25, 0, 0])) for one in static.surfaces)

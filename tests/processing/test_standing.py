@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.c3d_measures import read_body_measures
@@ -131,11 +132,7 @@ def test_a_person_without_a_mass_has_angles_and_one_word_on_it(files, trials, mo
     found, findings = pooled(files, trials, MARKERS)
     assert all("knee_angle_r" in names(one) and "knee_angle_r_moment" not in names(one) for one in found)
     (said,) = [finding for finding in findings if finding.kind == "no moments"]
-    assert said.line() == (
-        "warning: P01: no moments: moments and powers per kg need the person's body mass [kg]; none is given, and the "
-        "file states none. Give it in the study's participants, or in PROCESSING:BODYMASS of the C3D file; spoils "
-        "moments and powers"
-    )
+    assert says(said.line(), "P01: no moments", "body mass [kg]", "PROCESSING:BODYMASS")
     weighed, _ = pooled(files, trials, MARKERS, mass_kg=45.8)
     assert all("knee_angle_r_moment" in names(one) for one in weighed)
 
@@ -152,7 +149,7 @@ def test_markers_of_no_known_set_are_said_once_and_cost_no_cycle(files, trials):
     found, findings = pooled(files, strange, Kinematics(angles="markers"))
     (said,) = [finding for finding in findings if finding.kind == "no angles"]
     assert (said.severity, said.file) == ("warning", "P01")
-    assert said.what.startswith("the markers need to be of one of the sets gait2354, helen_hayes, oxford_foot, plug")
+    assert says(said.what, "markers", "gait2354, helen_hayes, oxford_foot")
     assert all(len(one.kept) and "knee_angle_r" not in names(one) for one in found)
 
 
@@ -172,7 +169,7 @@ def test_emg_in_another_unit_than_that_of_the_static_trial_is_named(files, trial
     for walks, expected in ((trials, 0), ({**trials, "straight": wrong}, 1)):
         said = [one for one in pooled(files, walks, file)[1] if one.kind == "EMG unit"]
         assert [one.file for one in said] == ["P01 straight"] * expected
-        assert all("times weaker than in the static trial" in one.what for one in said)
+        assert all(says(one.what, "weaker", "the static trial") for one in said)
 
 
 def test_without_emg_in_the_static_trial_walks_are_held_against_the_first(files, trials):
@@ -180,7 +177,7 @@ def test_without_emg_in_the_static_trial_walks_are_held_against_the_first(files,
     wrong = replace(trials["turn"], streams={**trials["turn"].streams, "emg": emg.with_values(emg.values * 1e3)})
     walks = {**trials, "turn": wrong, "static": bare(trials["static"], "emg")}
     (said,) = [one for one in pooled(files, walks, Kinematics(angles="file"))[1] if one.kind == "EMG unit"]
-    assert said.file == "P01 turn" and "times stronger than in P01 straight" in said.what
+    assert said.file == "P01 turn" and says(said.what, "stronger", "P01")
 
 
 @pytest.mark.parametrize("angles", ["file", "markers"])
@@ -190,10 +187,10 @@ def test_no_kinetics_are_drawn_of_a_plate_of_another_gain_or_of_a_mass_that_is_n
     right, _ = pooled(files, trials, Kinematics(angles=angles))
     assert [int(one.kept["kinetic"].sum()) for one in found] == [1, 1] != [int(o.kept["kinetic"].sum()) for o in right]
     said = [one for one in findings if one.kind == "plate step" and one.severity == "warning"]
-    assert len(said) == 2 and all("plate_2" in one.what and "450 N of body weight need" in one.what for one in said)
+    assert len(said) == 2 and all("plate_2" in one.what and says(one.what, "450 N", "body weight need") for one in said)
     heavy, findings = pooled(files, trials, Kinematics(angles=angles), mass_kg=49.5)
     assert not any("ankle_power_r" in names(one) for one in heavy)
-    assert any(one.kind == "no moments" and "45.9 kg on the force plates, 49.5 kg" in one.what for one in findings)
+    assert any(one.kind == "no moments" and says(one.what, "45.9 kg", "49.5 kg") for one in findings)
     near, findings = pooled(files, trials, Kinematics(angles=angles), mass_kg=47.5)
     assert any("ankle_power_r" in names(one) for one in near)
     assert any(one.kind == "body weight" and one.severity == "warning" for one in findings)
@@ -238,7 +235,7 @@ def test_angles_of_the_wrong_labels_are_left_out_and_the_refusal_names_these(fil
         assert any(one.kind == "exchanged markers" and one.spans == ((0.6, 1.1),) for one in said)
         assert len(found.kept) == 0
         (refusal,) = found.refusals
-        assert "from 0.60 to 1.10 s foot_l, foot_r: exchanging LHEE and RHEE in this trial makes it" in refusal.reason
+        assert says(refusal.reason, "0.60", "1.10 s foot_l, foot_r", "LHEE", "RHEE")
         assert "Correct the labels, add trials" in refusal.reason
 
 

@@ -93,7 +93,7 @@ def test_angles_alone_serve_and_a_trial_without_anything_says_what_it_has(trial)
     angles = step_events(Trial("a", {"kinematics": trial.stream("kinematics")}))
     assert (angles.detector, angles.off_detector) == ("angles", "angles")
     assert len(angles.contacts["r"]) >= 30
-    with pytest.raises(StrideError, match=r"a cycle needs two initial contacts of one foot, .*; b has emg"):
+    with pytest.raises(StrideError, match=r"two initial contacts.*emg"):
         step_events(Trial("b", {"emg": trial.stream("emg")}))
     with pytest.raises(StrideError, match="from markers"):
         step_events(trial, "markers")
