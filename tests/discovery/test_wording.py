@@ -183,7 +183,7 @@ def test_a_channel_whose_error_rises_is_not_passed_over():
 
 def test_few_pieces_are_counted_in_the_sentence():
     size = GapSize(1, 1, 1, 0.0313, {"theta": (0.054, 0.0105, 0.0087)}, 5)
-    assert sentence(held_out=size).endswith("(noise floor 0.50, p = 0.031 over 5 pieces).")
+    assert says(sentence(held_out=size), "0.50", "p = 0.031 over 5 pieces")
 
 
 def test_what_is_not_borne_out_says_by_which_test():

@@ -54,7 +54,7 @@ def test_one_absurd_cell_of_emg_is_missing(unit, sound, absurd):
 
 def test_a_ground_force_that_cannot_be_is_refused_as_a_missing_one_is():
     force = vocabulary().named("ground_force_r_vy")
-    with pytest.raises(ReadError, match=r"walk\.mot: ground_force_r_vy.*1e\+09 N .*frame 3 .*0\.02 s"):
+    with pytest.raises(ReadError, match=r"walk\.mot: ground_force_r_vy.*1e\+09 N.*frame 3.*0\.02 s"):
         without_impossible({"forces": _of(force, 700.0, 0.0, 1e9)})
 
 
@@ -194,6 +194,6 @@ def test_a_plate_that_was_not_zeroed_is_left_out_and_the_others_stay():
     kept, (finding,) = without_impossible({"forces": forces})
     assert kept["forces"].names == ("plate_1_fz",)
     assert (finding.severity, finding.channel) == ("refused", "plate_2_fz")
-    assert finding.what.startswith("-103 N in frame 1 (t = 0 s) is beyond what it can be, -100 to 20000 N")
+    assert says(finding.what, "-103 N in frame 1", "-100 to 20000 N")
     with pytest.raises(ReadError, match="plate_2_fz needs a plausible force"):
         without_impossible({"forces": forces.selected(names[1:])})

@@ -40,7 +40,7 @@ def test_one_file_gives_several_streams_on_one_base():
 def test_nan_in_a_force_is_refused_with_sample_and_time(name):
     values = np.ones((5, 1))
     values[2:4] = np.nan
-    with pytest.raises(ReadError, match=rf"{name} .*2 of 5 .*sample 3 .*0\.02 s"):
+    with pytest.raises(ReadError, match=rf"{name}.*2 of 5.*sample 3.*0\.02 s"):
         _trial(name, values=values)
 
 

@@ -65,7 +65,7 @@ def test_a_delay_as_long_as_the_shortest_trial_is_refused(what):
 def test_a_python_object_with_such_a_delay_is_refused_as_well():
     model = python_simulation("f", lambda t, x, u, p, ports: x, [State("x")], [Input("u")], [Parameter("d", 0.5)])
     refuse_delays(model.with_input("u", "delay(u, -d)"), 2.0, "a")
-    with pytest.raises(SimulationError, match=r"\[inputs\] u: .*9\*d\)' is 4\.5 s"):
+    with pytest.raises(SimulationError, match=r"\[inputs\] u: .*9\*d\)'.*4\.5 s"):
         refuse_delays(model.with_input("u", "delay(u, 9*d)"), 2.0, "a")
-    with pytest.raises(SimulationError, match=r"\[observations\] x: .*-1\)' is -1 s"):
+    with pytest.raises(SimulationError, match=r"\[observations\] x: .*-1\)'.*-1 s"):
         refuse_delays(model.with_observation("x", "delay(x, -1)"), 2.0, "a")

@@ -17,7 +17,7 @@ def test_trials_are_padded_and_their_lengths_kept():
 
 
 def test_what_does_not_fit_is_refused():
-    with pytest.raises(ShapeError, match=r"inputs are \(1, 5, 2\).*lengths \[7\]"):
+    with pytest.raises(ShapeError, match=r"\(1, 5, 2\).*\[7\]"):
         Drive(100.0, np.zeros(1), np.zeros((1, 5, 2)), np.array([7]))
     with pytest.raises(ShapeError, match="rate 0"):
         Drive(0, np.zeros(1), np.zeros((1, 5, 2)), np.array([5]))

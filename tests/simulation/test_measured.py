@@ -76,7 +76,7 @@ def test_a_constant_channel_is_refused_a_constant_trial_told():
 
 
 def test_shapes_are_checked():
-    with pytest.raises(ShapeError, match=r"\(1, 30, 2\) where \(1, 30, 1\)"):
+    with pytest.raises(ShapeError, match=r"30, 2\).*30, 1\)"):
         Measured(Drive.of([np.empty((30, 0))], 100.0), np.zeros((1, 30, 2)), ("1",), ("x",))
 
 
