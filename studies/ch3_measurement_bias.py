@@ -11,11 +11,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import report_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_measurement_bias")), QUICK
-)  # before the slow imports
+GIVEN = report_line(__name__, __doc__, "ch3_measurement_bias")  # before the slow imports
 
 import numpy as np
 from chapter3.cell import ALL_METHODS, NOISES, grid

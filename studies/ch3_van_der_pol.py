@@ -12,11 +12,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import report_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_van_der_pol")), QUICK
-)  # before the slow imports
+GIVEN = report_line(__name__, __doc__, "ch3_van_der_pol")  # before the slow imports
 
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.discrepancy_cell import DiscrepancyCell

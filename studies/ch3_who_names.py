@@ -13,11 +13,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import report_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_who_names")), QUICK
-)  # before the slow imports
+GIVEN = report_line(__name__, __doc__, "ch3_who_names")  # before the slow imports
 
 import numpy as np
 from chapter3.cell import NOISES

@@ -12,14 +12,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import KEPT, QUICK, argument, command_line
+from command_line import KEPT, report_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", KEPT, Path("ch4")),
-    QUICK,
-)  # before the slow imports
+GIVEN = report_line(__name__, __doc__, "ch4", KEPT)  # before the slow imports
 
 import tomllib
 from dataclasses import dataclass

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from chapter3.sindy import fit_sindy
+from chapter3.system import rk4_step
 from further import Number
 from numpy.typing import NDArray
 
@@ -145,10 +146,7 @@ def sparse(done: Reconstructor, parts: Parts) -> Callable[[Values, int], Values]
     def carried(states: Values, n: int) -> Values:
         z = (states - mean) @ axes
         for _ in range(n):
-            k1 = rate(z)
-            k2 = rate(z + 0.005 * k1)
-            k3 = rate(z + 0.005 * k2)
-            z = z + 0.01 / 6 * (k1 + 2 * k2 + 2 * k3 + rate(z + 0.01 * k3))
+            z = rk4_step(rate, z, 0.01)
         return getattr(done.model, "decoded")(mean + z @ axes.T)  # noqa: B009
 
     return carried
