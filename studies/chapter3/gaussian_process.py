@@ -27,8 +27,17 @@ JITTER = 1e-9  # of the signal's variance, so that a matrix stays positive
 def kernel(
     kind: KernelKind, a: NDArray[np.float64], b: NDArray[np.float64], lengths: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Covariance of a process of size one between points (a's point, b's point)."""
-    return _shape(kind, lengths)(a, b)
+    """Covariance of a process of size one between points (a's point, b's point).
+
+    Not scikit-learn's: another rounding of distances turns the variance on inducing points (docs/results.md, variance).
+    Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
+    """
+    a, b = a / lengths, b / lengths
+    apart = np.maximum(np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2 * a @ b.T, 0.0)
+    if kind == "squared_exponential":
+        return np.exp(-0.5 * apart)
+    far = np.sqrt((3 if kind == "matern_3_2" else 5) * apart)
+    return (1 + far + (far**2 / 3 if kind == "matern_5_2" else 0)) * np.exp(-far)
 
 
 def _shape(kind: KernelKind, lengths: Any, bounds: Any = "fixed") -> Any:
