@@ -137,12 +137,15 @@ def measures(name: str, factor: float, of_all: bool = False) -> Plant:
     """Another body mass, leg length in the first walk; or in all files, with what Plug-in Gait divides by it."""
 
     def plant(person: Recorded) -> None:
+        states = {path for path in person.files() if InPlace(path).numbers(f"PROCESSING:{name}").size}
         if of_all:
-            require_weighed(person.static)
-        if not of_all and not InPlace(person.walk).numbers(f"PROCESSING:{name}").size:
-            raise NotHereError(f"no {name} in the first walk")
-        if not any(InPlace(path).numbers(f"PROCESSING:{name}").size for path in person.files() if path != person.walk):
-            raise NotHereError(f"no {name} in another file")
+            file = InPlace(person.static)
+            mass = file.numbers("PROCESSING:BODYMASS")
+            down = [np.median(file.newtons(one[2:3])) for one in file.plate_channels()] if file.analog.size else []
+            if not mass.size or abs(abs(sum(down)) / (9.81 * float(mass.flat[0])) - 1) > WEIGHED:
+                raise NotHereError("the static trial does not stand on the plates")
+        if states <= {person.walk} or not (of_all or person.walk in states):
+            raise NotHereError(f"no {name} in the first walk and in another file")
         for path in person.files() if of_all else [person.walk]:
             with edited(path) as file:
                 file.numbers(f"PROCESSING:{name}")[...] *= factor
@@ -151,15 +154,6 @@ def measures(name: str, factor: float, of_all: bool = False) -> Plant:
                     file.points[:, per_kg, :3] /= factor
 
     return plant
-
-
-def require_weighed(static: Path) -> None:
-    """Refuse a static trial that does not stand on the plates."""
-    file = InPlace(static)
-    mass = file.numbers("PROCESSING:BODYMASS")
-    down = [np.median(file.newtons(one[2:3])) for one in file.plate_channels()] if file.analog.size else []
-    if not mass.size or abs(abs(sum(down)) / (9.81 * float(mass.flat[0])) - 1) > WEIGHED:
-        raise NotHereError("the static trial does not stand on the plates")
 
 
 def loaded(person: Recorded) -> list[int]:
