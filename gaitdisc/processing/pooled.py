@@ -150,11 +150,12 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, s
 
 
 def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
-    """Strides of each foot between the contacts as they were seen, without what is too short or too long."""
+    """Strides of each foot between the contacts as they were seen, without what is too short, too long, or is two."""
     found = {}
     for side, times in steps.contacts.items():
         lengths = np.diff(times)
         whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
+        whole &= np.diff(np.searchsorted(steps.contacts.get("l" if side == "r" else "r", ()), times)) <= 1
         if whole.any():
             found[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
     return found

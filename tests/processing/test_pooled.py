@@ -13,7 +13,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, StrideRules, Study, Treadmill
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.recording import Trial
+from gaitdisc.recording import Event, Trial
 
 
 def _planned(count, condition="walk", session=None):
@@ -147,6 +147,21 @@ def test_swapped_sides_are_refused(pieces):
     study, person = _study(_planned(1), **OVERGROUND)
     (found,) = pooled_cycles(study, person, lambda _: swapped)
     assert "left and right are swapped" in found.refusals[0].reason
+
+
+def test_a_contact_that_an_event_misses_costs_its_strides_and_not_the_trial(pieces):
+    """Two strides of the right foot taken for one show its knee's peak in the middle of what seems to be stance."""
+    study, person = _study(_planned(1), **OVERGROUND)
+    (whole,) = pooled_cycles(study, person, lambda _: pieces[0])
+    landed = {side: sorted({*rows["start_s"], *rows["end_s"]}) for side, rows in whole.kept.groupby("side")}
+    seen = [("l", at) for at in landed["l"]] + [("r", at) for at in landed["r"][0:3:2]]
+    events = tuple(Event("initial contact", side, float(at)) for side, at in sorted(seen, key=lambda one: one[1]))
+    streams = {key: stream for key, stream in pieces[0].streams.items() if key != "forces"}
+    missed = replace(pieces[0], streams=streams, events=events)
+    (found,) = pooled_cycles(study, person, lambda _: missed)
+    assert found.refusals == () and found.counted("l") == whole.counted("l") - 1
+    (reason,) = found.cycles.loc[found.cycles["side"] == "r", "reason"]
+    assert says(reason, "2 contacts of the other foot")
 
 
 def test_a_belt_s_speed_gives_lengths(pieces):
