@@ -235,9 +235,13 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 def stands(trial: Trial) -> bool:
     """Whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
 
+    A file with contacts of both feet is a walk, however many points beside the body it has.
+
     >>> stands(Trial("no markers, no angles", {}))
     False
     """
+    if {event.side for event in trial.events if event.label == "initial contact"} >= {"l", "r"}:
+        return False
     if "markers" in trial.streams:
         markers, limit = trial.stream("markers"), STILL_M
     elif "kinematics" in trial.streams:

@@ -13,7 +13,7 @@ from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import ANGLES
 from gaitdisc.ingest.study_file import load_study, write_study
-from gaitdisc.recording import Recording, Trial
+from gaitdisc.recording import Event, Recording, Trial
 
 TIME = np.arange(300) / 100
 CHANNELS = tuple(c for c in vocabulary().channels if c.name in (*ANGLES, "mtp_angle_r", "lumbar_bending"))
@@ -194,6 +194,9 @@ def test_who_walks_straight_along_an_axis_does_not_stand():
     channels = tuple(Channel(name, "marker", "m") for name in names)
     assert not stands(Trial("walk", {"markers": Recording(time, np.tile(step, 6), channels)}))
     assert stands(Trial("static", {"markers": Recording(time, np.tile(step * [0, 1, 1], 6), channels)}))
+    events = tuple(Event("initial contact", side, at) for side, at in (("r", 0.2), ("l", 0.7)))
+    among_still_points = {"markers": Recording(time, np.tile(step * [0, 1, 1], 6), channels)}
+    assert not stands(Trial("a walk by its contacts", among_still_points, events))
 
 
 def test_a_draft_keeps_no_samples(tmp_path):
