@@ -16,7 +16,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.kinematics.marker_set import shipped_marker_sets
 from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import Discovery
-from gaitdisc.results.kind import load_saved
+from gaitdisc.results.kind import find_kind
 from gaitdisc.results.mismatch import Mismatch
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.reconstruction import Reconstruction
@@ -118,7 +118,10 @@ class Cited(NamedTuple):
 
 def citations_of(folder: Path) -> list[Cited]:
     """Literature of the methods that the result in a folder used, in the order of the table."""
-    used = {"this program", *(_of_part(folder) if (folder / CHAPTER).is_file() else methods_of(load_saved(folder)))}
+    used = {
+        "this program",
+        *(_of_part(folder) if (folder / CHAPTER).is_file() else methods_of(find_kind(folder, drawn=True).load(folder))),
+    }
     by_key: dict[str, list[str]] = {}
     for method, keys in MENTIONED.items():
         for key in keys if method in used else ():
@@ -149,12 +152,6 @@ def methods_of(result: Any) -> Iterator[str]:
         if result.split.startswith("subject"):  # each person was left out in turn
             yield LEFT_OUT
         yield from _of_files(result.provenance.files)
-    else:
-        raise SchemaError(
-            "literature is cited for a result",
-            "the folder holds a fitted model",
-            "Give that of `gaitdisc reconstruct`.",
-        )
 
 
 def _of_part(folder: Path) -> tuple[str, ...]:

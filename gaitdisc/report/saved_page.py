@@ -19,16 +19,14 @@ DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and h
 
 def draw_saved(folder: Path) -> dict[str, Path]:
     """Draw the page of the result that a folder holds, and those of the results beside it; nothing is fitted."""
-    kind = find_kind(folder)
+    kind = find_kind(folder, drawn=True)
     return {"report": kind.draw(kind.load(folder), folder), **draw_beside(kind, folder)}
 
 
 def draw_beside(kind: Kind[Any], folder: Path) -> dict[str, Path]:
     """Draw the pages of the results that lie in the folder of another, those that are there."""
     places = [folder / name for name in kind.beside if any((folder / name / file).is_file() for file in KINDS)]
-    return {
-        place.name: draw_saved(place)["report"] for place in places if any((place / file).is_file() for file in KINDS)
-    }
+    return {place.name: draw_saved(place)["report"] for place in places}
 
 
 def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:

@@ -100,12 +100,6 @@ class Kind(Generic[T]):
 
     def draw(self, result: T, folder: Path) -> Path:
         """Write the page of a result that lies in a folder."""
-        if not self.page:
-            raise SchemaError(
-                "a page is drawn of a result",
-                f"{folder.name} holds {self.file}, a fitted model",
-                "Give the folder of `gaitdisc reconstruct`, or apply the model to a recording: `gaitdisc apply`.",
-            )
         return load_word(self.page)(result, folder / self.page_folder)
 
     def _table(self, csv: CSV, tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
@@ -142,17 +136,24 @@ class Saved:
         return place
 
 
-def find_kind(folder: Path) -> Kind[Any]:
-    """Kind of the result that a folder holds."""
-    for file, word in KINDS.items():
-        if (folder / file).is_file():
-            return load_word(word)
-    held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
-    raise SchemaError(
-        f"a saved result is a folder with one of {', '.join(KINDS)}",
-        f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is no folder'}",
-        "Give the folder that the command or .save(folder) wrote.",
-    )
+def find_kind(folder: Path, drawn: bool = False) -> Kind[Any]:
+    """Kind of the result that a folder holds; drawn: whether it must have a page, as all but a fitted model have."""
+    file = next((name for name in KINDS if (folder / name).is_file()), "")
+    if not file:
+        held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+        raise SchemaError(
+            f"a saved result is a folder with one of {', '.join(KINDS)}",
+            f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is no folder'}",
+            "Give the folder that the command or .save(folder) wrote.",
+        )
+    kind = load_word(KINDS[file])
+    if drawn and not kind.page:
+        raise SchemaError(
+            "pages and citations need a saved result",
+            f"{folder.name} holds {file}, a fitted model",
+            "Give the folder of `gaitdisc reconstruct`, or apply the model to a recording: `gaitdisc apply`.",
+        )
+    return kind
 
 
 def load_saved(folder: Path) -> Any:

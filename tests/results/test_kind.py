@@ -2,7 +2,9 @@
 
 import pytest
 
+from gaitdisc.batch.citations import citations_of
 from gaitdisc.errors import SchemaError
+from gaitdisc.report.saved_page import draw_saved
 from gaitdisc.results import kind as kinds
 from gaitdisc.results.kind import Kind, Saved, load_saved
 from gaitdisc.results.study_run import UNITS
@@ -38,3 +40,10 @@ def test_every_unit_of_a_run_is_of_a_kind():
 def test_no_result_is_refused(tmp_path):
     with pytest.raises(SchemaError, match="holds nothing"):
         load_saved(tmp_path)
+
+
+def test_a_fitted_model_has_neither_page_nor_citations(tmp_path):
+    (tmp_path / "model.json").touch()
+    for refused in (draw_saved, citations_of):
+        with pytest.raises(SchemaError, match=r"holds model\.json, a fitted model"):
+            refused(tmp_path)
