@@ -150,8 +150,8 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
             f"{unit!r} is measured in {inner!r}, {to!r} in {inner_to!r}",
             "Correct the unit where the file or the study states it.",
         )
-    factor = unit_factor(unit, to)
-    return values if factor == 1 or factor is None else values * factor
+    factor = unit_factor(unit, to) or math.nan  # the closed list is part of the table
+    return values if factor == 1 else values * factor
 
 
 def rate_unit(unit: str, order: int = 1) -> str:

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import UnitError
-from gaitdisc.units import convert, inner_unit, known_units, parsed_unit, rate_unit
+from gaitdisc.units import convert, inner_unit, known_units, parsed_unit, rate_unit, unit_factor
 
 
 @pytest.mark.parametrize(
@@ -46,3 +46,9 @@ def test_unknown_unit_lists_the_known():
 
 def test_rates():
     assert [rate_unit("deg", order) for order in (0, 1, 2)] == ["deg", "deg/s", "deg/s2"]
+
+
+def test_every_unit_of_a_recording_is_in_the_one_table():
+    for unit in known_units():
+        factor = unit_factor(unit, inner_unit(unit))
+        assert factor is not None and np.isfinite(factor), unit

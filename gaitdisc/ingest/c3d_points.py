@@ -110,11 +110,11 @@ def point_streams(
         channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in renamed for axis in AXES)
         streams["markers"] = (np.asarray(convert(markers, unit, "m"), float), channels)
     parts: dict[str, list[Part]] = {}
-    about = (parameters, labels, file)
     for kind in MODEL_OUTPUTS:
         points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
         if points:
-            part, more = _model_part(rows[:, _columns(points)], [(names[at], plain[at]) for at in points], kind, about)
+            named = [(names[at], plain[at]) for at in points]
+            part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels, file)
             parts.setdefault(kind.stream, []).append(part)
             findings += more
     for stream, several in parts.items():
@@ -157,9 +157,13 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
 
 
 def _model_part(
-    rows: NDArray[np.float64], named: Sequence[tuple[str, str]], kind: ModelOutput, about
+    rows: NDArray[np.float64],
+    named: Sequence[tuple[str, str]],
+    kind: ModelOutput,
+    parameters: C3DParameters,
+    labels: LabelMap,
+    file: str,
 ) -> tuple[Part, list[Finding]]:
-    parameters, labels, file = about
     text = parameters.text("POINT", kind.units)
     unit = parsed_unit(text) if text else kind.usual
     findings = []

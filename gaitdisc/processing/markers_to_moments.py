@@ -114,10 +114,8 @@ def _follows_right_labels(own: Recording, markers: Recording, exchange: Exchange
     apart = []
     for name in set(as_is) & set(own.names):
         both = [own[name] - lines[name] for lines in (as_is, right)]
-        if not all(
-            np.isfinite(one[~exchange.frames]).any() for one in both
-        ):  # exchanged throughout: no offset is known
-            continue
+        if not all(np.isfinite(one[~exchange.frames]).any() for one in both):
+            continue  # exchanged throughout: no offset is known
         both = [np.abs(one - np.nanmedian(one[~exchange.frames]))[frames] for one in both]
         apart.append(
             np.nan_to_num(np.where(np.abs(as_is[name] - right[name])[frames] > MOVES_DEG, both, 0.0)).sum(axis=1)

@@ -62,7 +62,7 @@ def without_contradicted(trial: Trial) -> Trial:
         recording = trial.stream(streams[0])
         found = list(check(*(trial.stream(key) for key in streams)))
         file, spoils = recording.source.file, "the channel: it is left out; correct the file"
-        said = [Finding("refused", KIND, file, what, spoils, list_names(list(names), none="")) for names, what in found]
+        said = [Finding("refused", KIND, file, what, spoils, list_names(names)) for names, what in found]
         lost = {name for names, _ in found for name in names}
         kept = [name for name in recording.names if name not in lost]
         rest = {key: value for key, value in trial.streams.items() if kept or key != streams[0]}

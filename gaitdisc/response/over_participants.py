@@ -179,9 +179,8 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
     left_out = f"; left out, for strides with missing points: {', '.join(absent)}" if absent else ""
     who = f"n = {len(complete)} participants{left_out}"
     if len(complete) < FEWEST_GROUPED:
-        return no_rows(
-            "responders"
-        ), f"Sub-groups were not looked for, which takes {FEWEST_GROUPED} participants ({who})"
+        said = f"Sub-groups were not looked for, which takes {FEWEST_GROUPED} participants ({who})"
+        return no_rows("responders"), said
     try:
         groups = find_responders(complete, seed)
     except ComparisonError as error:
