@@ -182,6 +182,11 @@ def side_of(name: str) -> str:
     return found[1] if found else ""
 
 
+def other_side(side: str) -> str:
+    """The other leg: `l` for `r`, `r` for `l`."""
+    return "l" if side == "r" else "r"
+
+
 def schema_folder() -> Path:
     """Folder of the vocabulary and the JSON Schemas, in a checkout or in an installed wheel."""
     installed = Path(__file__).parent / "data_schema"

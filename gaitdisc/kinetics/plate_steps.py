@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.channel import other_side
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform
@@ -196,7 +197,7 @@ def weighed_steps(
     named = {platform.name: platform for platform in found}
 
     def weighed(step: PlateStep) -> PlateStep:
-        other = airborne.get("l" if step.side == "r" else "r", ()) if step.side else ()
+        other = airborne.get(other_side(step.side), ()) if step.side else ()
         spans = [(max(start, step.start), min(end, step.end)) for start, end in other]
         start, end = max(spans, key=lambda span: span[1] - span[0], default=(0.0, 0.0))
         share = weight.share(named[step.platform], (start, end)) if end - start >= ALONE_S else 1.0

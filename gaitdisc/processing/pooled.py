@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
@@ -155,7 +155,7 @@ def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
     for side, times in steps.contacts.items():
         lengths = np.diff(times)
         whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
-        whole &= np.diff(np.searchsorted(steps.contacts.get("l" if side == "r" else "r", ()), times)) <= 1
+        whole &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
         if whole.any():
             found[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
     return found

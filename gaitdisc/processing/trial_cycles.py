@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.channel import other_side
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Recording, Trial
@@ -48,7 +49,7 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
     """
     found = []
     for side, own in sorted(contacts.items()):
-        other = "l" if side == "r" else "r"
+        other = other_side(side)
         across = [at for at, _ in contacts.get(other, ())]
         for (start, by), (end, next_by) in itertools.pairwise(own):
             length = end - start
@@ -150,7 +151,7 @@ def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0
     paths, way = feet.heels, feet.way
     found = []
     for one in cycles:
-        other = "l" if one.side == "r" else "r"
+        other = other_side(one.side)
         first, beside, last = (
             interpolated(feet.time, paths[side], np.array([at]))[0]
             for side, at in ((one.side, one.start), (other, one.opposite_contact), (one.side, one.end))

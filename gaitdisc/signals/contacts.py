@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import read_only
@@ -324,10 +325,10 @@ def plate_contacts(
         on, off, _ = _contacts(forces, channel.name, body_weight_n)
         for time in on:
             place = {side: float(np.interp(time, markers.time, heel)) for side, heel in along.items()}
-            place = {
-                side: -place[other] if np.isnan(ahead) and abs(place.get(other, 0.0)) > CLEAR_OF_PELVIS_M else ahead
-                for (side, ahead), other in zip(place.items(), reversed(place), strict=True)
-            }
+            for side, ahead in place.items():
+                across = place.get(other_side(side), 0.0)
+                if np.isnan(ahead) and abs(across) > CLEAR_OF_PELVIS_M:
+                    place[side] = -across
             if not np.isfinite(list(place.values())).all() or len(place) < 2:
                 raise StrideError(
                     "identifying the foot on a plate needs both heel markers at contact",

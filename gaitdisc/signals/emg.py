@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel
+from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
 from gaitdisc.recording.runs import spans_s
@@ -290,10 +290,9 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
         for kind, pattern in (("calf", _CALF), ("shin", _SHIN)):
             found = pattern.fullmatch(name)
             if found and found[2] in strides:
-                own, *other = (
-                    stance_over_swing(envelope, strides[side], name) for side in sorted(strides, key=found[2].__ne__)
-                )
-                value = (own - other[0]) / 2 if other and np.isfinite(other[0]) else own
+                by_foot = {side: stance_over_swing(envelope, cut, name) for side, cut in strides.items()}
+                own, other = by_foot[found[2]], by_foot.get(other_side(found[2]), np.nan)
+                value = (own - other) / 2 if np.isfinite(other) else own
                 worst = seen.get((kind, found[2]), ("", -np.inf))[1]
                 if np.isfinite(value) and value > worst:
                     seen[kind, found[2]] = name, value, own

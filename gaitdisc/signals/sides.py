@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.channel import other_side
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
 from gaitdisc.signals.direction import marker_position
@@ -58,7 +59,7 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     kinematics: with both knees, flexion positive [deg]
     returns: percent stride of the knee's peak; NaN where no stride has the knee
     """
-    own, other = (f"knee_angle_{side}" for side in (strides.side, "l" if strides.side == "r" else "r"))
+    own, other = (f"knee_angle_{side}" for side in (strides.side, other_side(strides.side)))
     at = knee_peak_percent(kinematics, strides, own)
     if not np.isfinite(at) or SWING[0] <= at <= SWING[1]:
         return at
