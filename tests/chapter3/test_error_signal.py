@@ -44,7 +44,7 @@ def test_the_residual_keeps_the_noise_white_and_is_low_passed_only_as_published(
 
 def test_rates_of_states_that_are_not_measured_are_refused():
     record = recorded(system_of(bundled("mass_spring_damper"), gain=(1.01,)), Conditions(duration_s=5.0))
-    with pytest.raises(ShapeError, match="needs all 2 states measured; 1 are: x"):
+    with pytest.raises(ShapeError, match=r"2 states.*1 are: x"):
         error_samples(record, "dynamics")
 
 

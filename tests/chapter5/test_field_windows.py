@@ -4,6 +4,7 @@ from chapter5.modes import fit_modes
 from chapter5.reconstruct_field import field_windows, reading_names, snapshots_of, with_coefficients
 from chapter5.routes import fixed, joined, random_walk
 from manufactured_field import travelling_wave
+from texts import says
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.sensing.splits import split_within
@@ -19,10 +20,9 @@ def test_a_window_holds_what_the_route_reads_oldest_first():
     assert snapshots_of(windows)[[0, -1]].tolist() == [4, 119]
     row = np.concatenate([np.concatenate([read[t, k], places[t, k]]) for t in (6, 8, 10) for k in (0, 1)])
     np.testing.assert_array_equal(windows.x[6], row)
-    assert windows.inputs[:3] == (
-        "h of sensor 1 4 month ago",
-        "g of sensor 1 4 month ago",
-        "lat of sensor 1 4 month ago",
+    assert all(
+        says(windows.inputs[k], *words, "4 month ago")
+        for k, words in enumerate([("h", "sensor 1"), ("g", "sensor 1"), ("lat", "sensor 1")])
     )
     assert windows.inputs[-4:] == ("h of sensor 2", "g of sensor 2", "lat of sensor 2", "lon of sensor 2")
     assert reading_names(WAVE, ROUTE) == ("h of sensor 1", "g of sensor 1", "h of sensor 2", "g of sensor 2")
@@ -49,7 +49,7 @@ def test_ahead_of_its_readings_a_window_tells_a_later_snapshot():
 
 
 def test_a_window_longer_than_the_field_is_refused():
-    with pytest.raises(SamplingError, match="reaches back 121 snapshots; the field has 120"):
+    with pytest.raises(SamplingError, match=r"121 snapshots.*120"):
         field_windows(WAVE, ROUTE, Lags(122, 1))
-    with pytest.raises(SamplingError, match=r"reaches back 99 snapshots and 21 ahead; the field has 120"):
+    with pytest.raises(SamplingError, match=r"99 snapshots.*21 ahead.*120"):
         field_windows(WAVE, ROUTE, Lags(100, 1, 21))

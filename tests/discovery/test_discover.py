@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two_rods, with_load
+from made_simulation import system
 from texts import says
 
-from gaitdisc.discovery.catalogue import read_catalogue
+from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.even_time import TrialColumns
@@ -218,11 +219,8 @@ def test_an_effect_outside_the_catalogue_is_answered_by_a_shape_that_closes_the_
 
 
 def test_an_effect_of_the_users_own_is_found_by_its_name(tmp_path):
-    file = tmp_path / "mine.toml"
-    file.write_text(
-        '[[shape]]\nname = "bump"\npieces = ["exp(-((x - c)/0.2)**2)"]\nconstants = { c = "quantiles of x" }'
-    )
-    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), shapes=read_catalogue(file))
+    bump = Shape("bump", ("exp(-((x - c)/0.2)**2)",), constants={"c": "quantiles of x"})
+    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), shapes=(bump,))
     assert _named(discovery) == ("missing_physics", [("bump", "load")])
     values = [one.value for one in discovery.effects[0].estimates.values()]
     assert min(abs(value - 0.3) for value in values) < 0.01
@@ -301,9 +299,7 @@ def test_a_simulation_that_stays_near_the_data_passes(short):
 
 def test_samples_that_are_too_far_apart_for_a_simulation_are_told_from_slow_ones(short):
     """Milliseconds taken for seconds: a period in less than a sample. A tank every 4 s is as slow as its clock."""
-    slow = simulation_of(
-        "[states.x]\n[states.v]\n[parameters.w]\nvalue = 1.0\n[equations]\nx = 'w*tanh(v)'\nv = '-w*tanh(x)'"
-    )
+    slow = system({"x": "w*tanh(v)", "v": "-w*tanh(x)"}, parameters={"w": 1.0})
     time = 4.0 * np.arange(400)
     level = TrialColumns("1", time, np.empty((400, 0)), np.column_stack([np.sin(0.01 * time), np.cos(0.01 * time)]))
     measured = measured_of_trials([level, replace(level, name="2")], (), ("x", "v"), "tank.csv")

@@ -15,7 +15,6 @@ import pytest
 from scipy.io import loadmat, savemat
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest import reader_process
 from gaitdisc.ingest.array_file import open_arrays
 from gaitdisc.ingest.reader_process import ReaderProcess
 
@@ -199,14 +198,12 @@ def test_a_header_that_lies_about_its_array_meets_the_cap(tmp_path):
         open_arrays(path).numbers("knee")
 
 
-def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(mat5, monkeypatch, tmp_path):
-    worker = tmp_path / "worker.py"
-    worker.write_text("import os, signal, sys; sys.stdin.readline(); os.kill(os.getpid(), signal.SIGSEGV)")
-    with monkeypatch.context() as patch, closing(ReaderProcess()) as process:
-        patch.setattr(reader_process, "WORKER", worker)
+def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(mat5, playing, monkeypatch):
+    with closing(ReaderProcess()) as process:
+        playing("os.kill(os.getpid(), signal.SIGSEGV)")
         with pytest.raises(ReadError, match=r"walk.mat.*-11\)"):
             open_arrays(mat5, process)
-        patch.undo()
+        monkeypatch.undo()
         np.testing.assert_array_equal(open_arrays(mat5, process).numbers("data.knee"), KNEE)
 
 

@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from texts import says
 
 STUDIES = Path(__file__).parents[2] / "studies"
 
@@ -45,7 +46,7 @@ def test_with_the_models_own_segments_opensim_is_met(gait_data):
 
 def test_the_filters_effect_is_a_sentence_with_its_numbers(found):
     sentence = study("moments").filter_effect(found)
-    assert sentence.startswith("peak knee extension moment, 3 steps: median 0.")
+    assert says(sentence, "knee extension moment", "3 steps", "median 0.")
 
 
 def test_a_picture_is_drawn(found, tmp_path):

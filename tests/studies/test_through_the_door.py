@@ -61,8 +61,8 @@ def imported(path: Path) -> set[tuple[str, str]]:
 def test_studies_import_from_the_door_alone_but_for_those_named_with_their_reason():
     deeper = {name for name, path in STUDIES.items() if not all(_open_to(name, module) for module, _ in imported(path))}
     named = {name for names in INSIDE.values() for name in names}
-    assert deeper - named == set(), "does the door have what it needs? If not: name it above, with its reason"
-    assert named - deeper == set(), "goes through the door by now: take it from INSIDE"
+    assert deeper - named == set()  # does the door have what it needs? If not: name it above, with its reason
+    assert named - deeper == set()  # goes through the door by now: take it from INSIDE
 
 
 def _open_to(study: str, module: str) -> bool:
@@ -80,4 +80,4 @@ def test_studies_are_short_and_the_long_ones_do_not_grow():
     lines = {name: len(re.findall("\n", path.read_text(encoding="utf-8"))) for name, path in STUDIES.items()}
     grown = {name: count for name, count in lines.items() if count > LONG.get(name, MOST_LINES)}
     assert grown == {}
-    assert {name for name in LONG if lines.get(name, 0) <= MOST_LINES} == set(), "short by now: take it from LONG"
+    assert {name for name in LONG if lines.get(name, 0) <= MOST_LINES} == set()  # short by now: take it from LONG
