@@ -239,6 +239,7 @@ def test_what_is_made_of_a_run_holds_none_of_them(study):
     assert found_in(study) == {}
 
 
+@pytest.mark.usefixtures("painted")
 def test_a_comparison_holds_none_of_them(study, recordings, tmp_path):
     for what in (
         [study, "--participant", "P01"],

@@ -102,12 +102,12 @@ def words_of_code(source: str) -> list[str]:
     """Private words in names, comments and docstrings, each once and in its line."""
     body = ast.walk(ast.parse(source))
     kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    texts = [ast.get_docstring(node) or "" for node in body if isinstance(node, kinds)]
+    texts = {ast.get_docstring(node) or "" for node in body if isinstance(node, kinds)}
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         if token.type == tokenize.COMMENT:
-            texts.append(token.string)
+            texts.add(token.string)
         elif token.type == tokenize.NAME:
-            texts.append(re.sub(r"_|(?<=[a-z])(?=[A-Z])", " ", token.string))
+            texts.add(re.sub(r"_|(?<=[a-z])(?=[A-Z])", " ", token.string))
     return sorted(
         {found.group().lower() for text in texts for found in PRIVATE_IN_CODE.finditer(without_allowed(text))}
     )

@@ -1,6 +1,7 @@
 """Each verdict on a mass on a spring in which one thing was hidden; the answers are those that were hidden."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.simulation.writing import simulation_text
 
 SEED = 3
+slow = partial(pytest.param, marks=pytest.mark.slow)  # what differs from a quick one in a number, a sign or a name
 KNEE = """
 title = "A knee that swings"
 [states.theta]
@@ -49,6 +51,9 @@ MISSING = {
 }
 
 
+QUICK = {"cubic_stiffness", "coulomb_friction", "one_sided_spring", "periodic_forcing"}  # one of each form
+
+
 def _found(truth, how=None, shapes=(), nominal=None, seed=SEED):
     return discover(nominal or mass(), record(truth, seed, how), shapes)
 
@@ -57,7 +62,7 @@ def _named(discovery):
     return discovery.verdict, [(one.name, one.place) for one in discovery.effects]
 
 
-@pytest.mark.parametrize("name", MISSING)
+@pytest.mark.parametrize("name", [*sorted(QUICK), *map(slow, sorted(MISSING.keys() - QUICK))])
 def test_a_missing_term_is_named_with_its_numbers(name):
     term, numbers = MISSING[name]
     discovery, augmented = _found(with_load(term))
@@ -77,11 +82,11 @@ def test_a_missing_term_is_named_with_its_numbers(name):
     ("truth", "how", "verdict", "name", "place", "value"),
     [
         (mass().with_values({"k": 27.0}), None, "wrong_parameter", "wrong_parameter", "k", 27.0),
-        (mass().with_values({"c": 1.6}), None, "wrong_parameter", "wrong_parameter", "c", 1.6),
+        slow(mass().with_values({"c": 1.6}), None, "wrong_parameter", "wrong_parameter", "c", 1.6),
         (mass(), Experiment(late=4), "input_error", "input_delay", "push", 0.08),
-        (mass(), Experiment(late=-4), "input_error", "input_delay", "push", -0.08),
+        slow(mass(), Experiment(late=-4), "input_error", "input_delay", "push", -0.08),
         (mass().with_observation("x", "x + 0.02*t"), None, "sensor_error", "sensor_drift", "x", 0.02),
-        (mass(), Experiment(shaking=6.0), "process_noise", "process_noise", "load", 6.0),
+        slow(mass(), Experiment(shaking=6.0), "process_noise", "process_noise", "load", 6.0),
     ],
     ids=["stiffness", "damping", "late input", "early input", "drift", "shaken"],
 )
@@ -103,7 +108,7 @@ def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place
             "load",
             {"stiffness": 25.0, "yield": 0.25},
         ),
-        (
+        slow(
             remembering("v - z/0.4", "-18*z"),
             "missing_physics",
             "series_elasticity",
@@ -111,14 +116,14 @@ def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place
             {"stiffness": 18.0, "relaxation": 0.4},
         ),
         (lagging(0.15), "input_error", "input_lag", "push", {"time_constant": 0.15}),
-        (
+        slow(
             with_load("-9*max(0, x - 0.1)*v"),
             "missing_physics",
             "contact_damper",
             "load",
             {"damping": 9.0, "engagement": 0.1},
         ),
-        (
+        slow(
             with_load("-0.6*(max(0, push - 6) + min(0, push + 6))"),
             "missing_physics",
             "input_saturation",
@@ -160,7 +165,7 @@ def test_a_sensor_and_an_input_that_a_linear_system_cannot_tell_apart_are_both_g
 
 
 @pytest.mark.parametrize("cutoff_hz", [0.0, 6.0], ids=["white", "coloured"])
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, slow(1)])
 def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
     discovery, augmented = _found(mass(), Experiment(cutoff_hz=cutoff_hz), seed=seed)
     assert _named(discovery) == ("no_gap", [])
@@ -168,8 +173,9 @@ def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
     assert discovery.held_out.before == discovery.held_out.after
 
 
-@pytest.mark.parametrize("noise", [0.0, 1e-7])
-@pytest.mark.parametrize("term", ["0", "-1e-4*x**3"])
+@pytest.mark.parametrize(
+    ("term", "noise"), [("0", 0.0), ("-1e-4*x**3", 1e-7), slow("0", 1e-7), slow("-1e-4*x**3", 0.0)]
+)
 def test_what_integration_may_leave_is_not_named(term, noise):
     discovery, _ = _found(with_load(term), Experiment(noise=noise))
     assert _named(discovery) == ("no_gap", [])
