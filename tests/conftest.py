@@ -35,16 +35,12 @@ class _LastingReader(reader_process.ReaderProcess):
 @pytest.fixture(scope="session", autouse=True)
 def one_reader_for_all_files():
     """To start a process takes longer than to read most files; whoever puts another program in it starts it anew."""
-    program, lasting = reader_process.WORKER, _LastingReader()
+    program, started, lasting = reader_process.WORKER, reader_process.ReaderProcess, _LastingReader()
     with pytest.MonkeyPatch.context() as patch:
         for module in (array_file, c3d, hdf5):
-            patch.setattr(
-                module,
-                "ReaderProcess",
-                lambda: lasting if program == reader_process.WORKER else reader_process.ReaderProcess(),
-            )
+            patch.setattr(module, "ReaderProcess", lambda: lasting if program == reader_process.WORKER else started())
         yield
-    reader_process.ReaderProcess.close(lasting)
+    started.close(lasting)
 
 
 @pytest.fixture(scope="session")

@@ -101,14 +101,8 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
     phase = np.broadcast_to((time % 1.0)[None, :, None], (2, len(time), 1))
     drive = replace(measured.drive, inputs=np.concatenate([measured.drive.inputs, phase], axis=2))
     problem = set_up_problem(stride, replace(measured, drive=drive))
-    pulse = Candidate(
-        "missing_physics",
-        "port",
-        "load",
-        "pulse",
-        (f"exp(-(({seen} - _c)/_w)**2)",),
-        {"c": "phases", "w": "phase widths"},
-    )
+    grids = {"c": "phases", "w": "phase widths"}
+    pulse = Candidate("missing_physics", "port", "load", "pulse", (f"exp(-(({seen} - _c)/_w)**2)",), grids)
     half = 0.1 * np.sqrt(np.log(2))
     begin, end = phase_of(problem, problem.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
     assert (begin, end) == pytest.approx((centre - half, centre + half), abs=0.03)

@@ -13,17 +13,8 @@ from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSiz
 from gaitdisc.simulation.simulation_file import bundled
 
 SHAPE = next(one for one in known_shapes() if one.name == "one_sided_spring")
-ENGAGED = Candidate(
-    "missing_physics",
-    "port",
-    "ankle_moment",
-    "one_sided_spring",
-    ("max(0, theta - _x0)",),
-    {"x0": "quantiles of x"},
-    "theta",
-    SHAPE.means,
-    names=SHAPE.names,
-)
+WHERE = ("missing_physics", "port", "ankle_moment", "one_sided_spring", ("max(0, theta - _x0)",))
+ENGAGED = Candidate(*WHERE, {"x0": "quantiles of x"}, "theta", SHAPE.means, names=SHAPE.names)
 SHOWN = " With it, the held-out error falls from 3.09 to 0.60 deg (noise floor 0.50)."
 
 

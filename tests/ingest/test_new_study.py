@@ -209,13 +209,9 @@ def test_a_draft_keeps_no_samples(tmp_path):
 
 def test_one_name_in_two_groups_is_two_people(tmp_path):
     raw = tmp_path / "raw"
-    for file in (
-        "controls/Smith/walk.mot",
-        "patients/Smith/walk.mot",
-        "controls/S07_walk.mot",
-        "patients/S07_walk.mot",
-    ):
-        _walk(raw / file)
+    for group in ("controls", "patients"):
+        _walk(raw / group / "Smith" / "walk.mot")
+        _walk(raw / group / "S07_walk.mot")
     (raw / "participants.tsv").write_text("participant_id\tweight\nSmith\t61.3\n")
     study, notes = found_study(raw, tmp_path / "study")
     found = {one.trials[0].files[0].removeprefix("../raw/"): one for one in study.participants}
