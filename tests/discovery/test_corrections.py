@@ -6,8 +6,8 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 from texts import says
 
+from gaitdisc.discovery.answer import corrected, file_bounds
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.corrections import corrected, file_bounds
 from gaitdisc.discovery.discover import discover
 from gaitdisc.results.discovery import Correction, Estimate
 from gaitdisc.simulation.parts import Parameter

@@ -9,8 +9,9 @@ from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two
 from made_simulation import system
 from texts import says
 
-from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.catalogue import Asked, Shape
 from gaitdisc.discovery.discover import discover, refuse_blow_up
+from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
@@ -56,7 +57,7 @@ QUICK = {"cubic_stiffness", "coulomb_friction", "one_sided_spring", "periodic_fo
 
 
 def _found(truth, how=None, shapes=(), nominal=None, seed=SEED):
-    return discover(nominal or mass(), record(truth, seed, how), shapes)
+    return discover(nominal or mass(), record(truth, seed, how), Asked(shapes))
 
 
 def _named(discovery):
@@ -294,3 +295,43 @@ def test_where_it_blows_up_and_what_drives_it_is_told(short):
     wild = mass().with_effect(Term("load", "port", "wild", "k*exp(300*abs(x))"))
     with pytest.raises(SimulationError, match=r"trial.*t =.*'v'.*'k'"):
         refuse_blow_up(wild, short)
+
+
+def test_effects_that_are_given_are_fitted_and_nothing_is_searched():
+    """The true one is borne out; one that is not there is said to be idle beside it."""
+    measured = record(with_load("-14*x**3"), SEED)
+    discovery, augmented = discover(mass(), measured, Asked(effects=("cubic_stiffness@load", "constant_load@load")))
+    assert _named(discovery)[1] == [("cubic_stiffness", "load"), ("constant_load", "load")]
+    assert [one.small for one in discovery.effects] == [False, True]
+    assert discovery.given == "proven"
+    assert says(discovery.sentence, "given", "without constant load at the load port")
+    assert discovery.effects[0].estimates["stiffness"].value == pytest.approx(14.0, rel=0.05)
+    assert [one.name for one in augmented.effects] == ["cubic_stiffness", "constant_load"]
+
+
+def test_a_given_effect_that_is_not_there_is_refuted():
+    discovery, _ = discover(mass(), record(mass(), SEED), Asked(effects=("coulomb_friction@load",)))
+    assert discovery.given == "refuted"
+    assert says(discovery.sentence, "do not bear it out", "p = ")
+
+
+def test_a_given_effect_that_does_not_exist_is_refused_with_the_nearest():
+    with pytest.raises(SchemaError) as refused:
+        discover(mass(), record(mass(), SEED), Asked(effects=("cubic_stifness@load",)))
+    assert says(str(refused.value), "'cubic_stifness@load'", "cubic_stiffness@load")
+
+
+def test_accounts_are_of_the_whole_gap_and_what_was_named_comes_first():
+    discovery, _ = _found(with_load("-14*x**3"))
+    first, *others = discovery.accounts
+    assert first.asked_as == "cubic_stiffness@load"
+    assert others
+    assert first.held_out is not None
+    assert all(one.held_out.after > first.held_out.after for one in others)
+    assert discovery.held_out.of == "trial 4"
+
+
+def test_a_term_goes_before_the_random_pushes_beside_it():
+    discovery, _ = _found(with_load("-1.5*sign(v)"), Experiment(shaking=3.0))
+    assert _named(discovery) == ("missing_physics", [("coulomb_friction", "load")])
+    assert discovery.effects[0].estimates["friction"].value == pytest.approx(1.5, rel=0.2)
