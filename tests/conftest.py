@@ -34,11 +34,16 @@ class _LastingReader(reader_process.ReaderProcess):
 
 @pytest.fixture(scope="session", autouse=True)
 def one_reader_for_all_files():
-    """To start a process takes longer than to read most files; whoever puts another program in it starts it anew."""
-    program, started, lasting = reader_process.WORKER, reader_process.ReaderProcess, _LastingReader()
+    """To start a process takes longer than to read most files; another program or folder gets its own."""
+    started, lasting = reader_process.ReaderProcess, _LastingReader()
+    usual = reader_process.WORKER, Path.cwd()
+
+    def given():
+        return lasting if usual == (reader_process.WORKER, Path.cwd()) else started()
+
     with pytest.MonkeyPatch.context() as patch:
         for module in (array_file, c3d, hdf5):
-            patch.setattr(module, "ReaderProcess", lambda: lasting if program == reader_process.WORKER else started())
+            patch.setattr(module, "ReaderProcess", given)
         yield
     started.close(lasting)
 

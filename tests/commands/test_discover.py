@@ -91,7 +91,7 @@ def refusal(lab, *words):
     return str(done.exception)
 
 
-def test_the_sentence_the_files_and_the_report(lab, tmp_path):
+def test_the_sentence_the_files_and_the_report(lab, tmp_path, unpainted):
     words = [str(lab / "good.toml"), str(lab / "good.csv"), "--out", str(tmp_path)]
     done = CliRunner().invoke(app, ["discover", *words])
     assert done.exit_code == 0, done.output

@@ -1,21 +1,13 @@
-import importlib.util
-import sys
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pandas as pd
 import pytest
 from texts import says
 
-STUDIES = Path(__file__).parents[2] / "studies"
-
 
 def loaded(name):
-    spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module(name)
 
 
 @pytest.fixture(scope="module")

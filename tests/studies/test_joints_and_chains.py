@@ -1,19 +1,12 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-PROJECT = Path(__file__).parents[2]
-
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("joints_and_chains", PROJECT / "studies" / "joints_and_chains.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("joints_and_chains")
 
 
 def test_what_is_hidden_changes_every_system_s_motion(study):

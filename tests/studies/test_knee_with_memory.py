@@ -1,19 +1,12 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-PROJECT = Path(__file__).parents[2]
-
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("knee_with_memory", PROJECT / "studies" / "knee_with_memory.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("knee_with_memory")
 
 
 def test_what_is_hidden_changes_the_leg_s_motion_and_nothing_hides_nothing(study):

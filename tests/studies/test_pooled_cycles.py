@@ -1,18 +1,12 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-STUDIES = Path(__file__).parents[2] / "studies"
-
 
 @pytest.fixture(scope="module")
 def pooled_cycles():
-    spec = importlib.util.spec_from_file_location("pooled_cycles", STUDIES / "pooled_cycles.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("pooled_cycles")
 
 
 def test_events_of_one_person_found_without_the_file_s_own(pooled_cycles, gait_data):

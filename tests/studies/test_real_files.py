@@ -1,18 +1,17 @@
-import importlib.util
+import importlib
 import re
-from pathlib import Path
 
 import pytest
 from texts import says
 
-STUDIES = Path(__file__).parents[2] / "studies"
+# By default the rooms read these files: tests/ingest/test_c3d.py and test_reading.py, tests/signals/test_emg.py and
+# test_contact_movement.py, tests/processing/test_side_checks.py.
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
 def rows(gait_data):
-    spec = importlib.util.spec_from_file_location("real_files", STUDIES / "real_files.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = importlib.import_module("real_files")
     return {promise: (recordings, words) for recordings, promise, words in module.run(gait_data)}
 
 
