@@ -21,13 +21,10 @@ GIVEN = report_line(__name__, __doc__, "ch3_burgers")  # before the slow imports
 import numpy as np
 from chapter3.augmented_run import with_learned_rates
 from chapter3.burgers import burgers, local_cell, places, recorded_field
-from chapter3.cell import NOISES, cell_of, learned_model
-from chapter3.discrepancy_cell import DiscrepancyCell
-from chapter3.error_signal import APPROACHES
+from chapter3.cell import NOISES, DiscrepancyCell, cell_of, learned_model
 from chapter3.methods import Method, MethodSettings
-from chapter3.pages import field_figure, grid_table, statements_table
-from chapter3.record import Conditions, Record, recorded
-from chapter3.report import Result, written
+from chapter3.pages import Result, field_figure, grid_table, statements_table, written
+from chapter3.record import APPROACHES, Conditions, Record, recorded
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

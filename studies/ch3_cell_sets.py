@@ -7,10 +7,8 @@ from dataclasses import dataclass, replace
 import ch3_lorenz
 import ch3_measurement_bias
 import ch3_van_der_pol
-from chapter3.error_signal import Approach
 from chapter3.methods import Method, MethodSettings
-from chapter3.record import Conditions
-from chapter3.system import System
+from chapter3.record import Approach, Conditions, System
 
 SEEDS = 12
 

@@ -16,13 +16,10 @@ GIVEN = report_line(__name__, __doc__, "ch3_lorenz")  # before the slow imports
 
 import numpy as np
 import pandas as pd
-from chapter3.cell import ALL_METHODS, NOISES, grid
-from chapter3.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
-from chapter3.error_signal import APPROACHES
+from chapter3.cell import ALL_METHODS, FORECAST, NOISES, ORACLE, PART_WORDS, grid
 from chapter3.kept_cells import LYAPUNOV_PER_S
-from chapter3.record import Conditions
-from chapter3.report import Cells, Result, blocks_of, written
-from chapter3.system import System, system_of
+from chapter3.pages import Cells, Result, blocks_of, written
+from chapter3.record import APPROACHES, Conditions, System, system_of
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

@@ -18,11 +18,9 @@ GIVEN = report_line(__name__, __doc__, "ch3_measurement_bias")  # before the slo
 import numpy as np
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.methods import MethodSettings
-from chapter3.pages import statements_table
-from chapter3.record import Conditions, Record, recorded
-from chapter3.report import Result, blocks_of, written
+from chapter3.pages import Result, blocks_of, statements_table, written
+from chapter3.record import Conditions, Record, System, recorded, system_of
 from chapter3.starts import Uncertainty, unscented_kalman
-from chapter3.system import System, system_of
 from numpy.typing import NDArray
 
 import gaitdisc as gd

@@ -33,8 +33,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 from ch3_cell_sets import CellSet, cell_sets, chosen_sets
-from chapter3.cell import cell_of
-from chapter3.discrepancy_cell import METHODS, DiscrepancyCell
+from chapter3.cell import METHODS, DiscrepancyCell, cell_of
 from chapter3.kept_cells import CELLS, measured, sets_tables
 from chapter3.methods import Method
 from chapter3.recommend import FOUND, evidence_of

@@ -19,7 +19,7 @@ GIVEN = command_line(
 
 import numpy as np
 import pandas as pd
-from chapter3.discrepancy_cell import FORECAST, ORACLE
+from chapter3.cell import FORECAST, ORACLE
 from chapter3.kept_cells import (
     NUMBERS,
     START_WORDS,

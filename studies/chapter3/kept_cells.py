@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from markdown_table import markdown_table
 
-from .discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
+from .cell import FORECAST, ORACLE, RECONSTRUCTION
 from .pages import METHOD_WORDS, spread_words
 from .recommend import FOUND, STARTS, WANTS, recommend
 

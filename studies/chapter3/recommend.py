@@ -12,7 +12,7 @@ import pandas as pd
 
 from gaitdisc.errors import SchemaError
 
-from .discrepancy_cell import FORECAST, ORACLE, DiscrepancyCell, cells_table
+from .cell import FORECAST, ORACLE, DiscrepancyCell, cells_table
 from .dmd import DELAYS, RANK
 from .methods import OF_TIME
 

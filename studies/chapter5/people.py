@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from chapter3.record import rk4_step
 from chapter3.sindy import fit_sindy
-from chapter3.system import rk4_step
 from further import Number
 from numpy.typing import NDArray
 
