@@ -40,9 +40,8 @@ def systems() -> dict[str, System]:
 
 def score(part: PartAccuracy, system: str) -> float:
     """What a forecast is compared with."""
-    if system == "Lorenz":
-        return LYAPUNOV_PER_S * part.valid_s("augmented")
-    return float(np.median(part.accuracy()))
+    chaotic = system == "Lorenz"
+    return LYAPUNOV_PER_S * part.valid_s("augmented") if chaotic else float(np.median(part.accuracy()))
 
 
 def numbers(tables: list[str]) -> Iterator[Number]:
@@ -51,8 +50,8 @@ def numbers(tables: list[str]) -> Iterator[Number]:
         for noise in NOISES:
             if "methods" in tables:
                 for method in ("sindy", "esindy", "wsindy", "dmd", "exactdmd", "gp", "gpm"):
-                    computed = partial(of_method, system, name, noise, method)
-                    yield Number("methods", METHOD_WORDS[method], name, noise, computed)
+                    made = partial(of_method, system, name, noise, method)
+                    yield Number("methods", METHOD_WORDS[method], name, noise, made)
             if "variance" in tables:
                 yield Number("variance", "Gaussian process", name, noise, partial(of_variance, system, noise))
         if "noise" in tables:

@@ -34,14 +34,10 @@ FIGURES = {
 STATED = (
     ("Fig. 3.7", "dynamics: SINDy, GPR and NN without error for the first five seconds; DMD fails", "dynamics", 0.0),
     ("Fig. 3.10", "dynamics: little is left of it over the whole forecast (0.1 %)", "dynamics", 0.001),
-    (
-        "Fig. 3.8",
-        "state: SINDy and DMD change nothing; GPR and NN reduce the error, none recovers the truth",
-        "state",
-        0.0,
-    ),
+    ("Fig. 3.8", "state: SINDy and DMD change nothing; GPR and NN reduce the error, none recovers the truth",
+     "state", 0.0),
     ("section 3.5", "dt 0.001: almost perfect over short times", "dynamics", 0.0),
-)
+)  # fmt: skip
 
 
 def system() -> System:

@@ -54,9 +54,8 @@ def run(quick: bool = False, folder: Path = Path("ch3_measurement_bias")) -> Res
         for noise in noises:
             for seed in seeds if noise else seeds[:1]:
                 record = recorded(system, Conditions(noise, seed, duration_s=20.0))
-                rows.append(
-                    ("3.4.4", f"{variant}, {noise:.1%} noise, seed {seed}: filters do as well", filters(record))
-                )
+                what = f"{variant}, {noise:.1%} noise, seed {seed}: filters do as well"
+                rows.append(("3.4.4", what, filters(record)))
     neutral = Block("kalman", "The neutral result", (), tables=(statements_table(rows, "kalman"),))
     stated, *others = blocks_of(cells, FIGURES, STATED)
     return written(cells, [stated, neutral, *others], "Measurement bias, section 3.4.4", folder)

@@ -92,7 +92,16 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
     numbers = []
     for row, cell in zip(grid, cells, strict=True):
         for axes, part in zip(row, PARTS, strict=True):
-            numbers.append(_error_lines(axes, cell, part, channel))
+            found = cell.parts[part]
+            some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
+            table = pd.DataFrame({"method": cell.method, "part": part, "t_s": found.begins_s + found.time[some]})
+            for model, look in (("known", KNOWN), ("augmented", AUGMENTED)):
+                table[model] = (found.truth - getattr(found, model))[some, channel]
+                axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
+            when = "" if found.diverged_s is None else f"\ndiverged at t = {found.begins_s + found.diverged_s:.2f} s"
+            axes.set_title(f"{METHOD_WORDS[cell.method]}: {PART_WORDS[part]}{when}")
+            axes.set_xlim(found.begins_s, found.begins_s + found.time[-1])
+            numbers.append(table)
         row[0].set_ylabel(f"error of {cell.channels[channel]} [{_unit(cell, channel)}]")
     for axes in grid[-1]:
         axes.set_xlabel("time in the record [s]")
@@ -103,19 +112,6 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
         f"approach: {cells[0].approach}; variant: {cells[0].variant}; noise {cells[0].noise:g}."
     )
     return Figure(name, caption, f"Error curves of {len(cells)} methods over time", pd.concat(numbers), drawn)
-
-
-def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> pd.DataFrame:
-    found = cell.parts[part]
-    some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
-    table = pd.DataFrame({"method": cell.method, "part": part, "t_s": found.begins_s + found.time[some]})
-    for model, look in (("known", KNOWN), ("augmented", AUGMENTED)):
-        table[model] = (found.truth - getattr(found, model))[some, channel]
-        axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
-    diverged = "" if found.diverged_s is None else f"\ndiverged at t = {found.begins_s + found.diverged_s:.2f} s"
-    axes.set_title(f"{METHOD_WORDS[cell.method]}: {PART_WORDS[part]}{diverged}")
-    axes.set_xlim(found.begins_s, found.begins_s + found.time[-1])
-    return table
 
 
 def _unit(cell: DiscrepancyCell, channel: int) -> str:
@@ -333,12 +329,9 @@ def spread_words(values: NDArray[np.float64]) -> str:
     """Median, and least and greatest where there are several."""
     if not np.isfinite(values).all():
         return "nothing to mend"
-    middle = _percent(float(np.median(values)))
-    return middle if len(values) == 1 else f"{middle} [{_percent(values.min())}, {_percent(values.max())}]"
-
-
-def _percent(value: float) -> str:
-    return f"{value:.1f}" if value >= WORST_SAID else f"below {WORST_SAID:.0f}"
+    three = (float(np.median(values)), values.min(), values.max())
+    middle, low, high = (f"{one:.1f}" if one >= WORST_SAID else f"below {WORST_SAID:.0f}" for one in three)
+    return middle if len(values) == 1 else f"{middle} [{low}, {high}]"
 
 
 def _median(values: list[float], form: str) -> str:

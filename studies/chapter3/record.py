@@ -50,8 +50,7 @@ class KnownRates:
 
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
         """States (start, steps + 1, state) from many starts; NaN from where one diverged."""
-        drive = Drive.of([np.empty((steps + 1, 0))], 1.0 / dt_s)
-        none = np.zeros(len(starts), int)
+        drive, none = Drive.of([np.empty((steps + 1, 0))], 1.0 / dt_s), np.zeros(len(starts), int)
         rows = Rows(none, none, np.asarray(starts, float))
         return self.compiled.run(drive, rows, steps, substeps=max(1, round(dt_s / STEP_S)))[0]
 
@@ -99,12 +98,11 @@ def system_of(
     known: Simulation, hidden: Term | None = None, start: tuple[float, ...] = (), gain: tuple[float, ...] = ()
 ) -> System:
     """System of a simulation file and the effect that is hidden from it."""
-    states = tuple(state.name for state in known.states)
-    true = known.with_effect(hidden) if hidden else known
-    first = start or tuple(float(state.initial or 0.0) for state in known.states)
-    observation = np.eye(len(states)) if not gain else np.diag([*gain, *[0.0] * (len(states) - len(gain))])[: len(gain)]
-    units = tuple(state.unit for state in known.states)
-    return System(known.title, states, KnownRates(known), KnownRates(true), np.array(first), observation, None, units)
+    states, units = zip(*((state.name, state.unit) for state in known.states), strict=True)
+    true = KnownRates(known.with_effect(hidden) if hidden else known)
+    first = np.array(start or [float(state.initial or 0.0) for state in known.states])
+    observation = np.eye(len(states))[: len(gain) or None] * (np.array(gain)[:, None] if gain else 1.0)
+    return System(known.title, states, KnownRates(known), true, first, observation, None, units)
 
 
 @dataclass(frozen=True)
@@ -205,8 +203,8 @@ class Conditions:
     noise: float = 0.0  # standard deviation of the noise, as a share of each channel's own, or in its unit
     seed: int = 0
     absolute: bool = False  # the noise is in each channel's unit, as in the published code
-    dt_s: float = 0.01  # between samples, and of the record [s]
-    duration_s: float = 50.0  # between samples, and of the record [s]
+    dt_s: float = 0.01  # between samples [s]
+    duration_s: float = 50.0  # of the record [s]
     train_share: float = 0.6  # share of the record that is learned from
     # as the published code: 4 Hz filter where there is noise, central differences, each forecast starts from the last
     # measured sample, and the truth that it is compared with is run again from there. Otherwise: a cut-off where the
@@ -258,11 +256,9 @@ class Record:
                 "Change sacrificed_s.",
             )
         part = slice(self.split - 1, last)
-        measured = self.measured[part]
+        measured, time = self.measured[part], self.time[part] - self.time[self.split - 1]
         filtered = smoothed(measured, 1.0 / made.dt_s) if made.noise else measured
-        system = replace(self.system, assumed=start)
-        time = self.time[part] - self.time[self.split - 1]
-        return Record(system, made, time, self.truth[part], measured, filtered, count)
+        return Record(replace(self.system, assumed=start), made, time, self.truth[part], measured, filtered, count)
 
 
 def recorded(system: System, conditions: Conditions) -> Record:
@@ -278,9 +274,8 @@ def recorded(system: System, conditions: Conditions) -> Record:
     truth = system.true.run(system.start[None], conditions.dt_s, steps)[0]
     if not np.isfinite(truth).all():
         when = conditions.dt_s * int(np.argmin(np.isfinite(truth).all(axis=1)))
-        raise SamplingError(
-            "a true trajectory stays finite", f"{system.name!r} leaves every bound at {when:g} s", "Change its start."
-        )
+        left = f"{system.name!r} leaves every bound at {when:g} s"
+        raise SamplingError("a true trajectory stays finite", left, "Change its start.")
     clean = truth @ system.observation.T
     size = conditions.noise * (np.ones(clean.shape[1]) if conditions.absolute else clean.std(axis=0))
     rng = np.random.default_rng(conditions.seed)
@@ -289,19 +284,12 @@ def recorded(system: System, conditions: Conditions) -> Record:
     training = measured[:split]
     if conditions.noise:
         training = smoothed(training, 1.0 / conditions.dt_s, 4.0 if conditions.published else None)
-    others = _from_other_starts(system, conditions, truth)
-    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split, others)
-
-
-def _from_other_starts(system: System, conditions: Conditions, truth: NDArray[np.float64]) -> tuple[Record, ...]:
-    """Further records, their starts drawn evenly from where the first one went, one after the other."""
-    low, high = truth.min(axis=0), truth.max(axis=0)
-    found = []
-    for number in range(1, conditions.trajectories):
-        start = np.random.default_rng([STARTS_SEED, number]).uniform(low, high)
+    others = []
+    for number in range(1, conditions.trajectories):  # from starts drawn evenly from where this one went
+        start = np.random.default_rng([STARTS_SEED, number]).uniform(truth.min(axis=0), truth.max(axis=0))
         seed = conditions.seed + OTHER_NOISE * number
-        found.append(recorded(replace(system, start=start), replace(conditions, seed=seed, trajectories=1)))
-    return tuple(found)
+        others.append(recorded(replace(system, start=start), replace(conditions, seed=seed, trajectories=1)))
+    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split, tuple(others))
 
 
 Approach = Literal["dynamics", "state"]
@@ -313,15 +301,15 @@ FLOW_STEPS = 8  # of Runge-Kutta, between two samples
 
 def error_samples(record: Record, approach: Approach, of_time: bool = False) -> Samples:
     """Samples of an error signal, that any method is fitted to."""
-    x, y, first, last = _dynamics(record) if approach == "dynamics" else _state(record)
-    time = record.time[first : first + len(y)][: last - first]
+    x, y, first = _dynamics(record) if approach == "dynamics" else _state(record)
+    time = record.time[first : first + len(y)]
     inputs = (TIME,) if of_time else record.system.states
     outputs = record.system.states if approach == "dynamics" else record.system.channels
     return Samples(time[:, None] if of_time else x, y, inputs, outputs, time, np.full(len(time), np.nan))
 
 
-def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int, int]:
-    """Return states, error, first and last sample."""
+def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """Return states, error, and the first sample."""
     system, made = record.system, record.conditions
     if len(system.channels) < len(system.states):
         raise ShapeError(
@@ -331,11 +319,11 @@ def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64],
         )
     y = np.asarray(record.filtered)
     if made.published:
-        return y, np.gradient(y, made.dt_s, axis=0) - system.known(y), 0, len(y)
+        return y, np.gradient(y, made.dt_s, axis=0) - system.known(y), 0
     edge = edge_samples(1.0 / made.dt_s) if made.noise else 0
     inner = slice(edge + 1, len(y) - edge - 1)
     error = flow_error(system.known, y, made.dt_s)[inner.start - 1 : inner.stop - 1]
-    return y[inner], error, inner.start, inner.stop
+    return y[inner], error, inner.start
 
 
 def one_after_another(parts: Sequence[Samples]) -> Samples:
@@ -343,11 +331,9 @@ def one_after_another(parts: Sequence[Samples]) -> Samples:
     first, *others = parts
     if not others:
         return first
-    time, begins = [first.time], first.time[-1]
+    time = [first.time]
     for part in others:
-        begins = begins + SEAM_S
-        time.append(begins + part.time - part.time[0])
-        begins = time[-1][-1]
+        time.append(time[-1][-1] + SEAM_S + part.time - part.time[0])
     whole = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("x", "y", "phi")}
     return replace(first, time=np.concatenate(time), **whole)
 
@@ -358,9 +344,8 @@ def known_rates_samples(record: Record) -> Samples:
     The weak form of SINDy compares them with the states themselves. States are those that noise was filtered from: what
     noise squares and cubes of the states would add is no longer in the terms.
     """
-    states, _, first, last = _dynamics(record)
-    time = record.time[first:last]
-    names = record.system.states
+    states, _, first = _dynamics(record)
+    time, names = record.time[first : first + len(states)], record.system.states
     return Samples(states, record.system.known(states), names, names, time, np.full(len(time), np.nan))
 
 
@@ -383,8 +368,7 @@ def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[
     while a central difference has it in the *whole* rate, which for the Lorenz system at 0.01 s is larger than what is
     to be found.
     """
-    ahead = y[2:] - flow(known, y[1:-1], dt_s)
-    behind = y[:-2] - flow(known, y[1:-1], -dt_s)
+    ahead, behind = y[2:] - flow(known, y[1:-1], dt_s), y[:-2] - flow(known, y[1:-1], -dt_s)
     return (ahead - behind) / (2 * dt_s)
 
 
@@ -396,10 +380,10 @@ def flow(rates: Callable, x: NDArray[np.float64], dt_s: float, steps: int = FLOW
     return x
 
 
-def _state(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int, int]:
+def _state(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
     system, made = record.system, record.conditions
     run = system.known.run(record.start(forecast=False)[None], made.dt_s, record.split - 1)[0]
     seen = run[:, : len(system.channels)]
     # no derivative is taken, so no low-pass is needed: it would colour the noise, which every method takes for white
     y = record.filtered if made.published else record.measured[: record.split]
-    return run, y - seen, 0, len(run)
+    return run, y - seen, 0

@@ -136,7 +136,7 @@ def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None
 
 def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[str, ...]:
     """Names of what one window holds for each of its times."""
-    given = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
+    given = (*field.quantities, *(axis.name for axis in field.axes if positions))
     return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in given)
 
 
@@ -149,9 +149,7 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
             f"{field.source.file or 'the field'} has {len(field)}",
             "Take fewer lags, or a longer field.",
         )
-    readings = route.readings(field)
-    if positions:
-        readings = np.concatenate([readings, route.places(field)], axis=2)
+    readings = np.concatenate([route.readings(field), *([route.places(field)] if positions else [])], axis=2)
     readings = readings.reshape(len(field), -1)
     last = np.arange(lags.reach, len(field) - lags.ahead)
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
@@ -296,9 +294,8 @@ def latent_sizes(
     for nodes in sizes:
         build = partial(Shred, sensors=len(ready.what.sensors), nodes=nodes)
         model = train(ready.training, build, settings, check=ready.check).network
-        label = task.label(route.name, f"shred {nodes}")
-        left = float(1 - np.sum(ready.targets.modes.energies[:nodes]))
-        for cell in field_cells(field, ready, label, ready.targets.fields(model(ready.test.x), ready.test)):
+        left, label = float(1 - np.sum(ready.targets.modes.energies[:nodes])), task.label(route.name, f"shred {nodes}")
+        for cell in field_cells(field, ready, label, ready.reconstructed(lambda test, model=model: model(test.x))):
             rows.append((nodes, task.rule, cell.quantity, cell.relative_l2, cell.r2, left))
     return pd.DataFrame(rows, columns=pd.Index(list(COLUMNS)))
 
