@@ -4,8 +4,7 @@ import pytest
 from ch3_cell_sets import cell_sets
 from ch3_seeds import gathered, rows_of
 from ch3_tables import printed
-from chapter3.cell import cell_of
-from chapter3.discrepancy_cell import FORECAST, ORACLE, PARTS
+from chapter3.cell import FORECAST, ORACLE, PARTS, cell_of
 from chapter3.kept_cells import CELLS, measured, set_table
 from chapter3.recommend import FOUND, evidence_of
 from chapter3.record import recorded

@@ -1,9 +1,7 @@
 import numpy as np
 import pytest
-from chapter3.error_signal import error_samples, one_after_another, refined_samples
-from chapter3.record import Conditions, recorded
+from chapter3.record import Conditions, error_samples, one_after_another, recorded, refined_samples, system_of
 from chapter3.sindy import fit_sindy
-from chapter3.system import system_of
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.simulation.simulation_file import bundled

@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 from chapter3.cell import learned_model
 from chapter3.methods import MethodSettings
-from chapter3.record import Conditions, recorded
+from chapter3.record import Conditions, recorded, system_of
 from chapter3.starts import filtered_start
-from chapter3.system import system_of
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.simulation.simulation_file import bundled

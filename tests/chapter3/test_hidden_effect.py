@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from chapter3.methods import MethodSettings
 from chapter3.naming import HiddenEffect, method_answer
-from chapter3.record import Conditions, recorded
-from chapter3.system import system_of
+from chapter3.record import Conditions, recorded, system_of
 from texts import says
 
 from gaitdisc.simulation.simulation_file import bundled

@@ -1,7 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
-from chapter3.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
+from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy
 from chapter3.pages import (
     accuracy_figure,
     cost_figure,
