@@ -30,8 +30,8 @@ from scipy.stats import spearmanr
 from sensing_walks import Person, chosen_walks
 
 from gaitdisc.networks.trained_network import Ensemble
-from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.reconstructor import ENSEMBLE, fit_reconstructor
+from gaitdisc.sensing.state_errors import coverage, half_widths
 
 
 def main() -> None:

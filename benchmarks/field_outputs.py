@@ -41,8 +41,7 @@ from chapter5.reconstruct_field import FieldTask, prepare
 from chapter5.routes import fixed_at_random
 from chapter5.turbulence import FlowSettings, record_turbulence
 
-from gaitdisc.sensing.splits import RANDOM
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import RANDOM, Lags
 
 FLOW = FlowSettings(nodes=50, cut=50, snapshots=600, spin_up=800)
 LAGS = {"ours": Lags(13, 8), "text": Lags(100, 1)}

@@ -33,10 +33,10 @@ from numpy.typing import NDArray
 from sensing_walks import Person, chosen_walks
 
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.intervals import LEVEL, coverage, half_widths
 from gaitdisc.sensing.reconstruct import crossed_widths
 from gaitdisc.sensing.reconstructor import fit_reconstructor
-from gaitdisc.sensing.splits import PERSON_OUT, Parts, split_by_subject, split_within
+from gaitdisc.sensing.state_errors import LEVEL, coverage, half_widths
+from gaitdisc.sensing.windows import PERSON_OUT, Parts, split_by_subject, split_within
 
 
 def main() -> None:

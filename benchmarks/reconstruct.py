@@ -55,8 +55,7 @@ from torch.utils.data import DataLoader, TensorDataset
 from gaitdisc.networks.threads import pinned_threads
 from gaitdisc.recording import Samples
 from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
-from gaitdisc.sensing.splits import Parts, split_by_subject
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import Lags, Parts, split_by_subject
 
 EVERY_SAMPLE = Lags(100, 1)
 CHECK_EVERY, PATIENCE, WATCH = 20, 5, 5

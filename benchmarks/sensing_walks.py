@@ -14,9 +14,8 @@ from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Study
 from gaitdisc.recording import Samples
 from gaitdisc.sensing.reconstructor import Sensing, sensing
-from gaitdisc.sensing.splits import Parts, split_within
 from gaitdisc.sensing.state_errors import angle_columns
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import Lags, Parts, split_within
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
 from chapter5.gait import treadmill

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from gaitdisc.ingest.reading import read_trial as read
     from gaitdisc.ingest.writing import write_recording as write
     from gaitdisc.library import plot as plot
-    from gaitdisc.library.checking import check as check
     from gaitdisc.library.comparing import compare as compare
     from gaitdisc.library.discovering import discover as discover
     from gaitdisc.library.examples import example_files as example_files
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from gaitdisc.library.functions import simulation_from_function as simulation_from_function
     from gaitdisc.library.joints import angles as angles
     from gaitdisc.library.joints import moments as moments
+    from gaitdisc.library.loading import check as check
     from gaitdisc.library.loading import load as load
     from gaitdisc.library.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.library.response import fit_response as fit_response
@@ -64,7 +64,7 @@ _HOME = {
     "read": ("ingest.reading", "read_trial"),
     "write": ("ingest.writing", "write_recording"),
     "C3DReader": ("ingest.c3d", "C3DReader"),
-    "check": ("library.checking", "check"),
+    "check": ("library.loading", "check"),
     "example_files": ("library.examples", "example_files"),
     "example_walks": ("library.examples", "example_walks"),
     "Trial": ("recording.trial", "Trial"),

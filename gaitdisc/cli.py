@@ -1,6 +1,6 @@
 """The command line: which commands there are, in the order of the help. Each is a file of `gaitdisc/commands/`.
 
-Exit codes: `gaitdisc/commands/exit_codes.py`.
+Exit codes: `gaitdisc/commands/options.py`.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from typing import Annotated, Any
 import typer
 
 from gaitdisc._version import __version__
-from gaitdisc.commands.exit_codes import ENDED, REFUSED
-from gaitdisc.commands.options import Overwrite
+from gaitdisc.commands.options import ENDED, REFUSED, Overwrite
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.own_files import guarded
 

@@ -24,8 +24,8 @@ from ch4_ours import OURS
 from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.batch.ablate_study import ablate_study
 from gaitdisc.batch.demonstration import write_demonstration
+from gaitdisc.batch.vary_study import ablate_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.report.response_page import write_report

@@ -35,10 +35,9 @@ from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
 from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.sensing.calibration import calibrated, first_strides
-from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.reconstructor import ENSEMBLE, Sensing, fit_reconstructor
-from gaitdisc.sensing.splits import split_by_trial
-from gaitdisc.sensing.windows import stacked
+from gaitdisc.sensing.state_errors import coverage, half_widths
+from gaitdisc.sensing.windows import split_by_trial, stacked
 
 STRIDES, WEIGHT = 10, 10
 

@@ -42,8 +42,7 @@ from gaitdisc.sensing.reconstructor import (
     latent_states,
     leading,
 )
-from gaitdisc.sensing.splits import RANDOM, split_by_subject
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import RANDOM, Lags, split_by_subject
 
 MODES = "modes of the states"
 

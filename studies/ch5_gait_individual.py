@@ -28,7 +28,7 @@ from gaitdisc.ingest.study import Study
 from gaitdisc.report.page import Block, write_blocks
 from gaitdisc.report.table import save_table
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing
-from gaitdisc.sensing.splits import RANDOM, RULES
+from gaitdisc.sensing.windows import RANDOM, RULES
 
 SAGITTAL = "3 sagittal"
 QUICK_KINDS = ("linear", "delay ridge", "fourier ridge")

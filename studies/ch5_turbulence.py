@@ -41,8 +41,7 @@ from chapter5.routes import Route, fixed, fixed_at_random, random_walk
 from chapter5.turbulence import FlowSettings, record_turbulence
 
 from gaitdisc.report.page import Block
-from gaitdisc.sensing.splits import RANDOM
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import RANDOM, Lags
 
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100

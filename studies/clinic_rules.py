@@ -3,7 +3,7 @@
     python studies/clinic_rules.py [--controls N] [--people N] [--run FOLDER] [--quick]
 
 Made people walk 16 s on a treadmill; cycles are cut of them as of any recording. Controls make the reference. A stiff
-knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/batch/planted_gait.py); children of eight
+knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/batch/demonstration.py); children of eight
 walk as adults of their size would, and nothing is to be said of them.
 """
 
@@ -25,7 +25,7 @@ from pathlib import Path
 
 from gaitdisc import PooledCycles
 from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, made_walk, participant_of, person_of
-from gaitdisc.batch.planted_gait import FOUND_AS
+from gaitdisc.batch.demonstration import FOUND_AS
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import reference_of
 from gaitdisc.ingest.study import Conditions, PlannedTrial, Study

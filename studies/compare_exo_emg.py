@@ -24,7 +24,7 @@ from gaitdisc.comparison.compare import compare_people
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.mismatch_page import write_mismatch_report
 from gaitdisc.report.mismatch_sentences import mismatch_sentences
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 
 PEOPLE, FORCES = 8, 6  # the first six signals are ground forces
 HARD, EASY = "C6", "C1"

@@ -8,7 +8,7 @@ import pandas as pd
 from gaitdisc.channel import Channel
 from gaitdisc.clinic.reference import reference_of
 from gaitdisc.recording import PERCENT
-from gaitdisc.results.clinical_variables import PROFILE
+from gaitdisc.results.leg_curves import PROFILE
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.response_run import ResponseRun

@@ -13,7 +13,7 @@ from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app, main
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study

@@ -19,7 +19,7 @@ from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app, main
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study

@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from gaitdisc.batch.demonstration import FORCES, write_trial
-from gaitdisc.batch.planted_gait import planted
+from gaitdisc.batch.demonstration import FORCES, planted, write_trial
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import Person, drawn
 from gaitdisc.cohort.walk import walked
@@ -72,11 +71,7 @@ def made_walk(visit: Visit, seed: int) -> Trial:
 def write_week(
     folder: Path, controls: int = 20, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Study, Study, dict[str, str]]:
-    """Write two studies, `controls/` and `week/`, and apart from them what was planted.
-
-    returns controls, week: as written; they pass through the same reading as a laboratory's
-    returns planted: person and session -> what was planted, empty for the healthy
-    """
+    """Write `controls/` and `week/`, and apart from them what was planted by person and session, "" for the healthy."""
     visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
     own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
     truth = {f"{one.name} {one.session}".strip(): _words(one) for one in WEEK}

@@ -16,7 +16,7 @@ from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.results.mismatch import Mismatch, Smallest
-from gaitdisc.results.walk_summary import WalkSummary
+from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ
 
 
@@ -28,10 +28,7 @@ def compare_files(
     detector: str = "auto",
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
-    """Mismatch of two recordings, second minus first.
-
-    cutoff_hz: -3 dB frequency of one pass of the low-pass of angles and moments
-    """
+    """Mismatch of two recordings, second minus first; `cutoff_hz` [Hz]: -3 dB of one pass, angles and moments."""
     names = _names(first, second)
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
     trials = [

@@ -1,4 +1,4 @@
-"""The demonstration's study folder: the embedded cohort, written as a laboratory's files."""
+"""The embedded cohort as a laboratory's study folder, and gait planted into its walks for tests of the rules."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.cohort.marker_trial import overground, standing
@@ -26,6 +28,9 @@ LABORATORIES = ("angles", "markers", "overground")
 MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 FORCES = tuple(f"ground_force_{side}_v{axis}" for side in "rl" for axis in "xy")
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
+STIFF_ABOVE_DEG, STIFF_SHARE = 20.0, 0.5  # what the knee bends beyond this is halved: some 20 deg less in swing
+DROP_DEG, DROP_SMOOTH_S = 15.0, 0.03  # by which the foot hangs while it is off the ground
+LIFTED_N = 20.0
 
 
 def write_demonstration(
@@ -103,3 +108,42 @@ def write_marker_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]
     (folder / name).parent.mkdir(parents=True, exist_ok=True)
     write_c3d([stream for key, stream in trial.streams.items() if key != "kinematics"], folder / name, trial.surfaces)
     return (name,)
+
+
+def stiff_knee(trial: Trial, side: str) -> Trial:
+    """Same walk, the knee of one side bending less in swing."""
+    knee = f"knee_angle_{side}"
+
+    def bent(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.minimum(angle, STIFF_ABOVE_DEG + STIFF_SHARE * (angle - STIFF_ABOVE_DEG))
+
+    return _with_angle(trial, knee, bent)
+
+
+def drop_foot(trial: Trial, side: str) -> Trial:
+    """Same walk, the foot of one side hanging while it is off the ground."""
+    forces, kinematics = trial.stream("forces"), trial.stream("kinematics")
+    lifted = (forces[f"ground_force_{side}_vy"] < LIFTED_N).astype(float)
+    hanging = gaussian_filter1d(lifted, DROP_SMOOTH_S * forces.rate_hz)
+    lowered = DROP_DEG * np.interp(kinematics.time, forces.time, hanging)
+    return _with_angle(trial, f"ankle_angle_{side}", lambda angle: angle - lowered)
+
+
+PLANTED: dict[str, Callable[[Trial, str], Trial]] = {"stiff knee": stiff_knee, "drop foot": drop_foot}
+FOUND_AS = {"stiff knee": "knee flexion in swing", "drop foot": "dorsiflexion in swing"}  # rule that must speak
+
+
+def planted(trial: Trial, what: str, side: str) -> Trial:
+    """Walk with gait planted: `stiff knee`, `drop foot`; as it is for an empty word."""
+    if not what:
+        return trial
+    if what not in PLANTED:
+        raise SchemaError(f"what is planted is one of: {', '.join(PLANTED)}", f"found {what!r}", "Use one of these.")
+    return PLANTED[what](trial, side)
+
+
+def _with_angle(trial: Trial, name: str, change: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Trial:
+    kinematics = trial.stream("kinematics")
+    values = np.array(kinematics.values)
+    values[:, kinematics.index(name)] = change(kinematics[name])
+    return replace(trial, streams={**trial.streams, "kinematics": kinematics.with_values(values)})

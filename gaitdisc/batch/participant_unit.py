@@ -17,10 +17,9 @@ from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.walk import Walk
 from gaitdisc.results.kind import Kind
 from gaitdisc.results.participant_response import RESPONSE, ParticipantResponse
-from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.results.pooled_cycles import WALK, PooledCycles, WalkSummary
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.unit_folder import unit_name
-from gaitdisc.results.walk_summary import WALK, WalkSummary
 
 if TYPE_CHECKING:
     from gaitdisc.response.fit_response import ResponseSettings

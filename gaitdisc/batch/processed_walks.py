@@ -19,10 +19,7 @@ from gaitdisc.results.provenance import Refusal
 
 
 def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
-    """Both walks of a complete participant, by condition, and why one could not be processed, in public words.
-
-    participant: one who lacks a walk of a condition, or has several, is refused
-    """
+    """Both walks of a participant by condition, and why one could not be had, in public words; it needs one of each."""
     lacking = not_compared(study, participant)
     if lacking:
         return {}, (Refusal(participant.id, "", lacking),)

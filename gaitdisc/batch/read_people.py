@@ -5,11 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 
-from gaitdisc.clinic.contrast import contrast_of
-from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
-from gaitdisc.results.clinical_reference import ClinicalReference
+from gaitdisc.results.clinical_reference import ClinicalReading, ClinicalReference, Contrast, PersonSession
 from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.results.study_run import StudyRun
 

@@ -12,9 +12,9 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Recording
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.intervals import LEVEL, coverage
 from gaitdisc.sensing.model_folder import SensingModel, load_model
 from gaitdisc.sensing.reconstructor import Reconstructor
+from gaitdisc.sensing.state_errors import LEVEL, coverage
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 
 

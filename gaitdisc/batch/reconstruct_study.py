@@ -19,8 +19,7 @@ from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, fitting_device, sensing
 from gaitdisc.sensing.sensor_search import search_sensors
-from gaitdisc.sensing.splits import RULES, Parts, split_by_subject, split_by_trial, split_within
-from gaitdisc.sensing.windows import Lags, windows_of
+from gaitdisc.sensing.windows import RULES, Lags, Parts, split_by_subject, split_by_trial, split_within, windows_of
 
 SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
@@ -35,7 +34,7 @@ CALIBRATION_STRIDES = 10
 class ReconstructionSettings:
     """How a study is reconstructed."""
 
-    split: str = "temporal"  # a word of `gaitdisc.sensing.splits.RULES` or of `ACROSS`
+    split: str = "temporal"  # a word of `gaitdisc.sensing.windows.RULES` or of `ACROSS`
     history_s: float = 1.0  # reach of a window, and time from one reading to the next [s]
     spacing_s: float = 0.04  # reach of a window, and time from one reading to the next [s]
     kinds: tuple[str, ...] = tuple(KINDS)

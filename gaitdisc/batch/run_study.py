@@ -13,12 +13,11 @@ from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
 from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse
-from gaitdisc.results.pooled_cycles import CYCLES
+from gaitdisc.results.pooled_cycles import CYCLES, WALK
 from gaitdisc.results.provenance import Provenance, Refusal, made_now
 from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.study_run import created_before, save_run
 from gaitdisc.results.unit_folder import damaged_units
-from gaitdisc.results.walk_summary import WALK
 from gaitdisc.write_lock import write_lock
 
 SECTION = "4.2, Eqs. 4.1-4.5"

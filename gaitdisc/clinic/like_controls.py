@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaitdisc.results.clinical_reference import PublishedGroup, ReferenceLeg
-from gaitdisc.results.clinical_variables import BY_NAME, MOMENTS, POWERS
-from gaitdisc.results.leg_curves import LegCurves
+from gaitdisc.results.leg_curves import BY_NAME, MOMENTS, POWERS, LegCurves
 
 GRAVITY = 9.81
 FEWEST = 10  # people of a group
@@ -38,10 +37,7 @@ class LikeControls:
 
 
 def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
-    """Controls of a condition for one person.
-
-    leg_m, age_years: of the person
-    """
+    """Controls of a condition for one person of a leg length [m] and age."""
     speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
     of_age = _nearest(legs, AGES, age_years, _age)
     of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)

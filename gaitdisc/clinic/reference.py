@@ -10,8 +10,7 @@ from scipy.stats import t as student
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording.arrays import mean_where_known
-from gaitdisc.results.clinical_reading import Band, Limits
-from gaitdisc.results.clinical_reference import ClinicalReference, ReferenceLeg
+from gaitdisc.results.clinical_reference import Band, ClinicalReference, Limits, ReferenceLeg
 from gaitdisc.results.leg_curves import legs_of
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Provenance

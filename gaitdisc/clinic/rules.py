@@ -13,10 +13,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.clinic.reference import FEWEST, limits_of
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reading import Noted
-from gaitdisc.results.clinical_reference import ReferenceLeg
-from gaitdisc.results.clinical_variables import BY_NAME
-from gaitdisc.results.leg_curves import LegCurves
+from gaitdisc.results.clinical_reference import Noted, ReferenceLeg
+from gaitdisc.results.leg_curves import BY_NAME, LegCurves
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
 
 PARTS = ("contact", "loading", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")

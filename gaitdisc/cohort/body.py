@@ -119,11 +119,7 @@ def _foot(leg, c3, s3):
 
 
 def ankle_place(leg: Leg, psi: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where the ankle is, from the hip.
-
-    psi (time, 3) [rad]: thigh, shank and foot
-    returns (time, 2) [m]: forwards, upwards
-    """
+    """Where the ankle is from the hip, forwards and upwards (time, 2) [m]; psi (time, 3) [rad]: thigh, shank, foot."""
     x = leg.thigh_m * np.sin(psi[:, 0]) + leg.shank_m * np.sin(psi[:, 1])
     y = -leg.thigh_m * np.cos(psi[:, 0]) - leg.shank_m * np.cos(psi[:, 1])
     return np.column_stack([x, y])
@@ -160,9 +156,7 @@ def _needed(leg, psi, rate, speedup, hip, ground):
 
 
 def cycle_rate(cycle: NDArray[np.float64], step: float, order: int = 1) -> NDArray[np.float64]:
-    """Derivative of a periodic curve, exact for the harmonics that it holds.
-
-    cycle (phase, ...): one whole cycle, evenly spaced, without its end
+    """Derivative of one whole cycle (phase, ...) without its end, even, exact for the harmonics that it holds.
 
     >>> turn = np.arange(64) * 2 * np.pi / 64
     >>> bool(np.allclose(cycle_rate(np.sin(turn), 2 * np.pi / 64), np.cos(turn)))

@@ -100,10 +100,7 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
 
 
 def walked_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterator[Walks]:
-    """Walk the twelve, one after the other; only one person is in memory at a time.
-
-    duration_s: length of each walk [s]
-    """
+    """Walk the twelve for `duration_s` [s] each; only one person is in memory at a time."""
     for person in the_twelve():
         yield walks_of(person, duration_s, hidden)
 

@@ -96,10 +96,7 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
 
 
 def engaged_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Moment of a spring on the ankle [N m].
-
-    psi (phase, 3) [rad]: thigh, shank, foot
-    """
+    """Moment of a spring on the ankle [N m]; psi (phase, 3) [rad]: thigh, shank, foot."""
     return spring.moment(np.degrees(psi[:, 2] - psi[:, 1]), person.engaged_deg)
 
 

@@ -37,9 +37,7 @@ class Belt(NamedTuple):
 
 
 def gate(phase: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How much of a foot is on the belt: 0 in swing, 1 in mid-stance.
-
-    phase , any shape [share of a stride]: 0 at contact
+    """How much of a foot is on the belt by share of the stride since contact: 0 in swing, 1 in mid-stance.
 
     >>> gate(np.array([0.0, 0.3, 0.7])).tolist()
     [0.0, 1.0, 0.0]
@@ -68,10 +66,7 @@ def habitual_force(phase: NDArray[np.float64], speed: float) -> NDArray[np.float
 
 
 def pressure_centre(phase: NDArray[np.float64], sole_m: float) -> NDArray[np.float64]:
-    """Centre of pressure from the ankle, along the foot [m].
-
-    phase (phase,) [share of a stride]: 0 at contact; in swing the value is held on the way back and means nothing
-    """
+    """Centre of pressure along the foot from the ankle [m], by share of the stride; in swing it means nothing."""
     from scipy.interpolate import PchipInterpolator
 
     share = np.mod(phase, 1.0) / STANCE

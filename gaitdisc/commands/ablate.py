@@ -20,7 +20,7 @@ def ablate(
     quiet: Quiet = False,
 ) -> None:
     """Fit the models to less and less data: how much is enough."""
-    from gaitdisc.batch.ablate_study import ablate_study
+    from gaitdisc.batch.vary_study import ablate_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.response.data_quantity import LENGTHS_S
 

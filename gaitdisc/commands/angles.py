@@ -33,8 +33,7 @@ def angles(
     from gaitdisc.ingest.c3d_measures import body_measures_in
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.writing import write_recording
-    from gaitdisc.kinematics.motion import moved_body
-    from gaitdisc.kinematics.segment_angles import segment_angles
+    from gaitdisc.kinematics.motion import moved_body, segment_angles
     from gaitdisc.own_files import claim_file
     from gaitdisc.recording.body_measures import BodyMeasures
 

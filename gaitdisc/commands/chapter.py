@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from gaitdisc.batch.chapter_parts import Part, costs, parts_of
-from gaitdisc.commands.exit_codes import SOME_REFUSED
-from gaitdisc.commands.options import Quiet
+from gaitdisc.commands.options import SOME_REFUSED, Quiet
 from gaitdisc.commands.run_report import stoppable_bar
 
 NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar goes before it is done

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
-from gaitdisc.commands.options import Json
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED, Json
 from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:

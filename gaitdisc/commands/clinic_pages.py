@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from gaitdisc.report.clinic.words import PageWords
-    from gaitdisc.results.clinical_reading import PersonSession
-    from gaitdisc.results.clinical_reference import ClinicalReference
+    from gaitdisc.results.clinical_reference import ClinicalReference, PersonSession
     from gaitdisc.results.provenance import Provenance
     from gaitdisc.results.study_run import StudyRun
 
@@ -102,8 +101,7 @@ def write_people(
     if not run.of(CYCLES):
         return None
     from gaitdisc.batch.read_people import people_of, sessions_of
-    from gaitdisc.report.clinic.index_page import write_index
-    from gaitdisc.report.clinic.person_page import page_names
+    from gaitdisc.report.clinic.person_page import page_names, write_index
 
     report, reference, people = run_folder / "report", kept_reference(run_folder), people_of(run)
     say = kept_words(run_folder)
@@ -127,7 +125,7 @@ def write_people(
 def write_before_after(run: StudyRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
     """Write the page of a person before and after."""
     from gaitdisc.batch.read_people import before_and_after, readings_of
-    from gaitdisc.clinic.contrast import contrast_of
+    from gaitdisc.clinic.reading import contrast_of
     from gaitdisc.report.clinic.person_page import PersonSession, page_names, write_person_page
 
     reference = kept_reference(run_folder)

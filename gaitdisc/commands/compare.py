@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gaitdisc.commands.exit_codes import SOME_REFUSED
+from gaitdisc.commands.options import SOME_REFUSED
 
 if TYPE_CHECKING:
     from gaitdisc.results.mismatch import Mismatch, Smallest

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.commands.exit_codes import SOME_REFUSED
-from gaitdisc.commands.options import Jobs, Quiet
+from gaitdisc.commands.options import SOME_REFUSED, Jobs, Quiet
 from gaitdisc.commands.run_report import report_on
 
 

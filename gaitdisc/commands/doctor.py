@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 
 
 def doctor() -> None:

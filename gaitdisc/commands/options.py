@@ -1,4 +1,4 @@
-"""Options and arguments that several commands share."""
+"""Options and arguments that several commands share, and what their exit codes say; 0 is done, 2 is wrong usage."""
 
 from __future__ import annotations
 
@@ -14,3 +14,7 @@ Jobs = Annotated[int, typer.Option("--jobs", "-j", min=1, help="Participants sid
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that this command did not write.")]
 Cluster = Annotated[str, typer.Option(help="Address of a Dask scheduler, tcp://host:8786.")]
 RunPlace = Annotated[Path | None, typer.Option("--out", help="Folder of the run; by default STUDY/run.")]
+REFUSED = 1  # a sentence says what was needed, what was found and what to do
+SOME_REFUSED = 3  # done, but some trials or participants were refused and are listed
+ENDED = 143  # by the system (SIGTERM)
+STOPPED = 130  # by the person at the keyboard; the same command goes on

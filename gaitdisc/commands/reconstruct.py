@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gaitdisc.commands.exit_codes import SOME_REFUSED
-from gaitdisc.commands.options import Quiet
+from gaitdisc.commands.options import SOME_REFUSED, Quiet
 
 if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 import typer
 
 from gaitdisc.commands.clinic_pages import page_of_run
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -116,13 +116,7 @@ def stoppable_bar(quiet: bool) -> Iterator[Progress]:
 
 
 def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> None:
-    """Say who was refused, how many were done and where the report is.
-
-    Parameters
-    ----------
-    seconds : float
-        That it took [s].
-    """
+    """Say who was refused, how many were done in how many seconds, and where the report is."""
     from gaitdisc.words import counted
 
     for refusal in refusals:

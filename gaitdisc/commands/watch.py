@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gaitdisc.commands.exit_codes import REFUSED, STOPPED
-from gaitdisc.commands.options import Jobs, Overwrite, Quiet
+from gaitdisc.commands.options import REFUSED, STOPPED, Jobs, Overwrite, Quiet
 from gaitdisc.commands.run import run
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.own_files import guarded

@@ -10,8 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.comparison.alignment import aligned, common_shift
-from gaitdisc.comparison.common_curves import CommonCurves, common_curves
+from gaitdisc.comparison.common_curves import CommonCurves, aligned, common_curves, common_shift
 from gaitdisc.errors import ComparisonError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.results.mismatch import (
@@ -22,8 +21,8 @@ from gaitdisc.results.mismatch import (
     Mismatch,
     Smallest,
 )
+from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.results.provenance import Provenance, made_now
-from gaitdisc.results.walk_summary import WalkSummary
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,

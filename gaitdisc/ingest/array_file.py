@@ -18,11 +18,18 @@ from numpy.typing import NDArray
 from gaitdisc.channel import list_names, nearest_word
 from gaitdisc.errors import GaitdiscError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.cells import even_time
-from gaitdisc.ingest.columns import Column, column_in_unit, column_of, named_channel, said_clock, split_unit
+from gaitdisc.ingest.columns import (
+    Column,
+    column_in_unit,
+    column_of,
+    named_channel,
+    said_clock,
+    sorted_trial,
+    split_unit,
+)
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
-from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.ingest.table import checked_angles
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.regular_file import LARGEST_BYTES, size_in_words
@@ -141,10 +148,7 @@ class ArrayFile:
 
 
 def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> ArrayFile:
-    """File of variables, opened; nothing in it is ever unpickled.
-
-    process: reads all but `.mat` of v7.3, which HDF5 reads here; without it one is started
-    """
+    """File of variables, opened, nothing unpickled; a process reads all but `.mat` of v7.3, which HDF5 reads here."""
     path = Path(path)
     raw = read_raw(path, LARGEST_BYTES)
     is_npz = path.suffix.lower() == ".npz"

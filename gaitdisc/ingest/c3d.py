@@ -1,9 +1,11 @@
-"""C3D files: one file becomes one trial, read in a process of its own, checked against its header."""
+"""C3D files: one becomes one trial, read in a process of its own, its counts, length and scales checked."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from types import TracebackType
 
@@ -14,8 +16,7 @@ from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
 from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap, file_events
-from gaitdisc.ingest.c3d_layout import C3DLayout, check_common_scales, expected_layout, unscaled_channels
-from gaitdisc.ingest.c3d_parameters import C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, file_segments, point_names, point_streams
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.raw_file import file_sha256
@@ -23,6 +24,8 @@ from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 
 ANALOG_STREAMS = ("emg", "forces", "signals")
+_SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
+_REMEDY = "Export the trial again, or set it in the software that wrote it; numbers without their scale are no measure."
 
 
 class C3DReader:
@@ -236,3 +239,206 @@ def _all_labels(parameters: C3DParameters, layout: C3DLayout) -> list[str]:
         *(one.description for one in analog),
         *point_names(parameters, layout.points),
     ]
+
+
+@dataclass(frozen=True)
+class C3DLayout:
+    """Shape of the data section.
+
+    >>> C3DLayout(100, 10, 2, 20, 4, 3).end
+    33024
+    """
+
+    frames: int  # frames, points a frame, analog channels, samples of each channel a frame
+    points: int  # frames, points a frame, analog channels, samples of each channel a frame
+    channels: int  # frames, points a frame, analog channels, samples of each channel a frame
+    samples_per_frame: int  # frames, points a frame, analog channels, samples of each channel a frame
+    word_bytes: int  # 4 where values are floats, 2 where they are integers
+    data_block: int  # where the data begin [blocks of 512 bytes, from 1]
+
+    @property
+    def frame_bytes(self) -> int:
+        """Bytes of one frame."""
+        return (4 * self.points + self.channels * self.samples_per_frame) * self.word_bytes
+
+    @property
+    def end(self) -> int:
+        """Bytes that the file has at least."""
+        return (self.data_block - 1) * BLOCK + self.frames * self.frame_bytes
+
+    def fits(self, size: int) -> bool:
+        """Whether a file of that size [bytes] can hold the data."""
+        return self.end <= size
+
+    def fills(self, size: int) -> bool:
+        """Whether a file of that size [bytes] holds the data and no more than the padding of the last block."""
+        return self.end <= size < self.end + BLOCK
+
+
+def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout, list[Finding]]:
+    """Layout that the file's own counts and its length agree on.
+
+    Header and parameters usually say the same; a file that is shorter than that is truncated. Where they contradict
+    each other, the counts that fill the file to its last block are believed, and the contradiction is a finding.
+    """
+    word_bytes = _word_bytes(header, parameters)
+    frames = _frames(header, parameters)
+    points = _distinct(parameters.count("POINT", "USED"), header.points)
+    analog = _analog(header, parameters)
+    blocks = _distinct(header.data_block, parameters.count("POINT", "DATA_START") or None)
+    layouts = [
+        C3DLayout(count, used, channels, samples, word_bytes, block)
+        for count, used, (channels, samples), block in product(frames, points, analog, blocks)
+    ]
+    said = {
+        "frames": frames,
+        "points": points,
+        "analog channels and samples a frame": analog,
+        "first block of the data": blocks,
+    }
+    filling = [layout for layout in layouts if layout.fills(header.size)]
+    layout = (filling or layouts)[0]
+    if not layout.fits(header.size):
+        _refuse_truncated(layout, header)
+    if layout.data_block != header.data_block:
+        raise ReadError(
+            "a C3D file needs a header that says where the data begin",
+            f"{header.file} says block {header.data_block}, POINT:DATA_START and the length of the file say "
+            f"{layout.data_block}",
+            "Export the trial again; this copy is damaged.",
+        )
+    if layout.frames < 1 or layout.frame_bytes < 1 or layout.data_block <= header.parameter_block:
+        raise ReadError(
+            "a trial needs at least one frame of points or analog channels",
+            f"{header.file} names {layout.frames} frames, {layout.points} points, {layout.channels} analog channels",
+            "Export the trial again with markers or analog channels.",
+        )
+    if layout.frames == _SATURATED and header.size - layout.end >= layout.frame_bytes + BLOCK:
+        room = layout.frames + (header.size - layout.end) // layout.frame_bytes
+        raise ReadError(
+            "a C3D file of more than 65535 frames names their number in TRIAL:ACTUAL_END_FIELD",
+            f"{header.file} has room for {room}, says 65535",
+            "Export the trial in parts, or with software that writes the group TRIAL.",
+        )
+    rotations = parameters.count("ROTATION", "USED")  # their block follows the frames
+    return layout, [*_contradictions(said, layout, header), *([] if rotations else _leftover(layout, header))]
+
+
+def _frames(header: C3DHeader, parameters: C3DParameters) -> tuple[int, ...]:
+    """Counts of frames, the most trustworthy first: 16 bits are too few for more than 65535."""
+    start, end = parameters.field("ACTUAL_START_FIELD"), parameters.field("ACTUAL_END_FIELD")
+    trial = end - start + 1 if start is not None and end is not None and end >= start > 0 else None
+    wide = [trial, parameters.count("POINT", "LONG_FRAMES")]
+    narrow = [parameters.count("POINT", "FRAMES"), header.frames]
+    if header.last_frame == _SATURATED or _SATURATED in narrow:
+        narrow = [count for count in narrow if count and not any(w and w > count for w in wide)]
+    return _distinct(*(count for count in (*wide, *narrow) if count)) or (0,)
+
+
+def _analog(header: C3DHeader, parameters: C3DParameters) -> tuple[tuple[int, int], ...]:
+    """(channels, samples a frame) as the header and as the parameters say."""
+    found = []
+    samples = header.samples_per_frame
+    if header.analog_values and samples and header.analog_values % samples == 0:
+        found.append((header.analog_values // samples, samples))
+    used = parameters.count("ANALOG", "USED")
+    rate, frame_rate = parameters.number("ANALOG", "RATE"), parameters.number("POINT", "RATE") or header.rate_hz
+    if used and rate and frame_rate and 0 < rate / frame_rate < _SATURATED:
+        found.append((used, samples if abs(rate / frame_rate - samples) < 1 and samples else round(rate / frame_rate)))
+    elif used and samples:
+        found.append((used, samples))
+    if not header.analog_values or used == 0 or not found:
+        found.append((0, 0))
+    return _distinct(*found)
+
+
+def _word_bytes(header: C3DHeader, parameters: C3DParameters) -> int:
+    """4 for floats, 2 for integers; readers differ in whom they believe, so header and POINT:SCALE must agree."""
+    stated = parameters.number("POINT", "SCALE")
+    scale = header.scale if stated is None else stated
+    same = (scale < 0) == (header.scale < 0) and (scale < 0 or abs(scale - header.scale) <= 1e-3 * abs(scale))
+    if not same:
+        raise ReadError(
+            "header and POINT:SCALE of a C3D file need the same scale (negative where points are floats)",
+            f"{header.file} has {header.scale:g} and {scale:g}",
+            "Export the trial again; with the wrong one every length would be wrong.",
+        )
+    return 4 if scale < 0 else 2
+
+
+def _distinct(*values):
+    return tuple(dict.fromkeys(value for value in values if value is not None))
+
+
+def _refuse_truncated(layout: C3DLayout, header: C3DHeader) -> None:
+    whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
+    raise ReadError(
+        f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels "
+        f"needs {layout.end} bytes",
+        f"{header.file} has {header.size} and ends within frame {whole + 1}: it is truncated",
+        "Copy it again from where it was recorded; do not use the part.",
+    )
+
+
+def _contradictions(said: dict[str, tuple], layout: C3DLayout, header: C3DHeader) -> list[Finding]:
+    taken = {
+        "frames": layout.frames,
+        "points": layout.points,
+        "analog channels and samples a frame": (layout.channels, layout.samples_per_frame),
+        "first block of the data": layout.data_block,
+    }
+    how = "which fill the file to its last block" if layout.fills(header.size) else "which the file is long enough for"
+    return [
+        Finding(
+            "warning",
+            "contradictory header",
+            header.file,
+            f"header and parameters give {what} as {' and '.join(map(str, values))}; read as {taken[what]}, {how}",
+            "the whole trial if this is wrong; compare its length with your notes",
+        )
+        for what, values in said.items()
+        if len(values) > 1
+    ]
+
+
+def _leftover(layout: C3DLayout, header: C3DHeader) -> list[Finding]:
+    rest = header.size - layout.end
+    if rest < layout.frame_bytes + BLOCK:
+        return []
+    return [
+        Finding(
+            "warning",
+            "bytes left over",
+            header.file,
+            f"{rest} bytes follow the last of {layout.frames} frames, room for {rest // layout.frame_bytes} more",
+            "nothing if they are not frames; compare the trial's length with your notes",
+        )
+    ]
+
+
+def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
+    """Refuse a file whose scale of all points or of all analog channels cannot be used."""
+    stated = [("the header's scale of points", float(header.scale))] if header.points else []
+    for group, name, used in (("POINT", "SCALE", header.points), ("ANALOG", "GEN_SCALE", header.analog_values)):
+        numbers = parameters.numbers(group, name).ravel()
+        if used and numbers.size:
+            stated.append((f"{group}:{name}", float(numbers[0])))
+    for name, scale in stated:
+        if not np.isfinite(scale) or scale == 0:
+            found = f"{name} of {header.file} is {scale:g}"
+            raise ReadError("a C3D file needs finite scales other than 0", found, _REMEDY)
+
+
+def unscaled_channels(parameters: C3DParameters, channels: int, file: str) -> tuple[frozenset[int], list[Finding]]:
+    """Analog channels whose own scale or offset cannot be used: their numbers are missing, the others stand."""
+    labels = [*parameters.texts("ANALOG", "LABELS"), *[""] * channels]
+    bad: dict[int, str] = {}
+    for name in ("SCALE", "OFFSET"):
+        for place, number in enumerate(parameters.numbers("ANALOG", name).ravel()[:channels]):
+            if not np.isfinite(number) or (name == "SCALE" and number == 0):
+                bad.setdefault(place, f"ANALOG:{name} of channel #{place + 1} {labels[place]} is {number:g}")
+    if not bad:
+        return frozenset(), []
+    several = f", and {len(bad) - 4} channels more" if len(bad) > 4 else ""
+    what = f"{'; '.join(list(bad.values())[:4])}{several}; taken as missing"
+    return frozenset(bad), [Finding("warning", "scale", file, what, "these channels; export the trial again")]

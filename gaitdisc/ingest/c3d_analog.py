@@ -13,8 +13,7 @@ from gaitdisc.errors import UnitError
 from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, named_people, without_people
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import Streams
-from gaitdisc.ingest.columns import named_channel, split_unit
-from gaitdisc.ingest.streams import stream_of
+from gaitdisc.ingest.columns import named_channel, split_unit, stream_of
 from gaitdisc.recording import Finding
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
@@ -59,10 +58,7 @@ class AnalogLabel:
 
 
 def analog_labels(parameters: C3DParameters, count: int) -> list[AnalogLabel]:
-    """Return what the file calls its analog channels.
-
-    count: analog channels; a file may list more labels or fewer
-    """
+    """What the file calls its analog channels; it may list more labels than there are channels, or fewer."""
     people = named_people(parameters)
     texts = [[*parameters.texts("ANALOG", name)[:count], *[""] * count] for name in ("LABELS", "DESCRIPTIONS", "UNITS")]
     return [
@@ -100,11 +96,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
 def analog_streams(
     rows: NDArray[np.float64], parameters: C3DParameters, plate_channels: set[int], labels: LabelMap, file: str
 ) -> tuple[Streams, list[Finding]]:
-    """Streams `emg` and `signals` of the analog channels, and `forces` where the study maps channels to forces.
-
-    rows (sample, channel): in the file's units
-    plate_channels: columns that belong to force plates and are read there
-    """
+    """Streams `emg`, `signals`, mapped `forces` of rows (sample, channel) in the file's units, without plates."""
     analog = analog_labels(parameters, rows.shape[1])
     mapped = {one.number: labels.name(f"#{one.number}", one.label, one.plain, one.description) for one in analog}
     free = [one for one in analog if mapped[one.number] is None and one.number - 1 not in plate_channels]

@@ -89,10 +89,7 @@ class LabelMap:
         self._used: Counter[str] = Counter()
 
     def name(self, *labels: str) -> str | None:
-        """Name that the study gives a channel of these labels, None where it gives none.
-
-        *labels: all that the channel goes by, the most particular first
-        """
+        """Name that the study gives a channel of these labels, the most particular first; None where it gives none."""
         for label in labels:
             for key, name in self._names.items():
                 same = (
@@ -128,9 +125,7 @@ class LabelMap:
 
 
 def event_kind(label: str, context: str) -> tuple[str, str]:
-    """What an event is and on which side.
-
-    label: `Foot Strike`, `Right Foot Off`, or the short dialect of Qualisys: `LHS`, `RTO`
+    """What an event is (`Foot Strike`, `Right Foot Off`, or Qualisys' `LHS`, `RTO`) and on which side.
 
     >>> event_kind("Foot Strike", "Left"), event_kind("RTO", ""), event_kind("Sync", "General")
     (('initial contact', 'l'), ('foot off', 'r'), ('Sync', ''))

@@ -24,10 +24,7 @@ FACTORS = (1e-3, 1.0, 1e-2)  # mm, as Nexus writes; m; cm: the first that makes 
 
 
 def read_body_measures(path: Path | str) -> BodyMeasures:
-    """Measures of the person that a C3D file holds in PROCESSING, SUBJECTS or SUBJECT.
-
-    returns: none or absent where the file has nothing, zero, or a number that is none in mm, m or cm
-    """
+    """Measures of the person in PROCESSING, SUBJECTS or SUBJECT; none where absent, zero, or not in mm, m or cm."""
     path = Path(path)
     return body_measures_of(read_c3d_parameters(path, read_c3d_header(path)), path.name)
 

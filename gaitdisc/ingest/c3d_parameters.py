@@ -100,9 +100,7 @@ def read_c3d_header(path: str | Path) -> C3DHeader:
 
 
 def decoded(raw: bytes, width: int, processor: str) -> NDArray[np.generic]:
-    """Numbers that bytes of a C3D file stand for.
-
-    width: 1 for bytes, 2 for 16-bit integers, 4 for floats
+    """Numbers that bytes of a C3D file stand for: width 1 for bytes, 2 for 16-bit integers, 4 for floats.
 
     >>> decoded(bytes([0x00, 0x00, 0x80, 0x3F]), 4, "Intel"), decoded(bytes([0x80, 0x40, 0, 0]), 4, "DEC")
     (array([1.], dtype=float32), array([1.], dtype=float32))

@@ -52,19 +52,13 @@ _INNER = {"angle": "deg", "force": "N", "moment": "N m", "power": "W"}
 
 
 def point_names(parameters: C3DParameters, count: int) -> list[str]:
-    """Names of the points, all different, without the names of people.
-
-    count: points a frame; a file may list more labels or fewer
-    """
+    """Names of a frame's points, all different, without people's names; a file may list more labels or fewer."""
     labels = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[:count]]
     return made_unique([*labels, *[""] * (count - len(labels))], "point")
 
 
 def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: str) -> tuple[str, list[Finding]]:
-    """Unit of the markers: as the file says, or by their distance from the origin where it says nothing.
-
-    places (frame, coordinate): of markers, in the file's unit, NaN allowed; some thousand frames are looked at
-    """
+    """Unit of markers as stated, or by places (frame, coordinate) of some thousand frames where nothing is stated."""
     far = distance_from_origin(places)
     text = parameters.text("POINT", "UNITS")
     if text:
@@ -140,10 +134,7 @@ def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, ModelOutput
 
 
 def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: str) -> tuple[list[str], list[Finding]]:
-    """Names of outputs without the word that a laboratory's one model adds to each: `LKneeAngles_M`.
-
-    Nothing is taken away where two models differ by it, or where the file has the output without it too.
-    """
+    """Names of outputs without the word of a laboratory's one model (`LKneeAngles_M`), unless names would be alike."""
     bases = {name: name.rpartition("_")[0] for name in names if name in kinds and "_" in name}
     bases = {name: base for name, base in bases.items() if base and base not in names}
     known = [name for name, base in bases.items() if any(vocabulary().named(f"{base}.{axis}") for axis in AXES)]

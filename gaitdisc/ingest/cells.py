@@ -41,9 +41,7 @@ class Form:
 
 
 def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:
-    r"""Numbers of a table's body.
-
-    first_line: line of the file in which the body starts, counted from 1
+    r"""Numbers of a table's body, which starts in line `first_line` of the file, counted from 1.
 
     >>> parsed_cells(["0\t1.5", "0.1\t"], ["time", "a"], 3, Form("walk.mot")).values
     array([[0. , 1.5],
@@ -135,10 +133,7 @@ def _numbers_cell_by_cell(
 
 
 def check_counts(cells: Cells, file: str, *counts: tuple[str, Sequence[int], int]) -> list[Finding]:
-    """Refuse a file with fewer rows than its header claims; report other counts that are wrong.
-
-    counts each (str, sequence of int, int): what is counted, the header's counts of it, how many are there; rows first
-    """
+    """Refuse fewer rows than claimed, report other wrong counts; each: what, header's counts, how many; rows first."""
     kind, claimed, there = counts[0]
     if claimed and there < max(claimed):
         raise ReadError(

@@ -1,4 +1,4 @@
-"""What a column of a text file measures: its label, the study's own map, and the unit if one is stated."""
+"""What a column of a text file measures, its unit, and the stream it belongs to; a missing force is refused."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, folded_label, nearest_word, side_of, vocabulary
-from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
+from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.units import convert, inner_unit, known_units, parsed_unit
 
 # quantity -> units it may have inside; the first one is usual, the others are normalised by mass or by a maximum
@@ -26,6 +27,20 @@ _UNITS_OF = {
     "emg": ("V", "1", "%"),
 }
 _CLOCK = " @ "
+SLOWEST_S = 0.2  # between samples: people make up to 2.5 steps a second, which fewer than 5 Hz cannot show (Nyquist)
+FEW = 50  # samples, of which fewer are no recording of a walk
+_STREAM = {
+    "angle": "kinematics",
+    "translation": "kinematics",
+    "marker": "markers",
+    "emg": "emg",
+    "force": "forces",
+    "vertical_force": "forces",
+    "pressure_centre": "forces",
+    "moment": "moments",
+    "power": "moments",
+    "signal": "signals",
+}
 
 
 @dataclass(frozen=True)
@@ -42,19 +57,14 @@ class Column:
     guessed: str = ""  # what had to be guessed, in words; empty where nothing was
 
     def converted(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Numbers in the unit used inside.
-
-        values (time,) [unit]: as read
-        """
+        """Numbers (time,) as read, in the unit used inside."""
         base, rate = (self.unit.partition("/s")[0], True) if "/s" in self.unit else (self.unit, False)
         inside = self.channel.unit.partition("/s")[0] if rate else self.channel.unit
         return np.asarray(convert(values, base, inside), float)
 
 
 def split_unit(text: str) -> tuple[str, str | None]:
-    """Name and unit of `name [unit]`, or of `name [unit] @ clock`; the unit is None where none is stated.
-
-    text: a label of a file, or a value of the study's `[channels]`
+    """Name and unit, None where unstated, of a label or value `name [unit]`, or `name [unit] @ clock`.
 
     >>> split_unit("emg_sol_r [mV]"), split_unit("knee_angle_r")
     (('emg_sol_r', 'mV'), ('knee_angle_r', None))
@@ -65,9 +75,7 @@ def split_unit(text: str) -> tuple[str, str | None]:
 
 
 def said_clock(said: str) -> str:
-    """What follows `@` in a value of the study's `[channels]`: a rate, or a variable of times; empty without one.
-
-    said: `name [unit] @ clock`
+    """What follows `@` in `name [unit] @ clock`: a rate, or a variable of times; empty without one.
 
     >>> said_clock("knee_angle_r [deg] @ 100 Hz"), said_clock("knee_angle_r [deg]")
     ('100 Hz', '')
@@ -76,9 +84,7 @@ def said_clock(said: str) -> str:
 
 
 def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
-    """What the study's `[channels]` says that a label means, or None.
-
-    channels: label -> `name` or `name [unit]`. Case, blanks and punctuation of labels count only where they must
+    """What the study's `[channels]` says of a label, or None; case, blanks, punctuation count only where they must.
 
     >>> mapped_label("Sensor 1.EMG", {"sensor 1 emg": "emg_sol_r [mV]"})
     'emg_sol_r [mV]'
@@ -159,9 +165,7 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
 
 
 def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
-    """Column of a label, by the study's own map or the vocabulary.
-
-    channels: the study's `[channels]`
+    """Column of a label, by the study's `[channels]` or the vocabulary.
 
     >>> column_of("knee_angle_r", "walk.csv", None).unit
     'deg'
@@ -186,3 +190,86 @@ def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Colu
 def _a(quantity: str) -> str:
     article = "an" if quantity[0] in "ae" else "a"
     return f"{article} {'EMG' if quantity == 'emg' else quantity.replace('_', ' ')}"
+
+
+def stream_of(channel: Channel) -> str:
+    """Stream of a channel: a free moment goes with ground forces, a translation's generalised force with moments.
+
+    >>> stream_of(Channel("ground_torque_r_y", "moment", "N m", "r"))
+    'forces'
+    >>> stream_of(Channel("pelvis_tx_force", "force", "N"))
+    'moments'
+    """
+    if channel.quantity == "moment" and "ground" in channel.name:
+        return "forces"
+    if channel.quantity == "force" and channel.name.endswith("_force"):
+        return "moments"
+    return _STREAM[channel.quantity]
+
+
+def sorted_trial(
+    source: Source,
+    time: NDArray[np.float64],
+    values: NDArray[np.float64],
+    channels: Sequence[Channel],
+    findings: Sequence[Finding] = (),
+) -> Trial:
+    """Trial of one file whose columns share one time base.
+
+    time (time,) [s]: even
+    values (time, channel) [each channel's unit]: converted already
+
+    >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
+    >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)
+    ['kinematics']
+    """
+    _check_names(channels, source.file)
+    _refuse_missing_force(time, values, channels, source.file)
+    _refuse_slow_walk(time, channels, source.file)
+    columns: dict[str, list[int]] = {}
+    for i, channel in enumerate(channels):
+        columns.setdefault(stream_of(channel), []).append(i)
+    streams = {
+        key: Recording(time, values[:, chosen], tuple(channels[i] for i in chosen), source=source)
+        for key, chosen in columns.items()
+    }
+    name = source.file.rpartition(".")[0] or source.file
+    return Trial(name, streams, findings=tuple(findings))
+
+
+def _check_names(channels: Sequence[Channel], file: str) -> None:
+    names = [channel.name for channel in channels]
+    doubled = next((name for name in names if names.count(name) > 1), None)
+    if doubled:
+        first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
+        raise ChannelError(
+            "each channel needs a column of its own",
+            f"{file} has {doubled!r} in columns {first} and {second}",
+            "Remove one of them, or name them differently in the study's [channels].",
+        )
+
+
+def _refuse_slow_walk(time: NDArray[np.float64], channels: Sequence[Channel], file: str) -> None:
+    """Refuse a walk that was sampled too slowly to show a step: its times are mostly ms under the name of seconds."""
+    measured = next((one.name for one in channels if one.quantity not in ("signal", "translation")), None)
+    step_s = float(time[1] - time[0]) if len(time) >= FEW else 0.0
+    if measured and step_s > SLOWEST_S:
+        raise SamplingError(
+            f"{file}: {measured} of a walk needs a sample every {SLOWEST_S:g} s or more often",
+            f"times are {step_s:g} s apart, and {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
+            "If they are ms, name the column 'time [ms]'.",
+        )
+
+
+def _refuse_missing_force(
+    time: NDArray[np.float64], values: NDArray[np.float64], channels: Sequence[Channel], file: str
+) -> None:
+    for i, channel in enumerate(channels):
+        missing = np.isnan(values[:, i])
+        if channel.quantity in ("force", "vertical_force") and missing.any():
+            first = int(np.argmax(missing))
+            raise ReadError(
+                f"{file}: {channel.name} needs a number in every sample",
+                f"{missing.sum()} of {len(time)} are missing, first in sample {first + 1} at t = {time[first]:.6g} s",
+                "Export the force again without gaps (0 where the foot is in the air).",
+            )

@@ -76,9 +76,7 @@ def words_in(name: str) -> list[str]:
 
 
 def condition_word(path: Path) -> tuple[str, str]:
-    """Word of a path that names the condition, and which of the two it is.
-
-    path: relative to the folder that is searched; the file's own name counts before its folders
+    """Word of a relative path that names the condition, and which; the file's own name counts before its folders.
 
     >>> condition_word(Path("P01/walk_no_exo.mot")), condition_word(Path("exo/walk2.mot"))
     (('noexo', 'nominal'), ('exo', 'device'))

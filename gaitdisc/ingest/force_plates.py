@@ -74,11 +74,7 @@ class ForcePlate:
     def wrench(
         self, values: NDArray[np.float64], units: tuple[str, ...]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Force [N] and moment about the centre of the surface [N m], each (sample, 3), in the plate's axes.
-
-        values (sample, channel): the plate's channels in the file's units
-        units: units of the channels; of what the matrix gives for type 4
-        """
+        """Force [N], moment about the surface's centre [N m], each (sample, 3) in the plate's axes, of its channels."""
         if self.kind == 4:
             values = values @ self.calibration.T
         columns = [convert(values[:, i], unit, inner_unit(unit)) for i, unit in enumerate(units)]
@@ -103,11 +99,7 @@ def _of_pillars(values: NDArray[np.float64], origin: NDArray[np.float64]) -> tup
 
 
 def centre_of_pressure(force: NDArray[np.float64], moment: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Centre of pressure on the surface, in the plate's axes, NaN below 20 N.
-
-    force (sample, 3) [N]: in the plate's axes
-    moment (sample, 3) [N m]: about the centre of the surface
-    returns (sample, 3) [m]
+    """Centre of pressure (sample, 3) [m] of force [N] and moment [N m] in the plate's axes; NaN below 20 N.
 
     >>> centre_of_pressure(np.array([[0, 0, -500.0], [0, 0, -1.0]]), np.array([[50.0, 25, 0], [1, 1, 0]]))
     array([[ 0.05, -0.1 ,  0.  ],

@@ -54,10 +54,7 @@ def is_people_table(path: Path) -> bool:
 
 
 def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
-    """Mass, sex, stature and age by the folded word that names the person, from the tables of people among some files.
-
-    notes: is added to: what was taken, and what could not be
-    """
+    """Mass, sex, stature, age by a person's folded word, from tables of people; what was taken is added to `notes`."""
     found: dict[str, Measured] = {}
     for file in sorted(files):
         try:
@@ -74,8 +71,6 @@ def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> di
 
 def person_key(word: str) -> str:
     """Word by which a row of a table and a folder of recordings are the same person.
-
-    word: as it stands in the table, or in the path
 
     >>> person_key("sub-01"), person_key("S_07 ")
     ('01', 's07')

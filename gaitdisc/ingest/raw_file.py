@@ -19,11 +19,7 @@ _known: dict[tuple[int, ...], str] = {}
 
 @dataclass(frozen=True)
 class RawFile:
-    """Bytes of one file, read once.
-
-    >>> RawFile("walk.mot", b"abc").source("mot").sha256[:8]
-    'ba7816bf'
-    """
+    """Bytes of one file, read once."""
 
     name: str  # name without the folder; the folder may show who the person is and goes no further
     content: bytes

@@ -46,10 +46,7 @@ class ReadRequest:
 
     @classmethod
     def of_size(cls, path: str, reader: str, wanted: tuple[int | str, ...], size: int) -> ReadRequest:
-        """Request with the limits for a file of that size: 10 s + 0.2 s/MB, 512 MB + 12 times the file.
-
-        size: length of the file [bytes]
-        """
+        """Request with the limits for a file of that size [bytes]: 10 s + 0.2 s/MB, 512 MB + 12 times the file."""
         limit_s = SECONDS_AT_LEAST + 0.2 * size / MEBIBYTE
         return cls(path, reader, wanted, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
 

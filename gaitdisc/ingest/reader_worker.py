@@ -32,11 +32,7 @@ ROWS_AT_ONCE = 16384
 
 
 def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Coordinates with time first, NaN where the residual says that a point was not seen.
-
-    points (3 or 4, point, frame): as ezc3d gives them
-    residuals (point, frame): negative where a point is invalid
-    returns (frame, 3 * point)
+    """Points (3 or 4, point, frame) of ezc3d as (frame, 3 * point), NaN where the residual is negative.
 
     >>> points_in_rows(np.ones((4, 1, 2)), np.array([[0.0, -1.0]]))
     array([[ 1.,  1.,  1.],
@@ -82,10 +78,7 @@ READERS = {"ezc3d": read_with_ezc3d, "c3d": read_with_c3d}
 
 
 def read_c3d(reader: str, path: str, *promised: int) -> tuple[dict[str, Any], Any]:
-    """Points and analog values of a C3D file, or what the reader found, where these are not the promised counts.
-
-    promised: frames, points, analog channels and samples of each, as the file's header has them
-    """
+    """Points and analog values of a C3D file, or what was found in place of the promised counts of the header."""
     points, analog, file = READERS[reader](path)
     channels, samples = analog.shape if analog.size else (0, 0)
     found = (len(points), points.shape[1] // 3, channels, samples)
@@ -99,10 +92,7 @@ def read_c3d(reader: str, path: str, *promised: int) -> tuple[dict[str, Any], An
 
 
 def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
-    """One variable of a `.mat` file to v7 or of an `.npz` file: numbers, structs, cells and words for all else.
-
-    name: empty for the names of all, with the bytes that each claims to take once it is unpacked
-    """
+    """A `.mat` (to v7) or `.npz` variable as numbers and words; for an empty name all names with claimed bytes."""
     is_packed = path.lower().endswith(".npz")
     if not name:
         return {"claims": _claims_of_npz(path) if is_packed else _claims_of_mat(path), "shapes": []}, ()
@@ -173,10 +163,7 @@ def read_hdf5_text(path: str, name: str, attribute: str) -> tuple[dict[str, Any]
 
 
 def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Any]:
-    """Answer one request: what the file holds and its arrays, or what the reader said.
-
-    request: `path`, `reader`, and in `wanted` what else this one takes
-    """
+    """Answer a request (`path`, `reader`, `wanted`): what the file holds and its arrays, or what the reader said."""
     reader = request["reader"]
     try:
         with warnings.catch_warnings():
@@ -191,10 +178,7 @@ def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Any]:
 
 
 def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
-    """Answer requests until there are no more.
-
-    requests, answers: lines of JSON; arrays follow an answer as raw float64
-    """
+    """Answer requests, lines of JSON, until there are no more; arrays follow an answer as raw float64."""
     for line in iter(requests.readline, b""):
         request = json.loads(line)
         _limit(request["cap_bytes"], request["limit_s"])

@@ -124,10 +124,7 @@ def read_trial(
 def read_planned_trial(
     study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader | None = None
 ) -> Trial:
-    """Trial as a study plans it: its files, channel map, crop, pseudonym and condition.
-
-    returns: named by pseudonym, session and condition, and a number where there are several
-    """
+    """Trial as a study plans it, named by pseudonym, session, condition, and a number where there are several."""
     paths = [study.path_of(file) for file in planned.files]
     trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader, planned.part)
     return replace(trial, name=participant.trial_name(planned))

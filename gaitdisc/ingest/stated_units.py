@@ -125,9 +125,7 @@ def _undecided(file: str, why: str) -> UnitError:
 
 
 def distance_from_origin(places: NDArray[np.float64]) -> float:
-    """How far markers lie out, as the 99th percentile of their coordinates; NaN without any.
-
-    places (frame, coordinate): in the file's unit, NaN allowed; some thousand frames are looked at
+    """99th percentile of marker coordinates (frame, coordinate) of some thousand frames; NaN without any.
 
     >>> distance_from_origin(np.array([[1.0, -2.0]]))
     1.99

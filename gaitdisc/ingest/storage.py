@@ -25,10 +25,17 @@ from gaitdisc.channel import (
 )
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Cells, Form, check_counts, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import Column, check_written_names, column_in_unit, mapped_label, named_channel, split_unit
+from gaitdisc.ingest.columns import (
+    Column,
+    check_written_names,
+    column_in_unit,
+    mapped_label,
+    named_channel,
+    sorted_trial,
+    split_unit,
+)
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
-from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.whole_file import write_whole
 

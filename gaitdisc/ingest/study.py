@@ -120,10 +120,7 @@ class Participant(_Part):
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
 
     def trials_of(self, condition: str) -> tuple[PlannedTrial, ...]:
-        """Return the trials of one condition.
-
-        condition: a word of the study's `[conditions]`
-        """
+        """Return the trials of one of the study's conditions."""
         return tuple(trial for trial in self.trials if trial.condition == condition)
 
     def trial_name(self, planned: PlannedTrial) -> str:
@@ -228,10 +225,7 @@ class HeldOut(_Part):
         return self
 
     def length_s(self, duration_s: float) -> float:
-        """Return the length of the held-out part [s].
-
-        duration_s: length of the trial [s]
-        """
+        """Return the length of the held-out part of a trial that lasts `duration_s` [s]."""
         return self.seconds if self.seconds is not None else (self.share or 0.0) * duration_s
 
 

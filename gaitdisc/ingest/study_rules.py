@@ -22,9 +22,7 @@ MISSPELT = 0.85  # likeness to a known name above which another name is taken fo
 
 
 def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> NoReturn:
-    """Refuse a study from within its validation.
-
-    place: keys and places in lists that lead to what is wrong, from the part that is being checked
+    """Refuse from within validation; place: keys and places in lists, from the part that is being checked.
 
     >>> refuse(("id",), "a pseudonym", "found 'P01' twice", "Rename one.")
     Traceback (most recent call last):
@@ -72,10 +70,7 @@ def check_sessions(study: Study) -> None:
 
 
 def check_participants(study: Study, others: Sequence[str]) -> None:
-    """Refuse conditions that are none of the study's, pseudonyms that stand twice, and names that no file can have.
-
-    others: words that a trial may have beside the study's conditions: for one that is not known, and for standing
-    """
+    """Refuse conditions that are neither the study's nor `others`, pseudonyms twice, names that no file can have."""
     words = study.conditions.words
     ids = Counter(each.id.lower() for each in study.participants)
     for i, participant in enumerate(study.participants):
@@ -95,9 +90,7 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
 
 
 def check_channels(channels: Mapping[str, str]) -> None:
-    """Refuse a channel map with an unknown unit, a misspelt name, or one name for two labels.
-
-    channels: label -> `name` or `name [unit]`
+    """Refuse a map (label -> `name` or `name [unit]`) with an unknown unit, a misspelt name, or a name twice.
 
     >>> check_channels({"Sensor 1": "emg_sol_r [mV]"})
     """
@@ -120,10 +113,7 @@ def check_channels(channels: Mapping[str, str]) -> None:
 
 
 def check_variables(models: Models, channels: Mapping[str, str]) -> None:
-    """Refuse model variables that are misspelt, doubled, or outputs that are not among the inputs.
-
-    channels: the study's channel map; its names are known as well
-    """
+    """Refuse misspelt or doubled variables, outputs not among inputs; names of the study's channels are known too."""
     mapped = {split_unit(said)[0] for said in channels.values()}
     inputs = (*models.angles, *models.emg)
     for key in ("angles", "emg", "outputs"):

@@ -20,11 +20,11 @@ from gaitdisc.ingest.columns import (
     check_written_names,
     column_of,
     mapped_label,
+    sorted_trial,
     split_unit,
 )
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
-from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.spreadsheet import quoted, unquoted
 from gaitdisc.units import convert, parsed_unit
@@ -121,10 +121,7 @@ def _trial(source: Source, table: TimedColumns, channels: Mapping[str, str] | No
 
 
 def write_table(recording: Recording, path: Path | str) -> Path:
-    """Write a recording as a plain table, whole or not at all; every column states its unit.
-
-    recording: any channels; marks of suspect samples, subject and condition are not written
-    """
+    """Write a recording as a plain table with units, whole or not at all, without suspect marks, subject, condition."""
     path = Path(path)
     check_written_names(recording.names, path.name)
     labels = ["time [s]", *(f"{channel.name} [{channel.unit}]" for channel in recording.channels)]
@@ -262,11 +259,7 @@ def _of_frame(
 def checked_angles(
     columns: Sequence[Column], time: NDArray[np.float64], values: NDArray[np.float64], file: str
 ) -> list[Finding]:
-    """Whether the numbers of angles contradict their unit; a UnitError where they do.
-
-    time (time,) [s]: of the samples
-    values (time, column): in the file's units
-    """
+    """Whether angles (time, column) in the file's units contradict their unit; a UnitError where they do."""
     findings = []
     for unit in ("deg", "rad"):
         which = [i for i, c in enumerate(columns) if c.channel.quantity == "angle" and c.unit == unit]

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError, SamplingError, UnitError
 from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import mapped_label, split_unit
+from gaitdisc.ingest.columns import mapped_label, sorted_trial, split_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import distance_from_origin, refuse_other_unit
-from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Trial
 from gaitdisc.units import convert, inner_unit, parsed_unit
 

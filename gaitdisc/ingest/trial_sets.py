@@ -25,10 +25,7 @@ class TrialSet:
 
 
 def is_static(study: Study, planned: PlannedTrial) -> bool:
-    """Whether a trial is one in which the person stands.
-
-    study: whose conditions may use that very word for a way of walking
-    """
+    """Whether somebody stands in a trial, unless the study's conditions use that very word for a way of walking."""
     return planned.condition == STATIC and STATIC not in study.conditions.words
 
 
@@ -117,10 +114,7 @@ def shared_recording(study: Study, participant: Participant) -> str:
 
 
 def differing_body(study: Study, participant: Participant) -> str:
-    """Say which measure differs between two files of a session by more than one body does, or nothing.
-
-    What the study itself says of the body goes before the files.
-    """
+    """Say which measure differs between files of a session by more than one body does; the study's own go first."""
     found: dict[tuple[str | None, str], dict[float, str]] = {}
     for trial in (one for one in participant.trials if one.condition != UNKNOWN):
         for file in trial.files:

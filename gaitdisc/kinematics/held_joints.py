@@ -177,12 +177,7 @@ def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64
 
 
 def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
-    """How well markers determine each segment: error of a marker over the error of the turn that it makes.
-
-    normal (frame, all, all): matrix of the normal equations
-    allowed (frame, all, allowed): steps that may be taken
-    returns each (frame,) [m]: about the axis for which it is shortest
-    """
+    """Error of a marker over that of the turn it makes, by segment (frame,) [m], about the axis of the shortest."""
     some = _among(normal, allowed)
     spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
     levers = {}

@@ -14,11 +14,7 @@ _MM = 1e-3
 
 
 def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.float64]:
-    """Hip joint centre in the frame of the pelvis, from mid-ASIS (x forward, y up, z to the right) [m].
-
-    width_m: distance between the anterior superior iliac spines [m]
-    depth_m: distance from the middle of the anterior to the middle of the posterior spines [m]
-    Source: Harrington 2007, J Biomech 40:595: x = -0.24 PD - 9.9, y = -0.30 PW - 10.9, z = 0.33 PW + 7.3 mm.
+    """Hip centre in the pelvis' frame from mid-ASIS [m], of width and depth [m]; Harrington 2007, J Biomech 40:595.
 
     >>> harrington_hip(0.240, 0.150, "r").round(4).tolist()
     [-0.0459, -0.0829, 0.0865]
@@ -30,9 +26,7 @@ def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.floa
 def hip_of_spines(
     left: NDArray[np.float64], right: NDArray[np.float64], sacrum: NDArray[np.float64], side: str
 ) -> NDArray[np.float64]:
-    """Hip joint centre of each frame after Harrington, from the front spines and the middle of the back ones.
-
-    left, right, sacrum (frame, 3) [m]: width and depth of the pelvis are their medians over the frames
+    """Harrington's hip centre of each frame, from spines and sacrum (frame, 3) [m]; width and depth are medians.
 
     >>> spine, back = np.array([[0.0, 0.0, 0.12]]), np.array([[-0.15, 0.0, 0.0]])
     >>> hip_of_spines(-spine, spine, back, "r").round(4).tolist()

@@ -25,10 +25,7 @@ class WalkingFrame:
 
 
 def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = "") -> NDArray[np.float64]:
-    """Axis of the laboratory that points up: the one along which the pelvis lies above the feet.
-
-    pelvis, feet (frame, 3) [m]: middle of the pelvis and of both feet; NaN allowed
-    returns (3,): unit vector along an axis
+    """Laboratory's axis (3,) along which the pelvis (frame, 3) [m] lies above the feet (frame, 3) [m]; NaN allowed.
 
     >>> up_axis(np.array([[1.0, 2.0, 0.9]]), np.array([[1.0, 2.1, 0.1]]))
     array([0., 0., 1.])
@@ -56,11 +53,7 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
 
 
 def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], file: str = "") -> None:
-    """Refuse markers of a mirrored laboratory frame.
-
-    pelvis (frame, 3, 3): axes of the pelvis: z from the left to the right spine, x from the sacrum forward, y at right
-        angles to both
-    up (3,): up in the laboratory
+    """Refuse mirrored frames; pelvis axes (frame, 3, 3): x sacrum forward, z left to right spine; up (3,).
 
     >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
     Traceback (most recent call last):

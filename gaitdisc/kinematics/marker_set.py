@@ -139,9 +139,7 @@ class MarkerSet:
         return on_sides(self.tracked[part], side or "lr")
 
     def landmark(self, key: str, side: str, names: Iterable[str]) -> tuple[str, ...]:
-        """Markers of a landmark, of which it is the midpoint: the first choice that is there, empty where none is.
-
-        names: markers that are there, in the names of this set
+        """Markers whose midpoint is a landmark: the first choice that is among these names, empty where none is.
 
         >>> marker_set("plug_in_gait").landmark("sacrum", "l", ["LPSI", "RPSI"])
         ('LPSI', 'RPSI')
@@ -154,10 +152,7 @@ class MarkerSet:
         return ()
 
     def lacking(self, names: Iterable[str]) -> list[str]:
-        """Markers that a static trial must have and that are not there; of several choices the first is named.
-
-        names: markers that are there, in the names of this set
-        """
+        """Markers of a static trial that are not among these names; of several choices the first is named."""
         there = set(names)
         absent = []
         for key in self.needed_landmarks(there):
@@ -168,10 +163,7 @@ class MarkerSet:
         return list(dict.fromkeys(absent))
 
     def needed_landmarks(self, names: Iterable[str]) -> list[str]:
-        """Landmarks without which no frame can be built from these markers.
-
-        names: markers that are there, in the names of this set
-        """
+        """Landmarks without which no frame can be built from markers of these names."""
         there = set(names)
         needed: list[str] = list(NEEDED)
         for joint, wand in (("knee", "thigh_wand"), ("ankle", "shank_wand")):
@@ -183,9 +175,7 @@ class MarkerSet:
 
 
 def sided(name: str, side: str) -> str:
-    """Name of a marker on one side.
-
-    name: with `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left), or without
+    """Name of a marker on one side, from one with or without `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left).
 
     >>> sided("{S}ASI", "l"), sided("knee_{side}", "r")
     ('LASI', 'knee_right')
@@ -234,11 +224,7 @@ def shipped_marker_sets() -> dict[str, MarkerSet]:
 
 
 def read_marker_set(path: Path) -> MarkerSet:
-    """Marker set of a TOML file.
-
-    path: file with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]` and `joints` may be
-        left out
-    """
+    """Marker set of a TOML file: `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]`, `joints`."""
     try:
         check_regular(path, LARGEST_BYTES)
         text = path.read_text(encoding="utf-8")
@@ -341,10 +327,7 @@ def _check_tracked(tracked: Mapping[str, Iterable[str]], file: str) -> None:
 
 
 def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str = "") -> MarkerSet:
-    """Marker set that comes along and that the labels are of.
-
-    returns: of those for which the static trial has all landmarks and the trial three points a segment: the one of
-        which most markers are there
+    """Bundled set of which most markers are there, with all landmarks standing and three points a segment walking.
 
     >>> legs = [f"{side}{name}" for side in "LR" for name in ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")]
     >>> recognised_marker_set(["SACR", *legs], ["SACR", *legs]).name

@@ -30,10 +30,7 @@ def marker_labels(markers: Recording) -> list[str]:
 
 
 def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float64]:
-    """Positions of markers.
-
-    returns (frame, marker, 3) [m]: NaN, in all three, where a marker was not seen
-    """
+    """Positions of markers (frame, marker, 3) [m]; NaN, in all three, where one was not seen."""
     columns = [markers.index(f"{label}.{axis}") for label in labels for axis in "xyz"]
     places = np.array(markers.values[:, columns]).reshape(len(markers.time), len(labels), 3)
     places[~np.isfinite(places).all(axis=2)] = np.nan

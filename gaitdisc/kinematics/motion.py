@@ -1,4 +1,4 @@
-"""Segments, joint centres and joint angles of a trial, from its markers and a static trial."""
+"""Segments, joint centres and joint angles of a trial, from markers and a static trial, or from given poses."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
@@ -38,6 +39,11 @@ from gaitdisc.recording.body_measures import BodyMeasures
 from gaitdisc.recording.runs import spans_s
 
 ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
+LABELS = {"pelvis": "pelvis"} | {
+    f"{part}_{side}": f"{side}_{part}" for part in ("thigh", "shank", "foot") for side in "lr"
+}
+TURN = np.array([1, 2, 0])  # x to the right, y forward, z up of Theia3D, as x forward, y up, z to the right
+SKEWED = 0.01  # largest difference of R^T R from the identity that rounding makes
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +108,7 @@ def moved_body(
 def chosen_marker_set(
     markers: Recording, static: Recording | None, given: MarkerSet | str | Path | None = None
 ) -> MarkerSet:
-    """Marker set of a trial: the one given, or the one that the labels are of.
-
-    static: markers of the static trial; None is refused where the set is to be recognised
-    """
+    """Marker set of a trial: the one given, or the one its labels are of, for which the static trial is needed."""
     if isinstance(given, MarkerSet):
         return given
     if given is not None:
@@ -120,10 +123,7 @@ def chosen_marker_set(
 
 
 def motion(markers: Recording, calibration: Calibration, forward: Sequence[float] | None = None) -> Motion:
-    """Segments, joint centres and angles of a trial.
-
-    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
-    """
+    """Segments, joint centres and angles of a trial; forward in laboratory axes, else found from the pelvis."""
     file = markers.source.file or "the trial"
     places = named_places(markers, calibration)
     placed = placed_markers(places, calibration, file)
@@ -228,11 +228,7 @@ def _gaps_and_shape(
 def angles_of_poses(
     base: Recording, poses: Mapping[str, Pose], bridged: Mapping[str, NDArray[np.bool_]], walking: WalkingFrame
 ) -> Recording:
-    """Joint angles, pelvis and foot progression [deg], pelvis translations [m] of segments in space.
-
-    base: whose times and names the angles get
-    bridged each (frame,): segment -> frames in which it is not to be trusted
-    """
+    """Joint and foot angles [deg], pelvis translations [m] of segments, on `base`'s times; bridged is suspect."""
     turns = {segment: pose.rotation for segment, pose in poses.items()}
     columns: list[tuple[Channel, NDArray[np.float64], NDArray[np.bool_]]] = []
 
@@ -272,3 +268,63 @@ JOINT_CHANNELS = {  # names, and the sign of flexion about the axis to the right
     "knee": (("knee_angle", "knee_adduction", "knee_rotation"), -1),
     "ankle": (("ankle_angle", "ankle_inversion", "ankle_rotation"), 1),
 }
+
+
+def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]:
+    """Joint angles [deg] of a trial's segments after Grood and Suntay, and what was found on the way.
+
+    segments: `<segment>.x`, ... [m] and `<segment>.r11`, ... of `pelvis`, `l_thigh`, `l_shank`, `l_foot` and the right
+        leg's, whose axes point to the right, forward and up, as Theia3D writes them
+    """
+    file = segments.source.file or "the trial"
+    there = {name.rpartition(".")[0] for name in segments.names}
+    lacking = [label for label in LABELS.values() if label not in there]
+    if lacking:
+        raise ChannelError(
+            "angles from segments need pelvis, thighs, shanks and feet, as pelvis, l_thigh, ...",
+            f"{file} has no {', '.join(lacking)}; it has {', '.join(sorted(there))}",
+            "Export these segments too, or the joint angles themselves.",
+        )
+    poses = {segment: _pose(segments, LABELS[segment], file) for segment in SEGMENTS}
+    pelvis = poses["pelvis"]
+    up = up_axis(pelvis.origin, (poses["foot_l"].origin + poses["foot_r"].origin) / 2, file)
+    check_right_handed(pelvis.rotation, up, file)
+    walking = walking_frame(pelvis.origin, pelvis.rotation[:, :, 0], up, segments.rate_hz)
+    sure = {segment: np.zeros(len(pelvis), bool) for segment in SEGMENTS}
+    angles = angles_of_poses(replace(segments, suspect=None), poses, sure, walking)
+    findings = [
+        Finding("note", "segments", file, f"angles of the poses of {len(SEGMENTS)} segments that the file holds", ""),
+        Finding("note", "direction", file, walking.how, ""),
+    ]
+    counts = {segment: int((~poses[segment].known).sum()) for segment in SEGMENTS}
+    for count in sorted(set(counts.values()) - {0}):
+        which = ", ".join(LABELS[segment] for segment in SEGMENTS if counts[segment] == count)
+        what = f"{which}: not known in {count} of {len(pelvis)} frames"
+        findings.append(Finding("warning", "gap", file, what, "their joints there"))
+    return angles, tuple(findings)
+
+
+def _pose(segments: Recording, label: str, file: str) -> Pose:
+    origin = np.stack([segments[f"{label}.{axis}"] for axis in "xyz"], axis=1)
+    cells = [segments[f"{label}.r{row}{column}"] for row in "123" for column in "123"]
+    axes = np.stack(cells, axis=1).reshape(-1, 3, 3)[:, :, TURN]
+    return Pose(origin, _square(axes, label, file))
+
+
+def _square(axes: NDArray[np.float64], label: str, file: str) -> NDArray[np.float64]:
+    """Axes that are square to the last bit; a file holds seven digits."""
+    known: NDArray[np.intp] = np.flatnonzero(np.isfinite(axes).all(axis=(1, 2)))
+    some = axes[known]
+    skew = np.abs(np.swapaxes(some, 1, 2) @ some - np.eye(3)).max(axis=(1, 2), initial=0.0)
+    wrong: NDArray[np.intp] = np.flatnonzero((skew > SKEWED) | (np.linalg.det(some) < 0))
+    if len(wrong):
+        raise ShapeError(
+            "poses of segments need axes of length 1, at right angles, right-handed",
+            f"{file}: {label} in frame {known[wrong[0]] + 1} differs from that by {skew[wrong[0]]:.2g}, "
+            f"its determinant is {np.linalg.det(some[wrong[0]]):.3g}",
+            "Export the trial again.",
+        )
+    found = np.full(axes.shape, np.nan)
+    if len(known):
+        found[known] = Rotation.from_matrix(some).as_matrix()
+    return found

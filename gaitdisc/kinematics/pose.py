@@ -70,10 +70,7 @@ class Pose:
         )
 
     def to_laboratory(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points fixed in the segment, in the laboratory's frame.
-
-        points (point, 3) or (3,) [m]: in the segment's frame
-        returns (frame, point, 3) or (frame, 3) [m]
+        """Points of the segment, (point, 3) or (3,) [m], in the laboratory, (frame, point, 3) or (frame, 3) [m].
 
         >>> Pose(np.ones((1, 3)), np.eye(3)[None]).to_laboratory(np.array([0.0, 1.0, 0.0]))
         array([[1., 2., 1.]])
@@ -84,10 +81,7 @@ class Pose:
         return self.origin[:, None] + np.einsum("fij,pj->fpi", self.rotation, points)
 
     def to_segment(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points of the laboratory's frame, in the segment's frame.
-
-        points (frame, point, 3) or (frame, 3) [m]: in the laboratory's frame
-        returns of the same shape [m]
+        """Points of the laboratory, (frame, point, 3) or (frame, 3) [m], in the segment's frame.
 
         >>> Pose(np.ones((1, 3)), np.eye(3)[None]).to_segment(np.array([[1.0, 2.0, 1.0]]))
         array([[0., 1., 0.]])
@@ -140,11 +134,7 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
 
 
 def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Root mean square distance of observed points from those of a body in a pose, frame by frame [m].
-
-    body (point, 3) [m]: points in the frame of the segment
-    observed (frame, point, 3) [m]: the same points in the laboratory; NaN where they are not seen
-    """
+    """Root mean square distance [m] by frame of observed (frame, point, 3) from body points (point, 3) in a pose."""
     apart = ((observed - pose.to_laboratory(body)) ** 2).sum(axis=2)
     seen = np.isfinite(apart)
     mean = np.where(seen, apart, 0.0).sum(axis=1) / np.maximum(seen.sum(axis=1), 1)
@@ -186,10 +176,7 @@ def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) 
 
 
 def rotation_of(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotation of the distal segment in the proximal one; what `clinical_angles` takes apart.
-
-    angles_deg (frame, 3) [deg]: flexion, adduction, rotation, with the signs of a right limb
-    returns (frame, 3, 3)
+    """Rotation (frame, 3, 3) of distal in proximal, of what `clinical_angles` gives (frame, 3) [deg].
 
     >>> angles = np.array([[30.0, -5.0, 8.0]])
     >>> clinical_angles(np.eye(3)[None], rotation_of(angles)).round(9).tolist()

@@ -28,11 +28,7 @@ def named_places(markers: Recording, calibration: Calibration) -> dict[str, NDAr
 def placed_markers(
     places: Mapping[str, NDArray[np.float64]], calibration: Calibration, file: str = ""
 ) -> PlacedMarkers:
-    """Markers of each segment, in its frame and in the laboratory.
-
-    places each (frame, 3) [m]: as `named_places` returns them
-    returns each ((marker, 3), (frame, marker, 3)) [m]: those that both trials have; NaN where one is not seen
-    """
+    """By segment, markers that both trials have: own frame (marker, 3), laboratory (frame, marker, 3) [m]."""
     placed = {}
     for segment, body in calibration.body.items():
         points = [point for point in body if point in METHODS or point in places]
@@ -51,11 +47,7 @@ def placed_markers(
 def free_fits(
     placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
 ) -> dict[str, RigidFit]:
-    """Each segment laid over its own points, the pelvis first: each carries the joint below it.
-
-    placed each ((marker, 3), (frame, marker, 3)) [m]: as `placed_markers` returns them
-    held: carries a segment through frames in which its own points are too few
-    """
+    """Each segment over its own points, pelvis first; `held` carries one through frames with too few points."""
     fits: dict[str, RigidFit] = {}
     poses: dict[str, Pose] = {}
     for segment in SEGMENTS:
@@ -99,10 +91,7 @@ def joined_poses(
 
 
 def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> NDArray[np.float64]:
-    """A joint centre as the segment above carries it.
-
-    returns (frame, 3) [m]
-    """
+    """A joint centre (frame, 3) [m] as the segment above carries it."""
     name, side = joint.split("_")
     above = {"hip": "pelvis", "knee": f"thigh_{side}", "ankle": f"shank_{side}"}[name]
     return poses[above].to_laboratory(calibration.points[above][joint])

@@ -131,10 +131,7 @@ def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
 def leg_inertia(
     person: Person, side: str, lengths_m: Mapping[str, float], foot: FootPoints, table: str = "dumas2007"
 ) -> dict[str, RigidBody]:
-    """Inertia of foot, shank and thigh of one side.
-
-    side: `r` or `l`; the left leg is the right one's mirror image
-    """
+    """Inertia of foot, shank and thigh of side `r` or `l`; the left leg is the right one's mirror image."""
     lengths = {**lengths_m, "foot": foot.toe_length_m}
     for segment in LEG:
         low, high = (0.05, 0.35) if segment == "foot" else (0.1, 0.8)
@@ -156,10 +153,7 @@ def leg_inertia(
 
 
 def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
-    """Lengths of shank and thigh between the joint centres, the median over the frames [m].
-
-    poses: with origins in the proximal joint centres: `thigh_r`, `shank_r`, `foot_r`
-    """
+    """Shank and thigh [m] between proximal joint centres of `thigh_r`, `shank_r`, `foot_r`, medians over frames."""
     found = {}
     for segment, beyond in (("shank", "foot"), ("thigh", "shank")):
         ends = [poses.get(f"{name}_{side}") for name in (segment, beyond)]

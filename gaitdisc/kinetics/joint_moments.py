@@ -74,11 +74,7 @@ def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
 
 
 def along(vector: NDArray[np.float64], axes: NDArray[np.float64], part: JointPart, side: str) -> NDArray[np.float64]:
-    """Part of a vector towards the positive angle, (frame,).
-
-    vector (frame, 3): in the laboratory's frame, such as a moment [N m]
-    axes (frame, axis, 3): from `joint_axes`
-    """
+    """Part (frame,) of a vector (frame, 3) towards the positive angle about axes (frame, axis, 3) of `joint_axes`."""
     return part.sign(side) * np.einsum("fx,fx->f", vector, axes[:, part.axis])
 
 
@@ -129,11 +125,7 @@ class Leg:
 def legs(
     poses: Mapping[str, Pose], feet: Mapping[str, FootPath], person: Person, settings: KineticsSettings
 ) -> dict[str, Leg]:
-    """Legs of which all segments have a pose, filtered and differentiated.
-
-    poses: `pelvis`, `thigh_r` and so on; origins in the proximal joint centres
-    feet: heel and toe markers of `r` and `l`, on the frames of the poses
-    """
+    """Legs all of whose segments have a pose from the proximal joint centre, filtered and differentiated."""
     names = {side: {"pelvis": "pelvis", **{one: f"{one}_{side}" for one in LEG}} for side in feet}
     whole = {side: own for side, own in names.items() if set(own.values()) <= set(poses)}
     found, moving = {}, {}

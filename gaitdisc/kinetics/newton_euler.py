@@ -33,21 +33,14 @@ class SegmentMotion:
     angular_acceleration: NDArray[np.float64]  # (frame, 3) [rad/s2], of the segment
 
     def acceleration_of(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Acceleration of a point of the segment, (frame, 3) [m/s2].
-
-        point (3,) [m]: in the segment's frame
-        """
+        """Acceleration (frame, 3) [m/s2] of a point (3,) [m] of the segment's frame."""
         arm = self.pose.rotation @ np.asarray(point, float)
         spin = np.cross(self.angular_velocity, np.cross(self.angular_velocity, arm))
         return self.acceleration + np.cross(self.angular_acceleration, arm) + spin
 
 
 def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Pose:
-    """Pose without what is faster than the cut-off: origin and axes are filtered, the axes made a rotation again.
-
-    time (frame,) [s]: even
-    returns: gaps up to 0.1 s are bridged, as in every filtered recording here; longer ones stay NaN
-    """
+    """Pose low-passed on even times, its axes made a rotation again; gaps up to 0.1 s are bridged, longer stay NaN."""
     frames = len(pose)
     values = np.hstack([pose.origin, pose.rotation.reshape(frames, 9)])
     values[~pose.known] = np.nan
@@ -57,9 +50,7 @@ def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Po
 
 
 def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotations nearest to matrices in the least-squares sense, (frame, 3, 3); NaN where a matrix has one.
-
-    matrices (frame, 3, 3): nearly rotations
+    """Rotations (frame, 3, 3) nearest to such matrices by least squares; NaN where a matrix has one.
 
     >>> nearest_rotations(1.01 * np.eye(3)[None]).round(9).tolist()
     [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]]
@@ -85,10 +76,7 @@ def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
 def segment_motions(
     poses: dict[str, Pose], time: NDArray[np.float64], cutoff_hz: float, names: Sequence[str]
 ) -> dict[str, SegmentMotion]:
-    """SegmentMotion of several segments, filtered alike.
-
-    time (frame,) [s]: even
-    """
+    """SegmentMotion of several segments on even times, filtered alike."""
     found = {}
     rate_hz = (len(time) - 1) / float(time[-1] - time[0]) if len(time) > 1 else np.nan
     for name in names:
@@ -127,9 +115,7 @@ class RigidBody:
 
 
 def needed_wrench(moving: SegmentMotion, body: RigidBody, up: NDArray[np.float64]) -> Wrench:
-    """Wrench that moves a segment as it moves and bears its weight: m (a - g), and the rate of its angular momentum.
-
-    up (3,): unit vector against gravity, in the laboratory's frame
+    """Wrench that moves a segment and bears its weight: m (a - g), rate of angular momentum; up (3,) is a unit vector.
 
     >>> from gaitdisc.kinematics.pose import Pose
     >>> still = SegmentMotion(Pose(np.zeros((1, 3)), np.eye(3)[None]), *np.zeros((3, 1, 3)))

@@ -52,10 +52,7 @@ class FootPath:
             object.__setattr__(self, name, value)
 
     def swings(self) -> list[tuple[float, float]]:
-        """Spans in which heel and toes both go forwards too fast for a foot that bears load [s].
-
-        Forwards is where the foot goes when it is fastest: on a belt it is carried backwards.
-        """
+        """Spans [s] in which heel and toes go forwards, where the foot is fastest, too fast to bear load."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         heel, toe = (differentiated(part, rate_hz) for part in (self.heel, self.toe))
         speed = np.nan_to_num(np.linalg.norm(heel + toe, axis=1))
@@ -68,20 +65,13 @@ class FootPath:
         return [(float(self.time[start]), float(self.time[end - 1])) for start, end in runs(both)]
 
     def still(self, part: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Frames in which heel or toe hardly moves, (frame,).
-
-        part (frame, 3) [m]: `heel` or `toe`
-        """
+        """Frames (frame,) in which a part (frame, 3) [m], `heel` or `toe`, hardly moves."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         with np.errstate(invalid="ignore"):
             return np.linalg.norm(differentiated(part, rate_hz), axis=1) < STILL_M_PER_S
 
     def beside(self, points: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far points lie from the line from heel to toe, seen from above, (frame,) [m].
-
-        points (frame, 3) [m]: one for each frame
-        up (3,): against gravity
-        """
+        """How far points (frame, 3) [m] lie from the line heel to toe, seen from above, (frame,) [m]; up (3,)."""
         level = np.eye(3) - np.outer(up, up)
         line, off = (self.toe - self.heel) @ level, (points - self.heel) @ level
         share = np.einsum("fx,fx->f", line, off) / np.einsum("fx,fx->f", line, line)
@@ -89,11 +79,7 @@ class FootPath:
 
 
 def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict[str, FootPath]:
-    """Paths of the feet by their markers.
-
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
-    names mapping of str to (str, str): side (`r`, `l`) to the heel marker and the toe marker
-    """
+    """Paths of the feet, `r` and `l`, by heel and toe markers `<marker>.x`, `.y`, `.z` [m]."""
     return {
         side: FootPath(side, markers.time, *(marker_position(markers, name) for name in pair))
         for side, pair in names.items()
@@ -190,10 +176,7 @@ def weighed_steps(
     airborne: Mapping[str, Sequence[tuple[float, float]]],
     weight: Weight,
 ) -> list[PlateStep]:
-    """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need.
-
-    airborne: spans in which a foot swings, as `swings` gives them [s]
-    """
+    """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need."""
     named = {platform.name: platform for platform in found}
 
     def weighed(step: PlateStep) -> PlateStep:
@@ -212,10 +195,7 @@ def weighed_steps(
 
 
 def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:
-    """Say which platforms nobody stepped on.
-
-    least_load_n: force at which a loading ends [N]
-    """
+    """Say on which platforms no loading above `least_load_n` [N] is."""
     return [
         Finding(
             "note",
@@ -232,10 +212,7 @@ def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = L
 def _foot(
     platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
 ) -> tuple[str, str, str]:
-    """Side of the foot that loads a platform, why the step cannot be used, and whether that is a doubt.
-
-    A side that the platform names stays, and cannot be where another foot, or none, stands where the force is.
-    """
+    """Side of the loading foot, which a platform may name, why the step cannot be used, and whether that is a doubt."""
     beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
     known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
     side = min(known, key=lambda key: known[key], default="")

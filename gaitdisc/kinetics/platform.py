@@ -45,17 +45,11 @@ class Platform:
         return self.wrench.force @ self.up
 
     def pressure_centre(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.float64]:
-        """Where the force meets the surface, (sample, 3) [m]; NaN where it presses with less than `least_load_n`.
-
-        least_load_n: least force along the normal [N]
-        """
+        """Where the force meets the surface, (sample, 3) [m]; NaN where its normal part is below `least_load_n` [N]."""
         return self.wrench.pressure_centre(self.point, self.up, least_load_n)
 
     def loadings(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.intp]:
-        """First and last sample of each loading, as force contacts are found, (loading, 2).
-
-        least_load_n: force at which a loading ends [N]; it begins 2.5 times as high
-        """
+        """First and last sample (loading, 2) of each loading, from 2.5 `least_load_n` [N] down to it."""
         return loaded(self.load_n, self.rate_hz, least_load_n / 0.4)
 
     def smoothed(self, cutoff_hz: float, spans: Sequence[tuple[float, float]]) -> Wrench:

@@ -40,12 +40,7 @@ class Wrench:
     def at(
         cls, point: NDArray[np.float64], force: NDArray[np.float64], moment: NDArray[np.float64] | float = 0.0
     ) -> Wrench:
-        """Wrench of a force that acts at a point, and a moment about that point.
-
-        point (sample, 3) or (3,) [m]: in the laboratory's frame
-        force (sample, 3) [N]: force
-        moment (sample, 3) [N m]: about the point; none by default
-        """
+        """Wrench of a force (sample, 3) [N] at a point (sample, 3) or (3,) [m], and a moment about it [N m]."""
         return cls(force, np.cross(point, force) + moment)
 
     def __add__(self, other: Wrench) -> Wrench:
@@ -58,20 +53,13 @@ class Wrench:
         return len(self.force)
 
     def about(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Moment about another point, (sample, 3) [N m].
-
-        point (sample, 3) or (3,) [m]: in the laboratory's frame
-        """
+        """Moment (sample, 3) [N m] about another point (sample, 3) or (3,) [m] of the laboratory's frame."""
         return self.moment - np.cross(point, self.force)
 
     def pressure_centre(
         self, point: NDArray[np.float64], up: NDArray[np.float64], least_load_n: float = LEAST_LOAD_N
     ) -> NDArray[np.float64]:
-        """Where the force meets a surface, (sample, 3) [m]; NaN where it presses with less than `least_load_n`.
-
-        point (3,) [m]: a point of the surface
-        up (3,): its unit normal, towards the foot
-        least_load_n: least force along the normal [N]
+        """Where a force meets a surface of unit normal `up`, (sample, 3) [m]; NaN below `least_load_n` [N] along it.
 
         >>> step = Wrench.at(np.array([0.2, 0.1, 0.0]), np.array([[30.0, 0.0, 700.0], [0.0, 0.0, 19.0]]))
         >>> step.pressure_centre(np.zeros(3), np.array([0.0, 0.0, 1.0])).round(9)

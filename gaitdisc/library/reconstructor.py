@@ -16,9 +16,9 @@ from gaitdisc.ingest.table import frame_columns, has_times
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.recording.arrays import real_array
 from gaitdisc.results.kind import Kind, Saved
-from gaitdisc.sensing.intervals import half_widths
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
+from gaitdisc.sensing.state_errors import half_widths
 from gaitdisc.sensing.windows import Lags, stacked, windows_of
 from gaitdisc.statistics.r2 import r2
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ShapeError
+from gaitdisc.ingest.columns import stream_of
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.ingest.streams import stream_of
 from gaitdisc.ingest.table import frame_columns
 from gaitdisc.recording import Recording, Trial
 

@@ -90,10 +90,7 @@ def chosen_contacts(
 
 
 def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mapping[str, Mapping[str, Contacts]]) -> str:
-    """First detector in an order that sees 80 % of the most strides; the events where all that see more deny them.
-
-    strides: detector -> strides that it sees, none of them 0
-    """
+    """First detector in an order that sees 80 % of the most strides; the events where all that see more deny them."""
     most = max(strides.values())
     richer = [name for name in strides if ENOUGH * strides[name] > strides.get("events", most)]
     stand = bool(richer) and all(_differ(seen["events"], seen[name]) for name in richer)
@@ -200,11 +197,7 @@ def _moved(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Conta
 
 
 def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
-    """By how much contacts of markers or angles were moved, or that nothing could show it.
-
-    by: the steps that showed it, in words
-    spoils: what is early where none did
-    """
+    """By how much contacts were moved and by what steps, in words; or that nothing shows it, and what is early then."""
     if offset_s is None:
         what = f"contacts by {detector}, and no plate saw a step: they lie early by some {EARLY_MS[detector]:g} ms in "
         what += f"walking ({EARLY_RANGE[detector]} with a plate)"
@@ -246,10 +239,7 @@ def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
 
 
 def trial_direction(markers: Recording, heels: Mapping[str, str], pelvis: list[str], direction: str = "") -> Direction:
-    """Direction of walking of a trial: the one that is given, else from its markers.
-
-    direction: in the laboratory's axes, `+x` to `-z`; inferred where it is empty
-    """
+    """Direction of walking: the given one, `+x` to `-z` in the laboratory's axes, else from the trial's markers."""
     if not direction:
         return walking_direction(markers, heels, pelvis)
     sign = -1.0 if direction[0] == "-" else 1.0

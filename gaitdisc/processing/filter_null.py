@@ -47,10 +47,7 @@ def filter_null(
 
 
 def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
-    """R2 that noise reaches through the filters of one walk, at the rates it was measured with.
-
-    walk: whether its EMG is raw or holds envelopes is seen from the EMG
-    """
+    """R2 that noise reaches through the filters of one walk at its own rates; whether EMG is raw is seen from it."""
     emg = walk.trial.streams.get("emg")
     emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
     return filter_null(walk.state.channels, filters, walk.state.rate_hz, emg_hz)

@@ -90,11 +90,7 @@ class Inspection:
 
 
 def inspected_study(study: Study) -> Iterator[Inspection]:
-    """Read and process every trial of a study as `gaitdisc run` would; those of unknown conditions are read too.
-
-    returns: one a trial, in the study's order; then one for each participant, or session and condition, that is
-        refused
-    """
+    """Read and process every trial of a study as `gaitdisc run` would, in its order; then who is refused as a whole."""
     refused = []
     with C3DReader() as reader:
         for participant in study.participants:
@@ -127,10 +123,7 @@ def _processed(study: Study, participant: Participant, reader: C3DReader) -> dic
 
 
 def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: bool = False) -> dict[int, Inspection]:
-    """Trials whose cycles are pooled, by their place in the study, then what is refused as a whole.
-
-    Where they would stand in for a comparison and cannot, none.
-    """
+    """Pooled trials by place in the study, then what is refused whole; none that cannot stand in for a comparison."""
     streams: dict[str, dict[str, str]] = {}
     read_with: dict[str, tuple[Finding, ...]] = {}
 

@@ -68,11 +68,7 @@ class JointRecord:
 
 
 def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) -> JointRecord:
-    """Return one joint of a trial: angles low-passed, EMG as envelopes, moments in N m, on the study's side.
-
-    joint: angle without its side, `ankle_angle`
-    mass_kg: of the body, where moments are per kg of it
-    """
+    """Return one joint (`ankle_angle`): low-passed angles, EMG envelopes, moments in N m by the mass, on one side."""
     side, filters = study.strides.side, study.filters
     name = f"{joint}_{side}"
     raw = trial.stream("kinematics").selected([name])

@@ -13,8 +13,7 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.exchanged_labels import Exchange
 from gaitdisc.kinematics.markers import marker_labels
-from gaitdisc.kinematics.motion import Motion, motion
-from gaitdisc.kinematics.segment_angles import segment_angles
+from gaitdisc.kinematics.motion import Motion, motion, segment_angles
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
@@ -138,10 +137,7 @@ def with_segment_angles(trial: Trial) -> Trial:
 
 
 def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:
-    """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame.
-
-    calibration: that says where heel and toes lie in the foot
-    """
+    """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame."""
     found = {}
     for side in "lr":
         foot, points = moved.poses[f"foot_{side}"], calibration.points[f"foot_{side}"]

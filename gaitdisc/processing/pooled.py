@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
+import tempfile
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -18,9 +22,7 @@ from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
 from gaitdisc.kinematics.exchanged_labels import UNFIT
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
-from gaitdisc.processing.cycle_channels import cycle_channels
 from gaitdisc.processing.process import knees_and_hips, quality_findings
-from gaitdisc.processing.shelf import Shelf, ShelvedRecordings, shelf
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
@@ -29,6 +31,7 @@ from gaitdisc.processing.trial_cycles import (
     Places,
     PlateLoadings,
     cut_cycles,
+    cycle_channels,
     feet_in,
     heel_paths,
     plate_loadings,
@@ -334,3 +337,56 @@ def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple
                 whole[place][:, columns] = values
         row += len(own)
     return tuple(by_name.values()), whole
+
+
+@dataclass(frozen=True, eq=False)
+class ShelvedRecordings:
+    """Recordings of a trial, on disk or, where that has no room, in memory."""
+
+    kept: tuple[Recording, ...]  # with their samples, or with one sample each where these are on disk
+    files: tuple[Path, ...] = ()  # where the samples lie; empty where they are in memory
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Channels of all of them."""
+        return tuple(channel for recording in self.kept for channel in recording.channels)
+
+    def recordings(self) -> Iterator[Recording]:
+        """Return the recordings with their samples, one after the other."""
+        if not self.files:
+            yield from self.kept
+            return
+        for recording, file in zip(self.kept, self.files, strict=True):
+            with np.load(file, allow_pickle=False) as held:
+                yield replace(recording, **{name: held[name] for name in ("time", "values", "suspect")})
+
+
+@dataclass(frozen=True)
+class Shelf:
+    """A folder for samples that are needed later."""
+
+    folder: Path
+    _numbers: Iterator[int] = field(default_factory=itertools.count, init=False, repr=False, compare=False)
+
+    def put(self, recordings: Sequence[Recording]) -> ShelvedRecordings:
+        """Put recordings away."""
+        files = []
+        try:
+            for one in recordings:
+                file = self.folder / f"{next(self._numbers)}.npz"
+                np.savez(file, time=one.time, values=one.values, suspect=np.asarray(one.suspect))
+                files.append(file)
+        except OSError:  # no room on disk
+            return ShelvedRecordings(tuple(recordings))
+        empty = (
+            replace(one, time=one.time[:1].copy(), values=one.values[:1].copy(), suspect=np.array(one.suspect)[:1])
+            for one in recordings
+        )
+        return ShelvedRecordings(tuple(empty), tuple(files))
+
+
+@contextmanager
+def shelf() -> Iterator[Shelf]:
+    """Shelf that is cleared at the end."""
+    with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
+        yield Shelf(Path(folder))

@@ -161,10 +161,7 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
 
 
 def envelope_of(emg: Recording, filters: Filters, raw: bool | None = None) -> Recording:
-    """Envelope of raw EMG; what is an envelope already is low-passed as one is.
-
-    raw: seen from the samples where it is not given
-    """
+    """Envelope of raw EMG; what is one is low-passed alone. Whether it is raw is seen where `raw` is not given."""
     if is_raw(emg) if raw is None else raw:
         return enveloped(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
     return lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)

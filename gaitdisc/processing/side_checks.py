@@ -28,10 +28,7 @@ MOST, LEAST = 0.75, 0.25  # share of the steps that have their foot, exchanged a
 
 
 def side_findings(trial: Trial, strides: Mapping[str, Strides], weight_n: float | None = None) -> list[Finding]:
-    """What shows that sides, plates or muscles bear another's name, or that plates contradict feet or weight.
-
-    weight_n: of the person; without it plates are held against feet alone
-    """
+    """What shows exchanged sides, plates or muscles, or plates against feet or, where known, the person's weight."""
     findings: list[Finding] = []
     if "markers" in trial.streams:
         findings += marker_side_findings(trial.stream("markers"))
@@ -120,10 +117,7 @@ def standing_weight_n(trial: Trial) -> float | None:
 
 
 def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> list[Finding]:
-    """Say that the mass is not that of the person on the plates; a UnitError where moments per kg are worth nothing.
-
-    mass_kg: as the study or the files state it
-    """
+    """Say that the stated mass is not that on the plates; a UnitError where moments per kg are worth nothing."""
     off = abs(weighed_n / (mass_kg * GRAVITY) - 1) if weighed_n and mass_kg else 0.0
     if weighed_n is None or off <= NOTED:
         return []

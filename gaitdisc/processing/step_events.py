@@ -192,10 +192,7 @@ def _reaches(recording: Recording, names: list[str], least: float) -> NDArray[np
 
 
 def over_ground(trial: Trial) -> bool:
-    """Whether somebody walks through the laboratory: by the path of the pelvis, else by the length of the trial.
-
-    trial: with markers, or with `pelvis_tx` and `pelvis_tz`; without either a trial of up to 10 s is one over ground
-    """
+    """Whether somebody walks through the room: by the pelvis' path, else by a length of the trial of up to 10 s."""
     known = trial_markers(trial)
     if known is not None:
         return known[2].headings is not None
@@ -211,10 +208,7 @@ def over_ground(trial: Trial) -> bool:
 
 
 def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], list[str], Direction] | None:
-    """Heels, pelvis and direction of walking of a trial; None where its markers do not give them.
-
-    direction: in the laboratory's axes, `+x` to `-z`; inferred where it is empty
-    """
+    """Heels, pelvis and direction (`+x` to `-z`, inferred where empty); None where markers do not give them."""
     if "markers" not in trial.streams:
         return None
     markers = trial.stream("markers")

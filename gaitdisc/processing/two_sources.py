@@ -72,10 +72,7 @@ def without_contradicted(trial: Trial) -> Trial:
 
 
 def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
-    """Angles between the lines from hip to knee to ankle and from heel to toe, without a static trial.
-
-    returns each (frame,) [deg]: hip flexion and adduction, knee and ankle angles that there are markers for
-    """
+    """Angles of the lines hip to knee to ankle and heel to toe, each (frame,) [deg], as far as there are markers."""
     labels = marker_labels(markers)
     named: dict[tuple[str, str], list[str]] = {}
     for known in sorted(shipped_marker_sets().values(), key=lambda one: len(one.names(labels))):  # the best one last

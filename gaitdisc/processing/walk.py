@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,10 +59,7 @@ def walk_summary(
 
 
 def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:
-    """Strides of every channel, cut by the contacts of its own foot; without a side by those of the foot to follow.
-
-    returns (stride, phase, channel): NaN behind the strides of the foot that has fewer
-    """
+    """Strides (stride, phase, channel) by the own foot's contacts, else the followed foot's; NaN behind the fewer."""
     columns: list[NDArray[np.float64]] = []
     for state in states:
         own = [channel.side if channel.side in strides else follow for channel in state.channels]

@@ -15,7 +15,7 @@ from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contact
 from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings
 from gaitdisc.processing.walk import walk_summary
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.results.walk_summary import WalkSummary
+from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts

@@ -14,9 +14,8 @@ from gaitdisc.recording import Recording
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
-from gaitdisc.results.pooled_cycles import mean_curve
+from gaitdisc.results.pooled_cycles import WALK, WalkSummary, mean_curve
 from gaitdisc.results.study_run import StudyRun
-from gaitdisc.results.walk_summary import WALK, WalkSummary
 from gaitdisc.words import counted, label, sideless, unit_text, upwards
 
 if TYPE_CHECKING:
@@ -41,10 +40,7 @@ def curves_figures(run: StudyRun, participant: str, name: str) -> list[Figure]:
 
 
 def curve_numbers(run: StudyRun, participant: str) -> pd.DataFrame:
-    """Mean and standard deviation over strides of every channel and walk on 101 points.
-
-    returns: channel, unit, walk (`nominal` or `exo`), percent, n (strides with a value there), mean, sd
-    """
+    """Channel, unit, walk (`nominal` or `exo`), percent (101 points), n of strides, mean and sd over strides."""
     tables = []
     for walk in WALKS:
         summary = walk_of(run, participant, walk)
@@ -78,10 +74,7 @@ def sides_together(names: list[str]) -> list[str]:
 
 
 def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
-    """Draw mean and spread of both walks of one channel over the stride.
-
-    curves: rows of `curve_numbers` of one channel
-    """
+    """Draw mean and spread of both walks of one channel over the stride, from its rows of `curve_numbers`."""
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
     for walk, rows in curves.groupby("walk", sort=False):
         without = walk == "nominal"
@@ -175,10 +168,7 @@ def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> No
 
 
 def course_numbers(phi: NDArray[np.float64], components: NDArray[np.float64]) -> pd.DataFrame:
-    """Mean and standard deviation of each component in 2 % of the stride.
-
-    returns: component, from 1; percent; mean; sd [1]
-    """
+    """Component (from 1), percent in steps of 2 % of the stride, mean and sd [1]."""
     known = np.isfinite(phi)
     place = np.clip(np.digitize(phi[known], BINS) - 1, 0, len(BINS) - 2)
     middle = (BINS[:-1] + BINS[1:]) / 2

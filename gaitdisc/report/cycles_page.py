@@ -224,11 +224,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
 def draw_cycles(
     axes: Axes, every: NDArray[np.float64], mean: NDArray[np.float64], sd: NDArray[np.float64], side: str
 ) -> None:
-    """Draw every cycle faint, and their mean; from three cycles on its spread.
-
-    every (cycle, phase): on 0 to 100 % in 101 points
-    mean, sd (phase,): over the cycles
-    """
+    """Draw every cycle (cycle, phase) faint, and their mean (phase,); from three cycles on its spread."""
     look = SIDES[side]
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
     axes.plot(PERCENT, every[:MOST_FAINT].T, color=look.colour, linewidth=0.4, alpha=0.35, zorder=1)

@@ -46,10 +46,7 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
 
 
 def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
-    """Median R2 over the variables of a group, for each participant, length and model; networks only.
-
-    returns: variables (`angles` or `EMG`), participant, length_s, model, r2, count (variables)
-    """
+    """Variables (`angles` or `EMG`), participant, length_s, network, its median R2 over these, count of variables."""
     tables = []
     for quantity in run.quantities:
         chosen = quantity.table[(quantity.table["kind"] == "network") & (quantity.table["walk"] == "exo")]

@@ -40,11 +40,7 @@ def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
 
 
 def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
-    """Measured and predicted second derivatives of the last `WINDOW_S` seconds.
-
-    returns: variable, unit, time_s, percent, measured, nominal, augmented; augmented_low, augmented_high where there
-        is a band
-    """
+    """Measured and predicted second derivatives of the last `WINDOW_S` seconds, a band where there is one."""
     held = response.held_out
     shown = held.time >= (held.time[-1] - WINDOW_S if len(held.time) else 0.0)
     tables = [
@@ -143,10 +139,7 @@ def _band_words(response: ParticipantResponse) -> str:
 
 
 def listed_models(rows: pd.DataFrame) -> str:
-    """Legend of the models in words.
-
-    rows: with a column for each model that is drawn
-    """
+    """Legend in words of the models that have a column."""
     looks = {"nominal": "orange, dashed: Nominal", "augmented": "green, solid: Augmented"}
     return "; ".join(words for model, words in looks.items() if model in rows)
 
@@ -171,10 +164,7 @@ def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
 
 
 def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
-    """Mean residual with its interval, and every stride, point by point.
-
-    returns: variable, unit, model, percent, n (strides with a value there), mean, low, high, stride_1, stride_2, ..
-    """
+    """Mean residual and its interval by variable, model and percent with n; each stride in a column of its own."""
     means = {model: mean_interval(response.residuals[model]) for model in MODELS if model in response.residuals}
     tables = []
     for column, variable in enumerate(response.outputs):

@@ -73,10 +73,7 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
 
 
 def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
-    """Draw both walks over the stride, shaded where they differ by more than chance.
-
-    curves: rows of `mismatch_numbers` of one channel
-    """
+    """Draw both walks of one channel's rows of `mismatch_numbers`, shaded where they differ by more than chance."""
     percent = curves["percent"].to_numpy()
     sd = curves["sd_second"].fillna(0.0)
     look = WITHOUT_DEVICE
@@ -90,10 +87,7 @@ def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], c
 
 
 def draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
-    """Draw the gap over the stride with its band.
-
-    curves: rows of `mismatch_numbers` of one channel
-    """
+    """Draw the gap of one channel's rows of `mismatch_numbers` over the stride with its band."""
     percent = curves["percent"].to_numpy()
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
     axes.fill_between(percent, curves["low"], curves["high"], color=colour, alpha=0.22, linewidth=0, zorder=1)

@@ -24,10 +24,7 @@ MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 
 
 def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
-    """Write `report.html` of a folder.
-
-    shown: what the template names, but for the version of this package
-    """
+    """Write `report.html` of a folder from what the template names, beside the version of this package."""
     return write_whole(folder / "report.html", page_text(template, shown))
 
 

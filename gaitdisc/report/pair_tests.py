@@ -208,10 +208,7 @@ def _range(values: pd.Series, form: str) -> str:
 
 @in_style
 def comparison_figures(run: ResponseRun) -> list[Figure]:
-    """Boxes of R2 over participants, three a variable, with a bar above every pair that differs.
-
-    run: with tests; where there are none, there is no figure
-    """
+    """Boxes of R2 over participants, three a variable, a bar above every pair that differs; none without tests."""
     if run.tests is None or run.tests.too_few:
         return []
     numbers = r2_numbers(run)

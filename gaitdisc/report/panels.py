@@ -59,10 +59,7 @@ class Room:
 
 
 def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[list[Axes]]]:
-    """Empty panels of equal size, in rows and columns.
-
-    height: of one panel [inch]
-    """
+    """Empty panels of equal size, in rows and columns, each of a height [inch]."""
     from matplotlib.figure import Figure as Drawing
 
     whole = room.top + rows * height + (rows - 1) * room.down + room.bottom
@@ -86,10 +83,7 @@ def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotl
 
 
 def panels_for(count: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[Axes]]:
-    """Panels for so many things, row by row, in so many columns at most.
-
-    height: of one panel [inch]
-    """
+    """Panels of a height [inch] for so many things, row by row, in so many columns at most."""
     columns = min(columns, count)
     drawn, grid = panels(-(-count // columns), columns, height, room)
     found = [axes for row in grid for axes in row]
@@ -99,10 +93,7 @@ def panels_for(count: int, columns: int, height: float, room: Room) -> tuple[mat
 
 
 def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: float = 0.0) -> None:
-    """Write one row of a legend above all panels.
-
-    down: below the top of the figure [inch]: a second row stands under the first
-    """
+    """Write one row of a legend above all panels, so far below the figure's top [inch]."""
     top = (0.5, 1.0 - down / drawn.get_figheight())
     drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=top)
 
@@ -161,10 +152,7 @@ def draw_box(
     colour: str,
     orientation: Literal["vertical", "horizontal"] = "vertical",
 ) -> None:
-    """Draw a box whose whiskers reach the smallest and the largest value.
-
-    values (participant,): finite
-    """
+    """Draw a box of finite values (participant,) whose whiskers reach the smallest and the largest of them."""
     line = {"color": colour, "linewidth": 0.9}
     axes.boxplot(
         [values],

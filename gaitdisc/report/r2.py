@@ -56,10 +56,7 @@ R2_TABLE = (
 
 
 def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
-    """R2 of one participant, (variable, column of `R2_TABLE`); NaN where it was not computed.
-
-    response: holds one row for each variable, model, kind and walk
-    """
+    """R2 of one participant, (variable, column of `R2_TABLE`); NaN where it was not computed."""
     known = response.r2
     found = {
         (variable, "" if kind == "null" else model, kind, walk): r2
@@ -75,10 +72,7 @@ def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
 
 
 def medians(table: pd.DataFrame) -> pd.Series:
-    """Median of each column over the variables that were computed.
-
-    table: of `r2_by_variable`
-    """
+    """Median of each column of `r2_by_variable` over the variables that were computed."""
     return table.median(axis=0, skipna=True)
 
 
@@ -90,10 +84,7 @@ def participant_medians(run: ResponseRun) -> pd.DataFrame:
 
 
 def quartiles_over_participants(run: ResponseRun) -> pd.DataFrame:
-    """Median, quartiles and number of participants of every variable and column, one row each.
-
-    returns: variable, column, median, q1, q3, n (participants that have the number)
-    """
+    """Variable, column, median, q1, q3 and n of participants who have the number, one row each."""
     rows = []
     tables = [r2_by_variable(response) for response in run.responses]
     for variable in variables(run):
@@ -134,10 +125,7 @@ def r2_figures(run: ResponseRun) -> list[Figure]:
 
 
 def r2_numbers(run: ResponseRun) -> pd.DataFrame:
-    """R2 of every participant and variable on the held-out device walk.
-
-    returns: participant, variable, model (empty for the null), kind, r2
-    """
+    """Participant, variable, model (empty for the null), kind and r2 on the held-out device walk."""
     tables = []
     for response in run.responses:
         table = r2_by_variable(response)
@@ -170,10 +158,7 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
 
 
 def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
-    """Draw R2 of every variable, a row each.
-
-    numbers: of `r2_numbers`
-    """
+    """Draw R2 of every variable, a row each, from `r2_numbers`."""
     names, low = list(dict.fromkeys(numbers["variable"])), lowest_drawn(numbers)
     for row, variable in enumerate(names):
         _draw_variable(axes, numbers[numbers["variable"] == variable], row, low)

@@ -252,10 +252,7 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
 
 
 def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
-    """Draw one state over the stride: measured with its spread, and what each model estimates.
-
-    numbers: rows of `Reconstruction.curves` of one person and state
-    """
+    """Draw one person's rows of `Reconstruction.curves` of a state: measured with its spread, and each estimate."""
     for place, (model, rows) in enumerate(numbers.groupby("model", sort=False)):
         if place == 0:
             low, high = rows["measured"] - rows["measured_sd"], rows["measured"] + rows["measured_sd"]
@@ -265,10 +262,7 @@ def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
 
 
 def search_table(found: pd.DataFrame) -> Table:
-    """Best set of every size.
-
-    found: `search` of a reconstruction
-    """
+    """Best set of every size, from a reconstruction's `search`."""
     chosen = enough_sensors(found)
     rows = tuple(
         (
@@ -292,10 +286,7 @@ def search_table(found: pd.DataFrame) -> Table:
 
 
 def search_sentences(found: pd.DataFrame) -> list[str]:
-    """How many sensors are enough, and what one more would bring.
-
-    found: `search` of a reconstruction
-    """
+    """How many sensors are enough by a reconstruction's `search`, and what one more would bring."""
     chosen = enough_sensors(found)
     row = found.iloc[chosen]
     names = listed([label(name) for name in str(row["names"]).split(", ")])

@@ -26,8 +26,8 @@ from gaitdisc.report.table import (
 )
 from gaitdisc.report.walks import dropped_table, fits_table, strides_figure, walks_table
 from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.walk_summary import WALK
 
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded

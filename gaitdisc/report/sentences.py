@@ -197,10 +197,7 @@ def _median_iqr(values: pd.Series) -> str:
 
 
 def r2_text(run: ResponseRun) -> rich.table.Table:
-    """R2 of one participant by variable, or of several participants by person, each the median over variables.
-
-    run: the whole result. Where nobody could be analysed, the table says who was refused, and why
-    """
+    """R2 of one participant by variable, of several by person (medians over variables), or who was refused, and why."""
     if not run.responses:
         return _refused(run)
     about = f"last {held_out_text(run)} s of each walk held out; null: band-limited noise alone"

@@ -47,10 +47,7 @@ def save_tables(tables: Iterable[Table], folder: Path) -> None:
 
 
 def save_table(table: pd.DataFrame, path: Path) -> None:
-    """Write a table as CSV, whole, with the same bytes for the same numbers.
-
-    table: its index is not written
-    """
+    """Write a table without its index as CSV, whole, with the same bytes for the same numbers."""
     write_csv(table, path, "%.8g")
 
 

@@ -60,10 +60,7 @@ def modalities_figure(run: VariantRun) -> Figure | None:
 
 
 def falls(run: VariantRun) -> pd.DataFrame:
-    """Fall of R2 without each family of inputs, median over the variables of a group; networks only.
-
-    returns: variables (`angles` or `EMG`), without, model, participant, fall
-    """
+    """Variables (`angles` or `EMG`), family left out, network, participant, median fall of R2 over the variables."""
     table = run.r2_table()
     table = table[table["kind"] == "network"]
     table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
@@ -155,11 +152,7 @@ def _alt(numbers: pd.DataFrame) -> str:
 
 
 def setting_medians(run: VariantRun) -> pd.DataFrame:
-    """Median over participants of the median over variables, for each setting, group of variables and model.
-
-    returns: variant, variables (`angles`, `EMG`), participants, and a column for each of Nominal, Augmented, Exo, the
-        ridge regression's Augmented and the null
-    """
+    """Medians over participants of medians over variables, by setting, group of variables and model."""
     table = run.r2_table()
     table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
     keys = ["variant", "variables", "model", "kind"]
@@ -180,10 +173,7 @@ def setting_medians(run: VariantRun) -> pd.DataFrame:
 
 
 def orders(run: VariantRun) -> pd.DataFrame:
-    """In how many participants Nominal < Augmented holds, and in how many variables the two are shown to differ.
-
-    returns: variant, participants, holds, variables, different (NaN where nothing was tested)
-    """
+    """By variant: how many participants have Nominal < Augmented; in how many variables the two are shown to differ."""
     table = run.r2_table()
     table = table[table["kind"] == "network"]
     middle = table.pivot_table(

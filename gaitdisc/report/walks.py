@@ -26,10 +26,7 @@ _HEIGHTS = {"r": 1.0, "l": 0.0, "": 0.5}
 
 
 def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
-    """Every stride of a participant with its duration, and a letter for the kind of reason that dropped it.
-
-    returns: columns of `COLUMNS`, in order of time within each walk
-    """
+    """Every stride with its duration in order of time, and a letter for the kind of reason that dropped it."""
     walks = [walk_of(run, participant, walk) for walk in WALKS]
     tables = [
         walk.strides.assign(participant=walk.subject, condition=walk.condition) for walk in walks if walk is not None

@@ -58,11 +58,7 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
 
 
 def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
-    """Tests of the three pairs of models, corrected under every family that the source may have meant.
-
-    tests: first, second, variable, p
-    returns: columns `FAMILY_COLUMNS`
-    """
+    """Tests (first, second, variable, p) of three pairs corrected under every family meant: `FAMILY_COLUMNS`."""
     chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
     families = {
         "pair": (chosen["first"] + " " + chosen["second"]).tolist(),

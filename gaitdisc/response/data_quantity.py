@@ -71,10 +71,7 @@ def _with_length(response: ParticipantResponse, length_s: float) -> pd.DataFrame
 
 
 def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
-    """Walk whose training part keeps so many seconds usable; the held-out part is untouched.
-
-    length_s: length that stays usable [s]
-    """
+    """Walk whose training part keeps `length_s` [s] usable; the held-out part is untouched."""
     training, _ = held_out_part(walk, settings)
     count, keep = len(training.time), round(length_s * walk.rate_hz)
     good = np.flatnonzero(np.isfinite(training.phi) & training.usable.all(axis=1))

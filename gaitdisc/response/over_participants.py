@@ -108,13 +108,7 @@ def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFram
 
 
 def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
-    """Test the reductions against zero over participants, for each measure and model over the variables.
-
-    reductions: of `residual_reductions`
-    alpha: of each family: the variables of one measure and model
-    returns: columns `REDUCTION_TEST_COLUMNS`; shift, low and high are the Hodges-Lehmann reduction and its interval of
-        95 %. Empty for fewer than six participants
-    """
+    """Test reductions against zero, a family a measure and model; Hodges-Lehmann shift and 95 % interval."""
     if reductions["participant"].nunique() < FEWEST:
         return no_rows("reduction_tests")
     parts = []
@@ -131,11 +125,7 @@ def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.Dat
 
 
 def representative(reductions: pd.DataFrame, model: str = "augmented", measure: str = "rms") -> str:
-    """Participant whose reduction, median over variables, is nearest to the median participant's.
-
-    reductions: of `residual_reductions`
-    returns: pseudonym; the first of several as near, empty where nobody has a number
-    """
+    """Pseudonym whose reduction, median over variables, is nearest the median one; the first of several, or empty."""
     own = reductions[reductions["model"] == model]
     middle = own.groupby("participant", sort=False)[f"{measure}_reduction"].median().dropna()
     return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
@@ -168,11 +158,7 @@ def _sizes(residuals: NDArray[np.float64]) -> pd.DataFrame:
 
 
 def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:
-    """Sub-group of each participant, and the verdict in a sentence that says who was looked at.
-
-    responses: the participants. Who lacks a point of the stride in an output is left out by name
-    returns table: columns `RESPONDER_COLUMNS`; empty where there were too few, or outputs differ
-    """
+    """Sub-groups (`RESPONDER_COLUMNS`) and the verdict, naming who was left out; empty where too few or unlike."""
     whole = [bool(np.isfinite(each.residuals["nominal"]).any(axis=0).all()) for each in responses]
     complete = [each for each, has_all in zip(responses, whole, strict=True) if has_all]
     absent = [each.participant for each, has_all in zip(responses, whole, strict=True) if not has_all]
@@ -198,11 +184,7 @@ def find_responders(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
 
 
 def discrepancy_curves(responses: Sequence[ParticipantResponse]) -> NDArray[np.float64]:
-    """Mean over strides of what the Nominal model leaves of device walking, one row a participant.
-
-    returns (participant, output and phase) [1]: every output over its root mean square of all participants, so that
-        angles and EMG weigh alike
-    """
+    """Mean Nominal residual (participant, output and phase) [1], each output over its root mean square of all."""
     outputs = {response.outputs for response in responses}
     if len(outputs) != 1:
         raise ComparisonError(

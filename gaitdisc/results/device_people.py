@@ -14,11 +14,7 @@ NOTHING = "nothing named"
 
 
 def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
-    """One row for each number of each effect: in how many people it was named, its mean, 95 % interval, and who.
-
-    found: by participant
-    returns: columns `COLUMNS`; the interval is Student's over people, NaN of one person alone
-    """
+    """A row a number of each effect: in how many people it was named, mean, Student's 95 % interval (n > 1), who."""
     own: dict[tuple[str, str, str, str], dict[str, float]] = {}
     for person, one in found.items():
         for effect in one.effects:

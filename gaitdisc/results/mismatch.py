@@ -70,10 +70,7 @@ class Smallest:
     body_weight_n: float | None = None  # mass x 9.81 [N]
 
     def of(self, unit: str, reach: float) -> float:
-        """Smallest difference of one channel that is named, in its unit.
-
-        reach: range of its mean curve [unit]
-        """
+        """Smallest difference named of one channel, in its unit, by the range of its mean curve."""
         if unit == "deg":
             return self.angle_deg
         if unit == "N m/kg":

@@ -86,11 +86,7 @@ class OverParticipants:
         check_columns(tables, "comparisons over participants need", again)
 
     def enough_length(self, second: str = WHOLE) -> float | None:
-        """Shortest training length [s] from which on no variable is shown to differ; None where there is none.
-
-        That nothing is shown is no proof of equality, least of all with few participants: the shifts say how far apart
-        the two may be.
-        """
+        """Shortest length [s] from which no variable is shown to differ (no proof of equality); None without."""
         chosen = self.lengths[self.lengths["second"] == second]
         found = None
         for length in sorted({float(length) for length in chosen["length_s"]}, reverse=True):

@@ -126,9 +126,7 @@ class OverPeople(NamedTuple):
 
 
 def mean_over_people(values: NDArray[np.float64]) -> OverPeople:
-    """Mean, standard deviation, and half of the mean's 95 % interval (Student's t); the latter two from three people.
-
-    values (participant,): one measure
+    """Mean, standard deviation, half of Student's 95 % interval of (participant,); the latter two from three people.
 
     >>> [round(each, 3) for each in mean_over_people(np.array([1.0, 2.0, 3.0]))]
     [2.0, 1.0, 2.484]
@@ -143,9 +141,7 @@ def mean_over_people(values: NDArray[np.float64]) -> OverPeople:
 
 
 def enough_sensors(found: pd.DataFrame) -> int:
-    """Row of the smallest set of sensors that one more improves by less than a tenth.
-
-    found: `search` of a reconstruction, one row a size
+    """Row of the smallest set of sensors in a `search` that one more improves by less than a tenth.
 
     >>> enough_sensors(pd.DataFrame({"loss": [1.0, 0.5, 0.49]}))
     1

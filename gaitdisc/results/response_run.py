@@ -11,10 +11,9 @@ from gaitdisc.notebook import html_of
 from gaitdisc.results.kind import Kind
 from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
 from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse
-from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles
+from gaitdisc.results.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.results.study_run import StudyRun, load_run_as, save_whole_run
 from gaitdisc.results.variants import QUESTIONS
-from gaitdisc.results.walk_summary import WALK, WalkSummary
 
 
 @dataclass(frozen=True, eq=False, repr=False)

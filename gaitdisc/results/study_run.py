@@ -28,7 +28,7 @@ T = TypeVar("T")
 R = TypeVar("R", bound="StudyRun")
 FINDING_COLUMNS = ("participant", "condition", "severity", "kind", "file", "channel", "what", "spoils", "spans_s")
 UNITS = {  # folder of the units of a kind, which is also their key in run.json, and the kind
-    "walks": "gaitdisc.results.walk_summary:WALK",
+    "walks": "gaitdisc.results.pooled_cycles:WALK",
     "responses": "gaitdisc.results.participant_response:RESPONSE",
     "tests": "gaitdisc.results.over_participants:TESTS",
     "quantities": "gaitdisc.results.participant_response:QUANTITY",

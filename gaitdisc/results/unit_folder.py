@@ -56,12 +56,7 @@ def save_unit(
     tables: Mapping[str, pd.DataFrame],
     arrays: Mapping[str, NDArray[np.float64]],
 ) -> None:
-    """Write tables and arrays, then the JSON file with their hashes: only then does the unit stand.
-
-    name: name of the JSON file, which is also its place in `results.schema.json`
-    tables: file name -> table, written as CSV
-    arrays each ndarray: written as `arrays.npz`; no file where there are none
-    """
+    """Write tables (by file name) as CSV and arrays, then the JSON file of their hashes: only then the unit stands."""
     for file, table in tables.items():
         write_csv(table, folder / file)
     files = [*tables]
@@ -76,12 +71,7 @@ def save_unit(
 def load_unit(
     folder: Path, name: str, columns: Mapping[str, Sequence[str]] | None = None, words: Sequence[str] = ()
 ) -> Unit:
-    """Read a unit, after its hashes were compared.
-
-    columns: tables that the unit must have, and the columns that each must have
-    words: columns whose cells are words, also where they look like numbers
-    returns tables: by file name
-    """
+    """Read a unit after comparing hashes; `columns` that tables must have, `words` whose cells are no numbers."""
     data = read_json(folder / name)
     check_files(folder, data["sha256"])
     tables = {file: _read_table(folder / file, words) for file in data["sha256"] if file.endswith(".csv")}
@@ -95,10 +85,7 @@ def load_unit(
 
 
 def damaged_units(folder: Path) -> tuple[str, ...]:
-    """Say which units below a folder are not as they were saved; nothing is changed.
-
-    returns: one line for each kind of damage, with the files; empty where all is whole
-    """
+    """Say which units below a folder are not as saved: a line a kind of damage, with the files; nothing is changed."""
     kinds: dict[str, list[str]] = {}
     for path in sorted(folder.rglob("*.json")):
         if path.stem not in _schema()["$defs"] or path.name.startswith("."):
@@ -112,11 +99,7 @@ def damaged_units(folder: Path) -> tuple[str, ...]:
 
 
 def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
-    """Table in which an empty word is an empty word again, and not the missing number that a CSV makes of it.
-
-    table: from `load_unit`; changed in place
-    column: of words; where the table has none of that name, nothing is changed
-    """
+    """Table, changed in place, in which an empty word of the column, if there, is no missing number any more."""
     if column in table:
         table[column] = table[column].astype(object).fillna("").astype(str)
     return table
@@ -133,10 +116,7 @@ def stored_finding(row: Mapping[str, Any]) -> Finding:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Read a JSON file of a run, compare its own hash, and hold it against the schema.
-
-    path: `run.json`, `walk.json`, `response.json`, `tests.json` or another that the schema names
-    """
+    """Read a JSON file of a run, compare its own hash, and hold it against the schema that names it."""
     data = read_sealed(path)
     if data.get("format") != FORMAT:
         raise of_another_format(path, data.get("format"), FORMAT)

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Samples, Scale
 from gaitdisc.sensing.reconstructor import STATIC, Reconstructor, ScaledModel
-from gaitdisc.sensing.splits import SEAM_S
 from gaitdisc.sensing.state_errors import stride_numbers
-from gaitdisc.sensing.windows import present, stacked
+from gaitdisc.sensing.windows import SEAM_S, present, stacked
 
 PENALTIES = tuple(10.0**power for power in np.arange(-3.0, 2.5, 0.5))
 USUAL_PENALTY = 0.1  # where no other person is there to rehearse on
@@ -69,10 +68,7 @@ class FirstStrides:
 
 
 def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> FirstStrides:
-    """Part the first strides of a person from the rest, with a gap as long as a window and 0.3 s.
-
-    reach_s: from the first reading of a window to its last [s]
-    """
+    """Part a person's first strides from the rest, with a gap as long as a window (`reach_s`) and 0.3 s."""
     kept = [each for each in trials if len(each)]
     windows, stride = stacked(kept), stride_numbers(kept)
     first, rest = (stride >= 0) & (stride < count), stride >= count
@@ -108,10 +104,7 @@ class Rehearsal:
 
 
 def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Rehearsal:
-    """Calibrate a model for a person to whom it was not fitted, and see which penalty serves best.
-
-    trials: windows of each trial of the person whom models are chosen by, never of the one they are tested on
-    """
+    """Calibrate for the person models are chosen by, never the one they are tested on, and see which penalty serves."""
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)
     missed = [each(rest) - rest.y for each in _calibrated(done, parted.strides, PENALTIES)]

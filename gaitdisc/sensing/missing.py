@@ -44,11 +44,7 @@ def missing_runs(share: NDArray[np.float64], run: NDArray[np.float64], length: i
 
 
 def with_missing(recording: Recording, sensors: Sequence[str], share: float, run_s: float, seed: int = 0) -> Recording:
-    """Take readings of the sensors away, each sensor by itself.
-
-    share: of each sensor's readings that are missing, from 0 to below 1
-    run_s: mean duration of a drop-out [s]; 0 for readings drawn one by one
-    """
+    """Take a share (0 to below 1) of each sensor's readings away, in drop-outs of mean `run_s` [s]; 0: one by one."""
     shares, runs = np.full(len(sensors), share), np.full(len(sensors), max(1.0, run_s * recording.rate_hz))
     values = recording.values.copy()
     columns = [recording.index(name) for name in sensors]
@@ -58,11 +54,7 @@ def with_missing(recording: Recording, sensors: Sequence[str], share: float, run
 
 
 def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArray[np.float64]) -> Recording:
-    """Put something in the place of missing readings.
-
-    way: a word of `WAYS`; `last` takes the mean before a sensor's first reading
-    means (sensor,) [each sensor's unit]: of the training part
-    """
+    """Fill missing readings by a word of `WAYS`, from training means (sensor,); `last` too, before a first reading."""
     refuse_unknown_way(way)
     values = recording.values.copy()
     for name, mean in zip(sensors, means, strict=True):

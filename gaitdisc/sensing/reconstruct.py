@@ -15,19 +15,19 @@ from gaitdisc.recording import Samples
 from gaitdisc.results.reconstruction import CALIBRATED
 from gaitdisc.sensing.calibration import calibrated, first_strides, rehearsed
 from gaitdisc.sensing.forecast import PERSISTENCE, PHASE_AVERAGE, persistence, phase_average
-from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import KINDS, WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor
-from gaitdisc.sensing.splits import PERSON_OUT, Parts
 from gaitdisc.sensing.state_errors import (
     Reconstructed,
     angle_columns,
     angles_error,
+    coverage,
+    half_widths,
     phase_curves,
     state_errors,
     stride_numbers,
 )
-from gaitdisc.sensing.windows import stacked
+from gaitdisc.sensing.windows import PERSON_OUT, Parts, stacked
 from gaitdisc.statistics.r2 import r2
 
 
@@ -65,10 +65,7 @@ def reconstruct(
     channels: Sequence[Channel],
     fits: Fits | None = None,
 ) -> PersonReconstruction:
-    """Fit every kind of model and test it on the test part; a forecast has its two baselines beside it.
-
-    channels: of the sensors, then of the states, in the order of `what`
-    """
+    """Fit and test every kind of model, a forecast beside its two baselines; channels: sensors, then states."""
     fits = fits or Fits()
     test, own = parts.tested(), channels[len(what.sensors) :]
     stride = stride_numbers(parts.test)
@@ -132,10 +129,7 @@ def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list
 
 
 def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
-    """What a forecast has to beat.
-
-    Errors are those on the fitted and the checked part: the latter alone may be shorter than the time ahead.
-    """
+    """What a forecast has to beat; errors of fitted and checked part, the latter may be shorter than the time ahead."""
     ahead_s, average = what.lags.ahead / what.rate_hz, phase_average(parts.training)
     known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
     found = []
@@ -173,10 +167,7 @@ STANDARD = "delay ridge"  # stands in for the others in how far the checked peop
 
 
 def crossed_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDArray[np.float64]:
-    """Errors (window, state) on everybody of the fitted and the checked part, each by a model of others.
-
-    The people are dealt out to five groups; for each group a model is fitted to the others and chosen by one of them.
-    """
+    """Errors (window, state) on everybody fitted or checked, in five groups, each by a model of the others."""
     people = people_of((*parts.check, *parts.training))
     names = list(people)
     errors = []

@@ -59,11 +59,7 @@ class ScaledModel(Model, Protocol):
 
 @dataclass(frozen=True)
 class Sensing:
-    """What is read, and what is to be reconstructed from it.
-
-    >>> sensing(("knee_angle_r", "hip_flexion_r"), ("knee_angle_r",), Lags(), 100.0).states
-    ('hip_flexion_r',)
-    """
+    """What is read, and what is to be reconstructed from it."""
 
     sensors: tuple[str, ...]
     states: tuple[str, ...]  # channels to reconstruct; none of them is a sensor, unless the future is forecast
@@ -76,19 +72,12 @@ class Sensing:
         return (self.lags.reach + self.lags.ahead) / self.rate_hz
 
     def windows(self, recording: Recording, phi: NDArray[np.float64], missing: bool = False) -> Samples:
-        """Windows of a recording, which must have the rate and the units that the sensing was made for.
-
-        phi (time,) [% stride]: percent stride of its samples
-        missing: whether windows are kept whose readings are missing in part (NaN)
-        """
+        """Windows of a recording of the same rate and units; phi (time,) [% stride]; missing readings if allowed."""
         return windows_of(recording, self.sensors, self.states, self.lags, phi, missing)
 
 
 def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, rate_hz: float) -> Sensing:
-    """Reconstruct every state that no sensor measures, or forecast every state.
-
-    sensors: channels that are read; they may be among the states
-    """
+    """Reconstruct every state that no sensor measures, or forecast every state; sensors may be among the states."""
     states = all_states if lags.ahead else tuple(name for name in all_states if name not in sensors)
     if not sensors or len(set(sensors)) < len(sensors):
         raise ChannelError(
@@ -128,9 +117,7 @@ class Reconstructor:
 
 
 def fitting_device(kinds: Sequence[str], wanted: str) -> str:
-    """Device that kinds of models are fitted on: `cpu` or `cuda`; ridge regression always takes the CPU.
-
-    wanted: `cpu`, `cuda`, or `auto`: the GPU where there is one
+    """`cpu` or `cuda` for kinds of models; `auto` is the GPU where there is one, ridge regression takes the CPU.
 
     >>> fitting_device(("delay ridge",), "auto")
     'cpu'

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Samples, scale_of
-from gaitdisc.sensing.splits import Parts
 from gaitdisc.sensing.state_errors import angle_columns
-from gaitdisc.sensing.windows import thinned
+from gaitdisc.sensing.windows import Parts, thinned
 
 PENALTIES = tuple(10.0**power for power in range(-7, 1))
 WHOLE_SEARCH = 3  # sensors; all sets of up to so many are tried, and beyond it one is added at a time

@@ -10,7 +10,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
+from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Samples
+from gaitdisc.recording.autocorrelation import autocorrelation_time
 from gaitdisc.statistics.r2 import r2
 
 DRAWS = 1000
@@ -111,10 +113,7 @@ def angles_error(tested: Reconstructed, channels: Sequence[Channel], sensors: ND
 
 
 def phase_curves(tested: Reconstructed, states: Sequence[str], points: int = 51) -> pd.DataFrame:
-    """Mean and spread over the stride of what was measured and what was reconstructed.
-
-    returns: state, percent, measured, measured_sd, reconstructed, rmse (of the windows in the bin)
-    """
+    """Over the stride: state, percent, measured, measured_sd, reconstructed, rmse of the windows in the bin."""
     inside = tested.stride >= 0
     phi, y, found = tested.windows.phi[inside], tested.windows.y[inside], tested.states[inside]
     edges = np.linspace(0, 100, points + 1)
@@ -145,3 +144,54 @@ def _interval(
     means = np.sqrt((drawn @ sums) / (drawn @ counts)[:, None])
     low, high = np.quantile(means, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
     return low, high
+
+
+def half_widths(errors: NDArray[np.float64], level: float = 0.9) -> NDArray[np.float64]:
+    """Half width of the interval of every state: the split conformal quantile of the absolute errors.
+
+    With n independent errors, the one of rank (n + 1) `level` covers a further error with a probability of `level`.
+    Windows of one walk are not independent: the rank is taken for as many errors as theirs are worth
+    (`effective_number`). The gait may drift all the same: the coverage is measured, not promised.
+
+    errors (window, state) [each state's unit]: of a model on windows that it was not fitted to, in order of time
+    returns (state,) [each state's unit]
+    Source: Vovk, Gammerman and Shafer 2005, Algorithmic learning in a random world; Lei et al. 2018 (split conformal).
+        The effective number is our addition: without it the 90 % interval of walks of 60 s covered 86 %.
+
+    >>> half_widths(np.tile([1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0, 9.0], 3)[:, None], 0.9)
+    array([9.])
+    """
+    n, sizes = len(errors), np.sort(np.abs(errors), axis=0)
+    if int(np.ceil((n + 1) * level - 1e-9)) > n:
+        least = int(np.ceil(level / (1 - level) - 1e-9))
+        raise SamplingError(
+            f"an interval of {100 * level:g} % needs at least {least} checked windows",
+            f"there are {n}",
+            "Record longer, or take a lower level.",
+        )
+    ranks = np.ceil(n * level * (1 + 1 / effective_number(errors)) - 1e-9).astype(int)
+    return sizes[np.minimum(ranks, n) - 1, np.arange(sizes.shape[1])]
+
+
+def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Independent errors that those of every state are worth, (state,): between 1 and their number.
+
+    The number of windows by the integrated autocorrelation of the absolute errors, summed up to its first zero.
+
+    errors (window, state) [each state's unit]: in order of time
+
+    >>> errors = np.random.default_rng(0).normal(size=(400, 1))
+    >>> bool(300 < effective_number(np.repeat(errors, 10, axis=0))[0] < 500)
+    True
+    """
+    n = len(errors)
+    return np.clip(n / autocorrelation_time(np.abs(errors)), 1.0, n)
+
+
+def coverage(errors: NDArray[np.float64], half: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Share (state,) of errors (window, state) inside half widths (state,) of `half_widths`, on test windows.
+
+    >>> coverage(np.array([[1.0], [-3.0]]), np.array([2.0]))
+    array([0.5])
+    """
+    return np.mean(np.abs(errors) <= half, axis=0)

@@ -1,4 +1,4 @@
-"""Windows: what the sensors read now and a while ago, beside the states to be reconstructed from it."""
+"""Windows of sensors now and a while ago beside the states; which a model is fitted to, chosen by, tested on."""
 
 from __future__ import annotations
 
@@ -8,17 +8,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.recording import Recording, Samples
+
+TRAINING, CHECK, TEST, APART = 0, 1, 2, -1
+SHARES = (0.7, 0.1, 0.2)
+BLOCKS = (TRAINING, TRAINING, TEST, TRAINING, TRAINING, CHECK, TRAINING, TEST, TRAINING, TRAINING)
+PERSON_OUT = "leave one person out"
+SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
+RANDOM = "random (leaks)"
+RULES = {
+    "temporal": "each trial: first 70 % fitted, next 10 % checked, last 20 % tested; no window crosses a border",
+    "blocked": "each trial in ten blocks: seven fitted, one checked, two tested; no window crosses a border",
+    RANDOM: "windows drawn at random: neighbours of every test window were fitted, so the error is far too small",
+}
 
 
 @dataclass(frozen=True)
 class Lags:
-    """How far back a window reaches, and how densely.
-
-    >>> Lags(25, 4).reach
-    96
-    """
+    """How far back a window reaches, and how densely."""
 
     count: int = 25  # readings of each sensor in a window, the present one included
     spacing: int = 4  # samples from one reading to the next; 6 Hz kinematics at 100 Hz lose nothing at 4
@@ -108,3 +116,106 @@ def stacked(samples: Sequence[Samples]) -> Samples:
 def thinned(samples: Samples, most: int) -> Samples:
     """Keep every k-th window, as few as needed to have no more than so many: neighbours say nearly the same."""
     return samples.rows(slice(None, None, max(1, -(-len(samples) // most))))
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """Windows of the three parts, trial by trial."""
+
+    training: tuple[Samples, ...]  # one a trial that has windows in that part
+    check: tuple[Samples, ...]  # one a trial that has windows in that part
+    test: tuple[Samples, ...]  # one a trial that has windows in that part
+    rule: str  # how they were parted, a word of `RULES` or a sentence
+
+    def __post_init__(self) -> None:
+        """Refuse a split that leaves a part empty."""
+        for name in ("training", "check", "test"):
+            if not any(len(each) for each in getattr(self, name)):
+                raise SamplingError(
+                    f"the split {self.rule!r} needs windows in all three parts",
+                    f"none is left for {name}: the trials are too short for their windows and the gaps between parts",
+                    "Take a shorter history, or longer trials.",
+                )
+
+    def fitted(self) -> Samples:
+        """Windows that models are fitted to."""
+        return stacked([each for each in self.training if len(each)])
+
+    def checked(self) -> Samples:
+        """Windows that models are chosen by."""
+        return stacked([each for each in self.check if len(each)])
+
+    def tested(self) -> Samples:
+        """Windows that models are tested on."""
+        return stacked([each for each in self.test if len(each)])
+
+
+def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int = 0) -> Parts:
+    """Part the windows of every trial by one rule.
+
+    From the last window of one part to the first of the next lie at least `reach_s` plus 0.3 s, so that no two windows
+    of different parts share a reading, and the filter carries nothing over. The random rule alone leaves no gap.
+
+    reach_s: from the first reading of a window to its last [s]
+
+    >>> t = np.arange(6000) / 100
+    >>> parts = split_within([Samples(t[:, None], t[:, None], ("a",), ("b",), t, t)], "temporal", 1.0)
+    >>> parts.fitted().time[[0, -1]].round(1).tolist(), parts.checked().time[[0, -1]].round(1).tolist()
+    ([0.0, 42.0], [43.3, 48.0])
+    """
+    if rule not in RULES:
+        raise SchemaError("a split needs a rule", f"{rule!r} is none", f"Use one of: {', '.join(RULES)}.")
+    rng = np.random.default_rng(seed)
+    labels = [_labels(each, rule, reach_s, rng) for each in trials]
+    training, check, test = (_chosen(trials, labels, part) for part in (TRAINING, CHECK, TEST))
+    return Parts(training, check, test, rule)
+
+
+def split_by_subject(people: Sequence[Sequence[Samples]], tested: int) -> Parts:
+    """Leave one person out of at least three; models are chosen by the next one in the list, fitted to all others."""
+    if len(people) < 3:
+        raise SamplingError(
+            "a model of a population needs at least three people: to fit, to check, and to test",
+            f"there are {len(people)}",
+            "Add participants, or fit each of them alone.",
+        )
+    checked = (tested + 1) % len(people)
+    fitted = [trial for k, trials in enumerate(people) if k not in (tested, checked) for trial in trials]
+    return Parts(tuple(fitted), tuple(people[checked]), tuple(people[tested]), PERSON_OUT)
+
+
+def split_by_trial(trials: Sequence[Samples], tested: Sequence[int], reach_s: float) -> Parts:
+    """Leave whole trials out; the last 15 % of each other one are checked, `reach_s` [s] being a window's length."""
+    others = [each for k, each in enumerate(trials) if k not in tested]
+    labels = [_apart(each.time, np.where(_share(each.time) < 0.85, TRAINING, CHECK), reach_s) for each in others]
+    test = tuple(trials[k] for k in tested)
+    return Parts(_chosen(others, labels, TRAINING), _chosen(others, labels, CHECK), test, "leave trials out")
+
+
+def _labels(samples: Samples, rule: str, reach_s: float, rng: np.random.Generator) -> NDArray[np.int_]:
+    if rule == RANDOM:
+        return rng.choice(3, size=len(samples), p=SHARES)
+    share = _share(samples.time)
+    if rule == "temporal":
+        raw = np.digitize(share, np.cumsum(SHARES[:2]))
+    else:
+        raw = np.array(BLOCKS)[np.minimum((share * len(BLOCKS)).astype(int), len(BLOCKS) - 1)]
+    return _apart(samples.time, raw, reach_s)
+
+
+def _share(time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Place of each time between the first and the last, 0 to below 1."""
+    return (time - time[0]) / max(time[-1] - time[0], 1e-9) * (1 - 1e-9) if len(time) else time
+
+
+def _apart(time: NDArray[np.float64], raw: NDArray[np.int_], reach_s: float) -> NDArray[np.int_]:
+    """Set windows apart whose readings, or the filter's reach before them, lie in another part."""
+    borders = time[1:][np.diff(raw) != 0]
+    labels = raw.copy()
+    for border in borders:
+        labels[(time >= border - 1e-9) & (time < border + reach_s + SEAM_S - 1e-9)] = APART
+    return labels
+
+
+def _chosen(trials: Sequence[Samples], labels: Sequence[NDArray[np.int_]], part: int) -> tuple[Samples, ...]:
+    return tuple(each.rows(found == part) for each, found in zip(trials, labels, strict=True))

@@ -28,8 +28,8 @@ from gaitdisc.report.table import Table
 from gaitdisc.results.reconstruction import mean_over_people
 from gaitdisc.sensing.missing import filled, with_missing
 from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, Sensing, fit_reconstructor
-from gaitdisc.sensing.splits import Parts, split_within
 from gaitdisc.sensing.state_errors import angle_columns
+from gaitdisc.sensing.windows import Parts, split_within
 from gaitdisc.words import counted, listed, number, unit_text
 
 if TYPE_CHECKING:

@@ -19,8 +19,7 @@ from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.sensing.calibration import calibrated
 from gaitdisc.sensing.forecast import persistence, phase_average
 from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor, latent_states
-from gaitdisc.sensing.splits import Parts, split_by_subject, split_by_trial, split_within
-from gaitdisc.sensing.windows import Lags, stacked
+from gaitdisc.sensing.windows import Lags, Parts, split_by_subject, split_by_trial, split_within, stacked
 
 from .gait import DATA, RUNS, SENSORS, TREADMILL, cohort, exotendon, first_person
 

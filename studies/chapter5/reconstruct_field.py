@@ -18,8 +18,7 @@ from gaitdisc.recording import Field, Samples
 from gaitdisc.results.on_disk import DamagedError
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
-from gaitdisc.sensing.splits import Parts, split_within
-from gaitdisc.sensing.windows import Lags, stacked
+from gaitdisc.sensing.windows import Lags, Parts, split_within, stacked
 from gaitdisc.whole_file import write_whole
 
 from .modes import ENERGY, Modes, Season, fit_modes, season_of

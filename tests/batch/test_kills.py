@@ -20,7 +20,7 @@ SERVER = """
 import os, sys
 from pathlib import Path
 import gaitdisc.networks.trainer, gaitdisc.networks.fused_kernels, gaitdisc.statistics.signed_rank
-from gaitdisc.batch.ablate_study import ablate_study
+from gaitdisc.batch.vary_study import ablate_study
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.study_file import load_study
 for line in sys.stdin:

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.batch.planted_gait import DROP_DEG, FOUND_AS, PLANTED, planted
+from gaitdisc.batch.demonstration import DROP_DEG, FOUND_AS, PLANTED, planted
 from gaitdisc.channel import Channel
 from gaitdisc.clinic.rules import rules
 from gaitdisc.errors import SchemaError

@@ -5,7 +5,7 @@ from made_clinic import made_controls, made_person, made_run
 
 from gaitdisc.batch.read_people import before_and_after, people_of, readings_of, sessions_of
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reading import PersonSession
+from gaitdisc.results.clinical_reference import PersonSession
 
 
 def test_one_page_a_person_and_session_the_first_condition_first():

@@ -4,8 +4,7 @@ import pytest
 from made_clinic import made_person
 from texts import says
 
-from gaitdisc.clinic.contrast import contrast_of
-from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.recording import PERCENT
 
 

@@ -5,7 +5,7 @@ import pytest
 from made_clinic import made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.profile import deviation_index
+from gaitdisc.clinic.reading import deviation_index
 from gaitdisc.results.leg_curves import LegCurves, legs_of
 
 

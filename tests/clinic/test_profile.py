@@ -7,10 +7,9 @@ import pytest
 from made_clinic import made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.profile import profile_of, profile_score, variable_score
+from gaitdisc.clinic.reading import profile_of, profile_score, variable_score
 from gaitdisc.results.clinical_reference import ReferenceLeg
-from gaitdisc.results.clinical_variables import PELVIS, PROFILE
-from gaitdisc.results.leg_curves import LegCurves, legs_of
+from gaitdisc.results.leg_curves import PELVIS, PROFILE, LegCurves, legs_of
 
 
 def _leg(side, offsets, turned=0.0):

@@ -5,7 +5,7 @@ import pytest
 
 from gaitdisc.clinic.rules import Rule, part_of, rules, rules_in
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_variables import BY_NAME
+from gaitdisc.results.leg_curves import BY_NAME
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
 
 GOOD = {"name": "a", "variable": "knee_flexion", "part": "swing", "take": "max", "least": 5.0, "less": "reduced"}

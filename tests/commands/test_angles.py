@@ -15,7 +15,7 @@ from manufactured_body import (
 )
 from texts import says
 
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording
 

@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 

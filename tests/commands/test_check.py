@@ -4,7 +4,7 @@ from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 
 
 def test_each_trial_has_its_strides(study):

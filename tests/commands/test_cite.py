@@ -2,7 +2,7 @@ from manufactured_discovery import manufactured
 from texts import says
 
 import gaitdisc
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 
 
 def test_bibtex_is_printed_or_written_with_what_each_entry_is_for(called, tmp_path):

@@ -9,7 +9,7 @@ from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.results.discovery_folder import load_discovery

@@ -1,4 +1,4 @@
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 
 
 def test_each_exit_code_says_something_else():

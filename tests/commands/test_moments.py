@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 from gaitdisc.ingest.reading import read_trial
 
 

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from texts import says
 
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 
 DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
 

@@ -7,7 +7,7 @@ from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.commands.options import REFUSED
 from gaitdisc.results.clinical_reference import save_reference
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.commands.exit_codes import SOME_REFUSED
+from gaitdisc.commands.options import SOME_REFUSED
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 

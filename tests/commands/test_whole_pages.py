@@ -25,7 +25,7 @@ KILLS = 12
 SERVER = """
 import os, sys
 from pathlib import Path
-import gaitdisc.report.clinic.person_pdf, gaitdisc.report.clinic.index_page, gaitdisc.clinic.contrast
+import gaitdisc.report.clinic.person_pdf, gaitdisc.report.clinic.person_page, gaitdisc.clinic.reading
 import matplotlib.backends.backend_pdf
 from gaitdisc.commands.clinic_pages import write_people
 from gaitdisc.results.response_run import load_run

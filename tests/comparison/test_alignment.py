@@ -3,8 +3,7 @@ import pytest
 
 from gaitdisc.cohort.cohort import walks_of
 from gaitdisc.cohort.person import drawn
-from gaitdisc.comparison.alignment import aligned, common_shift, shifted
-from gaitdisc.comparison.common_curves import common_curves
+from gaitdisc.comparison.common_curves import aligned, common_curves, common_shift, shifted
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import PERCENT

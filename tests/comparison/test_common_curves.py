@@ -9,7 +9,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.comparison.common_curves import common_curves
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 
 NO_STRIDES = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
 

@@ -11,7 +11,7 @@ from gaitdisc.errors import ComparisonError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import PERCENT, Event
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.signals.contact_movement import angle_contacts
 
 CHANNELS = tuple(Channel(f"{joint}_r", "angle", "deg", "r") for joint in ("hip_flexion", "knee_angle", "ankle_angle"))

@@ -7,7 +7,7 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.c3d_layout import expected_layout
+from gaitdisc.ingest.c3d import expected_layout
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 
 

@@ -9,7 +9,7 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.c3d_layout import unscaled_channels
+from gaitdisc.ingest.c3d import unscaled_channels
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.reading import read_trial
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from texts import says
 
+from gaitdisc.ingest.columns import stream_of
 from gaitdisc.ingest.storage import StorageHeader, naming_findings, storage_columns
-from gaitdisc.ingest.streams import stream_of
 
 
 def _column(label, title="", channels=None, file="a.sto"):

@@ -7,9 +7,8 @@ import pytest
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
-from gaitdisc.ingest.columns import named_channel
+from gaitdisc.ingest.columns import named_channel, sorted_trial, stream_of
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.ingest.streams import sorted_trial, stream_of
 from gaitdisc.recording import Source
 
 TIME = np.arange(5) / 100

@@ -7,8 +7,7 @@ from pydantic import ValidationError
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Study
-from gaitdisc.ingest.study_errors import schema_error
-from gaitdisc.ingest.study_file import load_study
+from gaitdisc.ingest.study_file import load_study, schema_error
 
 TEXT = """title = "t"
 [conditions]

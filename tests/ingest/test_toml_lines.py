@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gaitdisc.ingest.study_errors import line_of
+from gaitdisc.ingest.study_file import line_of
 
 TEXT = """title = "x"
 [conditions]

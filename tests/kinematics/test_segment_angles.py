@@ -9,7 +9,7 @@ from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
-from gaitdisc.kinematics.segment_angles import segment_angles
+from gaitdisc.kinematics.motion import segment_angles
 from gaitdisc.recording import Recording, Source
 
 LABORATORY = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])  # forward y, up z, right x, as Theia3D has it

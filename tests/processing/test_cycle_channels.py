@@ -5,7 +5,7 @@ from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Filters
-from gaitdisc.processing.cycle_channels import cycle_channels
+from gaitdisc.processing.trial_cycles import cycle_channels
 from gaitdisc.recording import Recording, Trial
 
 

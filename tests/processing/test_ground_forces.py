@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel
-from gaitdisc.processing.cycle_channels import weighed_forces
+from gaitdisc.processing.trial_cycles import weighed_forces
 from gaitdisc.recording import Recording, Trial
 
 STEP = np.sin(np.linspace(0, np.pi, 60))

@@ -7,7 +7,7 @@ from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.motion import joint_angles
 from gaitdisc.kinematics.pose import clinical_angles, rotation_of
-from gaitdisc.processing.cycle_channels import PLUG_IN_GAIT, with_pelvis_and_foot
+from gaitdisc.processing.trial_cycles import PLUG_IN_GAIT, with_pelvis_and_foot
 from gaitdisc.recording import Recording
 
 LABELS = ("RPelvisAngles.x", "LPelvisAngles.y", "RPelvisAngles.z", "RFootProgressAngles.z", "LFootProgressAngles.z")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel
-from gaitdisc.processing.shelf import shelf
+from gaitdisc.processing.pooled import shelf
 from gaitdisc.recording import Recording, Source
 
 EMG = Recording(

@@ -20,7 +20,7 @@ from manufactured_discovery import manufactured
 import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.cli import COMMANDS, main
-from gaitdisc.commands.exit_codes import ENDED, REFUSED
+from gaitdisc.commands.options import ENDED, REFUSED
 from gaitdisc.errors import WriteError
 from gaitdisc.own_files import KINDS, LIST
 from gaitdisc.recording import Recording, Source

@@ -13,9 +13,9 @@ from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.walk_summary import WalkSummary
 
 RATE_HZ = 100.0
 STRIDE_S = 1.07

@@ -16,7 +16,7 @@ from gaitdisc.report.curves import (
     walk_of,
 )
 from gaitdisc.report.palette import SIDES
-from gaitdisc.results.walk_summary import WALK
+from gaitdisc.results.pooled_cycles import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "pelvis_tilt")
 

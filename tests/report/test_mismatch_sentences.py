@@ -11,7 +11,7 @@ from gaitdisc.recording import PERCENT
 from gaitdisc.report.mismatch_page import channels_table
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.results.mismatch import Alignment, Smallest
-from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 
 NAMES = ("hip_flexion_r", "ankle_angle_r", "pelvis_tilt")
 

@@ -12,8 +12,8 @@ from gaitdisc.recording import Finding
 from gaitdisc.report.response_page import write_report
 from gaitdisc.report.sentences import r2_text
 from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.walk_summary import WALK
 from gaitdisc.spreadsheet import read_csv
 
 NAMES = (

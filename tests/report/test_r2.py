@@ -24,7 +24,7 @@ from gaitdisc.report.r2 import (
     study_r2_table,
     variables,
 )
-from gaitdisc.results.walk_summary import WALK
+from gaitdisc.results.pooled_cycles import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 

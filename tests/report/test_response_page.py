@@ -15,8 +15,8 @@ from gaitdisc.recording import Finding
 from gaitdisc.report import response_page
 from gaitdisc.report.response_page import method_sentences, write_report
 from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.walk_summary import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 

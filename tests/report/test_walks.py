@@ -8,7 +8,7 @@ from texts import says
 from gaitdisc.report.r2 import study_r2_table
 from gaitdisc.report.table import findings_table, refusals_table
 from gaitdisc.report.walks import dropped_table, fits_table, reason_kind, stride_numbers, strides_figure, walks_table
-from gaitdisc.results.walk_summary import WALK
+from gaitdisc.results.pooled_cycles import WALK
 
 STRIDES = pd.DataFrame(
     [

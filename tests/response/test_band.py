@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.recording import Samples
-from gaitdisc.response.band import BLOCKS, covered, parted, response_bands
+from gaitdisc.response.fit_response import BLOCKS, covered, parted, response_bands
 from gaitdisc.response.models import fit_linear, fit_models
 
 

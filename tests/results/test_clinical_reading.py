@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from gaitdisc.results.clinical_reading import Limits, Score
+from gaitdisc.results.clinical_reference import Limits, Score
 
 
 def test_what_is_read_is_frozen():

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from gaitdisc.channel import vocabulary
-from gaitdisc.results.clinical_variables import BY_NAME, NORMAL, PROFILE, VARIABLES
+from gaitdisc.results.leg_curves import BY_NAME, NORMAL, PROFILE, VARIABLES
 
 
 def test_every_variable_is_a_channel_of_the_vocabulary_and_has_a_place_of_its_own():

@@ -16,6 +16,7 @@ from gaitdisc.batch.participant_unit import REFUSED, Refused
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.results.over_participants import OVER, TABLES, TESTS, OverParticipants, no_rows
 from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity
+from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.response_run import load_run
 from gaitdisc.results.study_run import save_run
@@ -29,7 +30,6 @@ from gaitdisc.results.variants import (
     load_variant_run,
     save_variant_run,
 )
-from gaitdisc.results.walk_summary import WALK
 
 SEED, MUTATIONS = 11, 20
 DEEP = "[" * 20_000

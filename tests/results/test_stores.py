@@ -15,7 +15,7 @@ from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.results.mismatch import MISMATCH
 from gaitdisc.results.over_participants import OVER, TABLES, TESTS, OverParticipants, no_rows
 from gaitdisc.results.participant_response import RESPONSE
-from gaitdisc.results.pooled_cycles import CYCLES, cycles_name
+from gaitdisc.results.pooled_cycles import CYCLES, WALK, cycles_name
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.unit_folder import unit_name
 from gaitdisc.results.variants import (
@@ -27,7 +27,6 @@ from gaitdisc.results.variants import (
     load_variant_run,
     save_variant_run,
 )
-from gaitdisc.results.walk_summary import WALK
 
 
 def test_a_walk_comes_back_as_it_was(walk, tmp_path):

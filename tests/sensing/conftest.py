@@ -13,8 +13,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
 from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Reconstructor, network_of, sensing
-from gaitdisc.sensing.splits import split_within
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.windows import Lags, split_within
 
 
 @pytest.fixture(scope="session")

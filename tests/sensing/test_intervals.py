@@ -4,7 +4,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import lfilter
 
 from gaitdisc.errors import SamplingError
-from gaitdisc.sensing.intervals import coverage, effective_number, half_widths
+from gaitdisc.sensing.state_errors import coverage, effective_number, half_widths
 
 
 def test_independent_errors_are_covered_as_often_as_promised():

@@ -2,11 +2,10 @@ import numpy as np
 import pytest
 
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.reconstruct import Fits, crossed_errors, crossed_widths, people_of, reconstruct
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor, sensing
-from gaitdisc.sensing.splits import split_by_subject, split_within
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.sensing.state_errors import coverage, half_widths
+from gaitdisc.sensing.windows import Lags, split_by_subject, split_within
 
 KINDS = ("linear", "delay ridge")
 

@@ -8,8 +8,7 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Recording
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
 from gaitdisc.sensing.sensor_search import search_sensors
-from gaitdisc.sensing.splits import split_within
-from gaitdisc.sensing.windows import Lags, windows_of
+from gaitdisc.sensing.windows import Lags, split_within, windows_of
 
 NAMES = ("sum", "one", "other", "difference", "noise")
 

@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.splits import RANDOM, SEAM_S, split_by_subject, split_by_trial, split_within
+from gaitdisc.sensing.windows import RANDOM, SEAM_S, split_by_subject, split_by_trial, split_within
 
 REACH_S = 0.5
 

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.palette import SIDES
-from gaitdisc.results.clinical_reading import Band, ClinicalReading, Contrast
-from gaitdisc.results.clinical_variables import KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
-from gaitdisc.results.leg_curves import FEET
+from gaitdisc.results.clinical_reference import Band, ClinicalReading, Contrast
+from gaitdisc.results.leg_curves import FEET, KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.words import SIDE_WORDS, label, number, sideless
 
@@ -83,11 +82,7 @@ class Panel:
 
 
 def ticks(low: float, high: float, most: int = 4) -> list[float]:
-    """Round numbers between two values, at most so many.
-
-    >>> ticks(-4.2, 61.0)
-    [0.0, 20.0, 40.0, 60.0]
-    """
+    """Round numbers between two values, at most so many."""
     rough = (high - low) / most
     power = 10.0 ** np.floor(np.log10(rough))
     step = next(float(k * power) for k in (1, 2, 5, 10, 20) if (high - low) / (k * power) <= most)

@@ -14,8 +14,8 @@ from gaitdisc.report.clinic.values import values_table
 from gaitdisc.report.clinic.words import ENGLISH, PageWords, outstanding_sentences, quality_sentence, score_sentences
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import in_style
-from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
-from gaitdisc.results.clinical_variables import FORCES, KINEMATICS, MOMENTS, POWERS
+from gaitdisc.results.clinical_reference import ClinicalReading, PersonSession
+from gaitdisc.results.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.whole_file import whole_file
 

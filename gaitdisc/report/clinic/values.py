@@ -12,9 +12,8 @@ from gaitdisc.report.clinic.panels import ticks
 from gaitdisc.report.cycles_tables import VALUES, mean_cell
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.table import Table, words_table
-from gaitdisc.results.clinical_reading import ClinicalReading, Profile, Score
-from gaitdisc.results.clinical_variables import BY_NAME, PROFILE
-from gaitdisc.results.leg_curves import FEET
+from gaitdisc.results.clinical_reference import ClinicalReading, Profile, Score
+from gaitdisc.results.leg_curves import BY_NAME, FEET, PROFILE
 from gaitdisc.words import NONE, SIDE_WORDS, number, unit_text
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 240, 365, 104, 232, 6, 346

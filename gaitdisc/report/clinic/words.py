@@ -15,9 +15,8 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.report.clinic.panels import Panel
 from gaitdisc.report.cycles_tables import VALUES
 from gaitdisc.report.table import Table
-from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, DifferingSpan, Noted, Score
-from gaitdisc.results.clinical_variables import BY_NAME, VARIABLES
-from gaitdisc.results.leg_curves import FEET
+from gaitdisc.results.clinical_reference import ClinicalReading, Contrast, DifferingSpan, Noted, Score
+from gaitdisc.results.leg_curves import BY_NAME, FEET, VARIABLES
 from gaitdisc.whole_file import write_whole
 from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text
 
@@ -113,11 +112,7 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
 
 
 def noted_sentences(noted: Sequence[Noted], say: Callable[[str], str] = str) -> list[str]:
-    """One sentence a rule and direction, the farthest first, both legs in one; at most six.
-
-    >>> noted_sentences([])
-    []
-    """
+    """One sentence a rule and direction, the farthest first, both legs in one; at most six."""
     together: dict[tuple[str, str], list[Noted]] = {}
     for one in noted:
         together.setdefault((one.rule, one.words), []).append(one)

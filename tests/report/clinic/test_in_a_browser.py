@@ -11,11 +11,9 @@ import subprocess
 import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 
-from gaitdisc.clinic.contrast import contrast_of
-from gaitdisc.clinic.reading import read_beside
-from gaitdisc.report.clinic.index_page import write_index
-from gaitdisc.report.clinic.person_page import write_person_page
-from gaitdisc.results.clinical_reading import PersonSession
+from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.report.clinic.person_page import write_index, write_person_page
+from gaitdisc.results.clinical_reference import PersonSession
 from gaitdisc.results.provenance import Refusal
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

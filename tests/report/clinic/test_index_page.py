@@ -7,8 +7,8 @@ from made_clinic import made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.report.clinic.index_page import write_index
-from gaitdisc.results.clinical_reading import PersonSession
+from gaitdisc.report.clinic.person_page import write_index
+from gaitdisc.results.clinical_reference import PersonSession
 from gaitdisc.results.provenance import Refusal
 
 

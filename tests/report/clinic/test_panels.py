@@ -8,8 +8,7 @@ import pytest
 from made_clinic import made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.contrast import contrast_of
-from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.report.clinic.panels import (
     BOTTOM,
     LEFT,
@@ -25,8 +24,8 @@ from gaitdisc.report.clinic.panels import (
     svg,
     ticks,
 )
-from gaitdisc.results.clinical_reading import Band
-from gaitdisc.results.clinical_variables import KINEMATICS, POWERS
+from gaitdisc.results.clinical_reference import Band
+from gaitdisc.results.leg_curves import KINEMATICS, POWERS
 
 
 def _panel(**fields):

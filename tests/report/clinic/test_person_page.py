@@ -9,10 +9,9 @@ import pytest
 from made_clinic import PROVENANCE, made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.contrast import contrast_of
-from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.report.clinic.person_page import page_names, write_person_page
-from gaitdisc.results.clinical_reading import PersonSession
+from gaitdisc.results.clinical_reference import PersonSession
 
 REFERENCE = made_controls(6)
 

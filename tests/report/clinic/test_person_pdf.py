@@ -7,8 +7,8 @@ from made_clinic import PROVENANCE, made_controls, made_person
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.report.clinic.panels import Panel, sheet
 from gaitdisc.report.clinic.person_pdf import draw_panel, write_person_pdf
-from gaitdisc.results.clinical_reading import PersonSession
-from gaitdisc.results.clinical_variables import KINEMATICS
+from gaitdisc.results.clinical_reference import PersonSession
+from gaitdisc.results.leg_curves import KINEMATICS
 
 
 @pytest.fixture(scope="module")

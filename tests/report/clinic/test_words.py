@@ -8,13 +8,11 @@ import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
-from gaitdisc.clinic.contrast import contrast_of
-from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.index_page import write_index
-from gaitdisc.report.clinic.person_page import write_person_page
+from gaitdisc.report.clinic.person_page import write_index, write_person_page
 from gaitdisc.report.clinic.words import (
     MOST,
     PageWords,
@@ -27,7 +25,7 @@ from gaitdisc.report.clinic.words import (
     score_sentences,
     write_words,
 )
-from gaitdisc.results.clinical_reading import Limits, Noted, PersonSession
+from gaitdisc.results.clinical_reference import Limits, Noted, PersonSession
 
 ENGLISH = english_words(rule_words())
 
