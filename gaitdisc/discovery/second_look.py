@@ -10,7 +10,7 @@ from gaitdisc.discovery.beam import errs_more
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.decision import HALF, MOST_NEAR, NEAR, Verdict, held_out_proof, random_push
+from gaitdisc.discovery.decision import HALF, MOST_NEAR, NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import AGREES, cross_validated
 from gaitdisc.discovery.grids import delays
@@ -127,10 +127,7 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
         proof = held_out_proof(problem, as_read, one)
         if proof.bears_out:
             return base, replace(verdict, word=one.word, found=one, rivals=(named, *verdict.rivals), proof=proof)
-    pushes = random_push(problem, as_read)
-    return base, Verdict(
-        "process_noise" if pushes else "no_gap", base, (named, *verdict.rivals), pushes, proof=verdict.proof
-    )
+    return base, Verdict("no_gap", base, (named, *verdict.rivals), proof=verdict.proof)
 
 
 def fitted_on_whole_runs(problem: Problem, now: ScoredModel) -> ScoredModel:

@@ -8,9 +8,10 @@ from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.decision import Verdict, decide, kept_on_longer_runs, needed, strongest, within_record
+from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed, strongest
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
 
 
@@ -140,9 +141,10 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
     plain = scored(
         as_read.shooting, base, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts)
     )
-    as_rival = within_record(problem, as_read, Verdict("missing_physics", plain, (endless, plain)))
+    as_rival = prefer_relatives(problem, as_read, Verdict("missing_physics", plain, (endless, plain)))
     assert [one.labels for one in as_rival.rivals] == [("linear_stiffness@load",)]
-    found = within_record(problem, as_read, Verdict("missing_physics", endless, ()))
+    proof = held_out_proof(problem, as_read, endless)
+    found = prefer_relatives(problem, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert (found.word, found.found.labels) == ("missing_physics", ("linear_stiffness@load",))
     assert found.found.model.parts[0].values["factor"] == pytest.approx(-30.0, rel=0.05)
 
@@ -152,5 +154,6 @@ def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(pro
     parts = (Part(cubic, {"factor": -14.0}), Part(remembering, {"factor": 2.0, "tau": 5e13}))
     model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts, turns=0)
     endless = scored(as_read.shooting, problem.search.base, model)
-    found = within_record(problem, as_read, Verdict("missing_physics", replace(endless, gained=1.0), ()))
+    proof = held_out_proof(problem, as_read, endless)
+    found = prefer_relatives(problem, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert all(problem.search.shows(one.model) for one in (found.found, *found.rivals))

@@ -245,7 +245,8 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
     seen = states[:, :, :1] + 0.03 * np.random.default_rng(0).normal(size=states[:, :, :1].shape)
     found, _ = discover(still, Measured(rest, seen, ("1",), measured.channels))
     assert [effect.name for effect in found.effects] == ["coulomb_friction"]
-    assert says(found.findings[-1].what, "trial 1", "quarter is held")
+    (instead,) = (one for one in found.findings if one.kind == "held out")
+    assert says(instead.what, "trial 1", "quarter is held")
 
 
 def test_every_step_is_told():
@@ -335,3 +336,11 @@ def test_a_term_goes_before_the_random_pushes_beside_it():
     discovery, _ = _found(with_load("-1.5*sign(v)"), Experiment(shaking=3.0))
     assert _named(discovery) == ("missing_physics", [("coulomb_friction", "load")])
     assert discovery.effects[0].estimates["friction"].value == pytest.approx(1.5, rel=0.2)
+
+
+def test_the_answer_says_how_large_an_error_of_an_input_would_explain_it_as_well():
+    found, _ = _found(with_load("-1.5*sign(v)"))
+    (exact,) = (one for one in found.findings if one.kind == "exact inputs")
+    assert says(exact.what, "'push'", "Coulomb friction", " N (rms)")
+    size = float(exact.what.split(", ")[1].split(" ")[0])
+    assert size == pytest.approx(1.5, rel=0.03)

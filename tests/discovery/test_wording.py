@@ -36,12 +36,18 @@ def test_a_coupling_says_to_what():
     assert says(said, "coupling", "equation", "0.2 1/s^2 (95 % 0.1-0.3)")
 
 
-@pytest.mark.parametrize(("before", "agrees"), [(0.11, True), (0.4, False)])
-def test_no_gap_says_what_is_left(before, agrees):
+@pytest.mark.parametrize(
+    ("verdict", "before", "words"),
+    [
+        ("no_gap", 0.11, ("Simulation and data", "noise")),
+        ("no_gap", 0.4, ("Nothing", "white noise", "does not grow")),
+        ("unexplained", 0.4, ("Nothing", "simulation and data", "more")),
+    ],
+)
+def test_where_nothing_is_named_it_says_what_is_left(verdict, before, words):
     size = GapSize(before, before, 0.1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(), held_out=size)
-    assert says(said, "Simulation and data") == agrees
-    assert says(said, "simulation and data", "more") != agrees
+    said = sentence(verdict=verdict, effects=(), parts=(), where=(), rivals=(), held_out=size)
+    assert says(said, *words)
     assert says(said, "3.09 deg", "0.50")
 
 
