@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
+from gaitdisc.batch.processed_walks import computed_cycles, cycles_key
 from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.study import Participant, Study

@@ -12,10 +12,9 @@ from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
-from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse
+from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse, ResponseRun
 from gaitdisc.results.pooled_cycles import CYCLES, WALK
 from gaitdisc.results.provenance import Provenance, Refusal, made_now
-from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.study_run import created_before, save_run
 from gaitdisc.results.unit_folder import damaged_units
 from gaitdisc.write_lock import write_lock
@@ -78,8 +77,7 @@ def _compared(
     """What the participants say together of the models; nothing where the study compares no device."""
     if study.conditions.device is None:
         return (), ()
-    from gaitdisc.response.comparison import compare_models
-    from gaitdisc.response.over_participants import compare_participants
+    from gaitdisc.response.over_participants import compare_models, compare_participants
 
     return (compare_models(responses),), (compare_participants(responses, quantities, study.models.seed),)
 

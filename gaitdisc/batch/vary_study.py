@@ -23,14 +23,21 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.recording import Trajectory
-from gaitdisc.response.data_quantity import LENGTHS_S, fit_data_quantity, shortened
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
-from gaitdisc.response.modalities import Setting, compare_modalities, compare_settings, fit_without, settings_around
+from gaitdisc.response.modalities import (
+    LENGTHS_S,
+    Setting,
+    compare_modalities,
+    compare_settings,
+    fit_data_quantity,
+    fit_without,
+    settings_around,
+    shortened,
+)
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results.over_participants import OVER
-from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity
+from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ResponseRun
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.study_run import save_run
 from gaitdisc.results.variants import QUESTIONS, VARIANT_COLUMNS, VARIANTS, VariantRun, Variants, save_variant_run
 from gaitdisc.write_lock import write_lock

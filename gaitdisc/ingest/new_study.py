@@ -13,20 +13,24 @@ import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.ingest.file_names import (
+from gaitdisc.ingest.people_table import (
     PLAIN,
     PSEUDONYM,
     WALK_WORDS,
+    Measured,
     condition_word,
     group_word,
+    is_people_table,
     kind_of_trial,
+    measured_people,
+    person_key,
     person_word,
+    said_of,
     session_word,
     walk_key,
     walk_place,
     walk_word,
 )
-from gaitdisc.ingest.people_table import Measured, is_people_table, measured_people, person_key, said_of
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study import (
     ANGLES,

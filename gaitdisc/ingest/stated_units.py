@@ -49,7 +49,9 @@ def plausible_unit(
     bounded = [i for i in joints if "_rot" not in names[i]] or joints  # an arm or a thigh may wind on by whole turns
     most = _largest(values[:, bounded])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
-    reach = _largest_range(values[:, moving or joints])
+    # without the twentieth at either end, where a fit may have lost its markers
+    columns = [column[np.isfinite(column)] for column in values[:, moving or joints].T]
+    reach = max((float(np.ptp(np.percentile(column, PERCENTILES))) for column in columns if column.size), default=0.0)
     long_enough = time[-1] - time[0] >= SHORTEST_S and len(time) >= FEWEST
     beyond = most > FULL_TURN
     like_rad = not beyond and long_enough and WALKING_RAD[0] <= reach <= WALKING_RAD[1]
@@ -108,12 +110,6 @@ def copied_coordinate_unit(
 def _largest(values: NDArray[np.float64]) -> float:
     finite = values[np.isfinite(values)]
     return float(np.abs(finite).max()) if finite.size else 0.0
-
-
-def _largest_range(values: NDArray[np.float64]) -> float:
-    """Widest range of a column, without the twentieth at either end, where a fit may have lost its markers."""
-    columns = [column[np.isfinite(column)] for column in values.T]
-    return max((float(np.ptp(np.percentile(column, PERCENTILES))) for column in columns if column.size), default=0.0)
 
 
 def _undecided(file: str, why: str) -> UnitError:

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip
-from gaitdisc.kinematics.laboratory import check_right_handed, up_axis
 from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
-from gaitdisc.kinematics.markers import marker_labels, still_places
+from gaitdisc.kinematics.markers import check_right_handed, marker_labels, still_places, up_axis
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures

@@ -22,9 +22,8 @@ from gaitdisc.kinematics.exchanged_labels import (
     exchanged_pairs,
     without_exchanged,
 )
-from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
-from gaitdisc.kinematics.markers import marker_labels
+from gaitdisc.kinematics.markers import WalkingFrame, check_right_handed, marker_labels, up_axis, walking_frame
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose, clinical_angles, fitted_pose, residual_m
 from gaitdisc.kinematics.segment_poses import (
     PlacedMarkers,

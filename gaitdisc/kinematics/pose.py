@@ -127,7 +127,14 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
     origin = middle - np.einsum("fij,fj->fi", rotation, middle_body)
     apart = from_places - np.einsum("fij,fpj->fpi", rotation, from_body)
     residual = np.sqrt((apart**2).sum(axis=(1, 2)) / np.maximum(seen.sum(axis=1), 1))
-    unknown = ~_determined(body, seen)
+    # frames whose points show a turn about every axis; each pattern of missing points once
+    patterns, which = np.unique(seen, axis=0, return_inverse=True)
+    enough = [
+        pattern.sum() >= FEWEST_POINTS
+        and np.linalg.svd(body[pattern] - body[pattern].mean(axis=0), compute_uv=False)[1] >= LEAST_BREADTH_M
+        for pattern in patterns
+    ]
+    unknown = ~np.asarray(enough, bool)[which.ravel()]
     rotation[unknown], origin[unknown] = np.nan, np.nan
     residual[seen.sum(axis=1) < FEWEST_POINTS] = np.nan
     return RigidFit(Pose(origin, rotation), seen, residual)
@@ -139,17 +146,6 @@ def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float
     seen = np.isfinite(apart)
     mean = np.where(seen, apart, 0.0).sum(axis=1) / np.maximum(seen.sum(axis=1), 1)
     return np.where(seen.any(axis=1), np.sqrt(mean), np.nan)
-
-
-def _determined(body: NDArray[np.float64], seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Frames whose points that are seen show a turn about every axis; each pattern of missing points once."""
-    patterns, which = np.unique(seen, axis=0, return_inverse=True)
-    enough = [
-        pattern.sum() >= FEWEST_POINTS
-        and np.linalg.svd(body[pattern] - body[pattern].mean(axis=0), compute_uv=False)[1] >= LEAST_BREADTH_M
-        for pattern in patterns
-    ]
-    return np.asarray(enough, bool)[which.ravel()]
 
 
 def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) -> NDArray[np.float64]:

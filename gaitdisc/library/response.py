@@ -15,10 +15,9 @@ from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
 from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted
-from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.participant_response import RESPONSE, ResponseRun
 from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import made_now
-from gaitdisc.results.response_run import ResponseRun
 
 WITHOUT, WITH = "nominal", "exo"
 

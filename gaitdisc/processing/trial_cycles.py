@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Filters
-from gaitdisc.kinematics.laboratory import PATH_S, STRAIGHT_DEG
+from gaitdisc.kinematics.markers import PATH_S, STRAIGHT_DEG
 from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import envelope_of, is_raw

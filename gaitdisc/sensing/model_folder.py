@@ -134,15 +134,6 @@ def load_model(folder: Path) -> SensingModel:
             "Run `gaitdisc reconstruct` again.",
         ) from error
     weights = _weights(kind, what, folder)
-    _refuse_others(weights, kind, what, folder)
-    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
-
-
-def _said(error: Exception) -> str:
-    return error.found if isinstance(error, DamagedError) else str(error)
-
-
-def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path) -> None:
     readings = 1 if kind in STATIC else what.lags.count
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
         raise SchemaError(
@@ -151,6 +142,11 @@ def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path)
             f"the model has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files belong to one model: copy them together, or run `gaitdisc reconstruct` again.",
         )
+    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
+
+
+def _said(error: Exception) -> str:
+    return error.found if isinstance(error, DamagedError) else str(error)
 
 
 def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:

@@ -11,8 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import Look
-from gaitdisc.report.panels import Room, decades, in_style, legend, lines_of, panels
+from gaitdisc.report.panels import Look, Room, decades, in_style, legend, lines_of, panels
 from gaitdisc.report.table import Table, words_table
 from gaitdisc.words import unit_text
 

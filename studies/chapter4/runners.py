@@ -28,8 +28,19 @@ from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.process import processed
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.response.fit_response import Refit, ResponseSettings, covered, fit_response, held_out_part, response_bands
-from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network, refitted_network
+from gaitdisc.response.fit_response import (
+    Refit,
+    ResponseModels,
+    ResponseSettings,
+    covered,
+    fit_linear,
+    fit_models,
+    fit_network,
+    fit_response,
+    held_out_part,
+    refitted_network,
+    response_bands,
+)
 from gaitdisc.response.samples import gait_samples
 
 SETTINGS = ResponseSettings(ANGLES)

@@ -14,7 +14,7 @@ from gaitdisc.batch.participant_unit import computed_unit
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.results.response_run import load_run
+from gaitdisc.results.participant_response import load_run
 
 
 @pytest.fixture(scope="module")
