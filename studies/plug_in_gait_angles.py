@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import gaitdisc as gd
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
 from gaitdisc.kinematics.motion import motion

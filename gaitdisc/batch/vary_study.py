@@ -10,10 +10,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.batch.public_words import words_of
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.run_study import response_settings, run_study
 from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import GaitdiscError, SchemaError
@@ -54,11 +53,9 @@ def vary_study(
 ) -> VariantRun:
     """Fit every participant's models with one thing changed at a time; the run itself is made first if it is not there.
 
-    folder: folder of the run; what is computed here goes into a folder of the question's name in it
-    question: `modalities`: without one family of inputs at a time. `sensitivity`: other cut-offs and training lengths
-    workers: where participants are computed; in this process, one after the other, by default
-    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
-    returns: also saved in the folder of the question; whoever had to be refused is in `refusals`
+    question: `modalities`, without one family of inputs at a time, or `sensitivity`, other cut-offs and lengths; its
+        result also lies in a folder of that name in the run's
+    progress: called with a pseudonym and the fraction of that participant's work that is done
     """
     if question not in QUESTIONS:
         raise SchemaError(f"a question is one of: {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
@@ -170,10 +167,7 @@ def ablate_study(
 ) -> ResponseRun:
     """Fit every participant's models to less and less data; the run itself is made first where it is not there.
 
-    lengths_s: lengths of the training part [s]; its whole length is always added
-    workers: where participants are computed; in this process, one after the other, by default
-    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
-    returns: with `quantities`; whoever had to be refused is in `refusals`
+    lengths_s: of the training part [s]; its whole length is always added. Who had to be refused is in `refusals`.
     """
     workers = workers or Workers()
     run = run_study(study, folder, workers)

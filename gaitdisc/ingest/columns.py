@@ -214,10 +214,7 @@ def sorted_trial(
     channels: Sequence[Channel],
     findings: Sequence[Finding] = (),
 ) -> Trial:
-    """Trial of one file whose columns share one time base.
-
-    time (time,) [s]: even
-    values (time, channel) [each channel's unit]: converted already
+    """Trial of one file whose columns (time, channel), in each channel's unit, share one even time base [s].
 
     >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
     >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)

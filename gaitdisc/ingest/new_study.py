@@ -237,9 +237,7 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 
 
 def stands(trial: Trial) -> bool:
-    """Whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
-
-    A file with contacts of both feet is a walk, however many points beside the body it has.
+    """Whether half of the markers, or else hips and knees, stay still (5 cm); with contacts of both feet it is a walk.
 
     >>> stands(Trial("no markers, no angles", {}))
     False

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import UnitError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
@@ -31,11 +31,7 @@ _LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 def plausible_unit(
     time: NDArray[np.float64], values: NDArray[np.float64], names: Sequence[str], stated: str | None, file: str
 ) -> tuple[str, Finding | None]:
-    """Unit of a file's angles: the stated one if the numbers do not contradict it.
-
-    time (time,) [s]: times of the samples
-    values (time, angle) [deg or rad]: angles as read
-    returns finding: said where the unit was taken from the magnitude, or where it is in doubt
+    """Unit of a file's angles (time, angle): the stated one unless the numbers contradict it; a finding where in doubt.
 
     >>> t = np.linspace(0, 2, 200)
     >>> plausible_unit(t, 30 * np.sin(6 * t)[:, None], ["hip_flexion_r"], "deg", "walk.mot")

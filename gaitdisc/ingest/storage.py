@@ -92,11 +92,10 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
 
 
 def write_storage(recording: Recording, path: Path | str) -> Path:
-    """Write a recording as an OpenSim storage file, whole or not at all.
+    """Write a recording as an OpenSim storage file with `inDegrees`, whole or not at all.
 
-    `inDegrees` is always stated. Channels that their names alone do not determine are described by lines such as
-    `column 3=emg [V] r` in the header, which OpenSim passes over. Marks of suspect samples, subject and
-    condition are not written.
+    What a channel's name does not determine stands in lines such as `column 3=emg [V] r`, which OpenSim passes over;
+    marks of suspect samples, subject and condition are not written.
     """
     path = Path(path)
     check_written_names(recording.names, path.name)

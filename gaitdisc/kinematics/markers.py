@@ -43,15 +43,10 @@ def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float
 
 
 def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[str]) -> tuple[dict, float, float]:
-    """Where each marker is while the person stands stillest, over half a second in which every needed marker is seen.
+    """Where each marker is (3,) [m] over the stillest half second in which every needed one is seen.
 
-    names: name in the marker set -> label in the recording
-    needed: markers, by the names of the set, without which no frame can be built
-    returns places each (3,) [m]: median over the half second, or over the whole trial for a marker that is missing in
-        it; without those that are never seen
-    returns moved_m: how far the needed markers are from their places, at most on the mean over markers, in that half
-        second [m]
-    returns start_s: where it begins [s]
+    A marker missing in it has the median of the trial. Beside: how far the needed ones move, at most, on the mean over
+    markers [m], and when the half second begins [s].
     """
     all_places = marker_places(markers, list(names.values()))
     rows = [list(names).index(name) for name in needed]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
-from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.public_words import public_settings
+from gaitdisc.batch.run_study import response_settings
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
 from gaitdisc.library.walks import Walk, trial_of

@@ -18,7 +18,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.butterworth import lowpassed

@@ -288,12 +288,9 @@ def fit_models(
     fit: Callable[[Samples, Callable[[float], None]], Fit],
     progress: Callable[[float], None] | None = None,
 ) -> ResponseModels:
-    """Fit the Nominal, the Exo and the Discrepancy model, all in the same way.
+    """Fit Nominal, Exo and Discrepancy alike to both training parts, which have the same inputs and outputs.
 
-    The Discrepancy model learns what the Nominal model misses of device walking,
-    xddot_exo - f(x_exo, xdot_exo, phi_exo) (Eq. 4.4).
-
-    nominal, exo: training parts of the walks without and with the device; same inputs and outputs
+    The Discrepancy model learns xddot_exo - f(x_exo, xdot_exo, phi_exo), what Nominal misses (Eq. 4.4).
     """
     parts = [partial(report_share, progress or (lambda _: None), done, 3) for done in range(3)]
     f = _named("Nominal", fit, nominal, parts[0])

@@ -110,12 +110,9 @@ def fit_without(
 
 
 def compare_modalities(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
-    """Test R2 without a family of inputs against R2 with all, over participants.
+    """Test R2 without a family of inputs against R2 with all, over six participants or more.
 
-    people: of the question `modalities`; fewer than six are not tested
-    alpha: of each family of tests: the variables of one model and one family of inputs
-    returns: columns `VARIANT_TEST_COLUMNS`; first is `all inputs`, second `without`, so that a negative shift is a
-        fall
+    alpha is of a family of tests, one model's and family's variables; a negative shift (second `without`) is a fall.
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
@@ -174,14 +171,11 @@ def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[
 
 
 def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
-    """Test Nominal against Augmented under every setting, over participants.
+    """Test Nominal against Augmented under every setting, over six participants or more.
 
-    R2 under two settings are not of the same thing, for the filter makes what is to be predicted as well; the order of
-    the models under each setting can be compared, and how far each lies above the null of its filters.
-
-    people: of the question `sensitivity`; fewer than six are not tested
+    R2 under two settings are not of the same thing, for the filter makes what is predicted, too: the order of the
+    models under each can be compared, and how far each lies above the null of its filters.
     alpha: of each family of tests: the variables under one setting
-    returns: columns `VARIANT_TEST_COLUMNS`; model and second are `augmented`, first `nominal`
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))

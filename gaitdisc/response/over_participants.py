@@ -37,11 +37,9 @@ LEVEL = 0.95
 
 
 def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = ALPHA) -> pd.DataFrame:
-    """Compare the networks' R2 on held-out device walking with that of ridge regressions and of the filters' null.
+    """Compare the networks' R2 on held-out device walking with ridge regressions' and the null's (`BASELINE_COLUMNS`).
 
-    alpha: of each family: the variables of one model and baseline
-    returns: columns `BASELINE_COLUMNS`: first is the baseline, second `network`; empty for fewer than six
-        participants. A network that is shown to be no better than its baseline in a variable earns nothing there
+    alpha is of one model's and baseline's variables; a network shown to be no better there earns nothing.
     """
     if len(responses) < FEWEST:
         return no_rows("baselines")
@@ -58,11 +56,8 @@ def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = A
 def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
     """Compare, at every training length, Augmented with Exo, and Exo with the Exo of the whole training part.
 
-    alpha: of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
-        would hold 72 tests or more and at most 52 can
-    returns: columns `LENGTH_COLUMNS`, one row a length, comparison and variable; empty for fewer than six
-        participants. second is `exo` or `exo, whole training part`. A participant without a length is left out of it
-        by name
+    alpha: of the variables at one length: a family of all would hold 72 tests or more, and at n = 11 at most 52
+        can show something. Who lacks a length is left out of it by name; empty for fewer than six
     Source: Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
     """
     if len(quantities) < FEWEST:

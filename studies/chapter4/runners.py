@@ -19,7 +19,7 @@ from torch import nn
 
 import gaitdisc as gd
 from gaitdisc.batch.demonstration import MUSCLES, OUTPUTS
-from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.run_study import response_settings
 from gaitdisc.cohort.cohort import walks_of
 from gaitdisc.cohort.person import drawn
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study

@@ -6,9 +6,8 @@ import pytest
 from driven_walker import DrivenWalker
 from texts import says
 
-from gaitdisc.batch.participant_unit import computed_unit
 from gaitdisc.batch.processed_walks import computed_cycles, cycles_key
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.run_study import computed_unit, run_study
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Kinematics, Models, Participant, PlannedTrial, StrideRules, Study
 from gaitdisc.results.participant_response import load_run

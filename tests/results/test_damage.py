@@ -12,7 +12,7 @@ import pytest
 from resealed import resealed
 from texts import says
 
-from gaitdisc.batch.participant_unit import REFUSED, Refused
+from gaitdisc.batch.run_study import REFUSED, Refused
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.results.over_participants import OVER, TABLES, TESTS, OverParticipants, no_rows
 from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity, load_run
