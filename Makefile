@@ -30,7 +30,7 @@ elsewhere: $(VENV)/.dev
 	@set -e; seed=$${SEED:-$$(od -An -N3 -tu4 /dev/urandom | tr -d ' ')}; echo "order of seed $$seed"; \
 	found=$$($(BIN)/python -c 'import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))'); \
 	export NPY_DISABLE_CPU_FEATURES="$$found" OPENBLAS_CORETYPE=Nehalem ATEN_CPU_CAPABILITY=default NUMBA_CPU_NAME=generic; \
-	for part in "" "$(CHAPTERS)"; do $(PYTEST) $(BESIDE) -p randomly --randomly-seed=$$seed $$part; done
+	for part in "" "$(CHAPTERS)"; do $(PYTEST) $(BESIDE) --hypothesis-profile many -p randomly --randomly-seed=$$seed $$part; done
 
 slow: $(VENV)/.dev
 	$(PYTEST) $(BESIDE) -m slow

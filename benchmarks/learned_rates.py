@@ -29,11 +29,9 @@ import time as clock
 import numpy as np
 import pandas as pd
 from chapter3.augmented_run import with_learned_rates
-from chapter3.cell import learned_model, part
-from chapter3.discrepancy_cell import ORACLE
+from chapter3.cell import ORACLE, learned_model, part
 from chapter3.methods import MethodSettings
-from chapter3.record import Conditions, Record, recorded
-from chapter3.system import Rates, System, system_of
+from chapter3.record import Conditions, Rates, Record, System, recorded, system_of
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 

@@ -11,11 +11,9 @@ two electrodes a leg, count as one muscle each, and the family is the six muscle
 
 from __future__ import annotations
 
-from command_line import SHARED, argument, command_line
+from command_line import GAIT, command_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("data", "folder that holds ankle_exo_emg_grf", SHARED / "gait")
-)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, GAIT)  # before the slow imports
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -49,9 +47,8 @@ def log_ratios(walks: Walks, setting: str, part: str, faulty: Mapping[tuple[str,
     for person in PEOPLE:
         for muscle, heads in MUSCLES.items():
             electrodes = [name for name in electrodes_of(heads) if (person, name) not in faulty]
-            levels = [
-                [_level(walks.curves[person, word], name, part) for word in (EASIEST, setting)] for name in electrodes
-            ]
+            both = [walks.curves[person, word] for word in (EASIEST, setting)]
+            levels = [[_level(curves, name, part) for curves in both] for name in electrodes]
             if levels:
                 table.loc[person, muscle] = float(np.mean([np.log(other / easiest) for easiest, other in levels]))
     return table
@@ -88,8 +85,7 @@ def _hardest_table(tests: pd.DataFrame) -> str:
         test = (row.n, f"{row.w:g}", f"{row.p:.4f}", f"{row.step_level:.4f}", f"{mark}{row.p_adjusted:.3f}{mark}")
         size = (f"{row.shift:+.0f}", f"{row.low:+.0f} to {row.high:+.0f}", f"{row.rank_biserial:+.2f}")
         rows.append((row.part, row.variable, *test, *size))
-    headings = "part | muscle | n | W | p | level | adjusted p | change [%] | 95 % | rank-biserial"
-    return markdown_table(headings, rows)
+    return markdown_table("part | muscle | n | W | p | level | adjusted p | change [%] | 95 % | rank-biserial", rows)
 
 
 def _every_table(tests: pd.DataFrame) -> str:
@@ -100,8 +96,7 @@ def _every_table(tests: pd.DataFrame) -> str:
     return markdown_table(" | ".join(["part", "muscle", *dict.fromkeys(tests["setting"])]), found)
 
 
-def main() -> None:
-    """Print the tables."""
+if __name__ == "__main__":
     walks, faulty, tests = run(GIVEN.data)
     least = gd.signed_rank(np.zeros(len(PEOPLE)), np.arange(1.0, len(PEOPLE) + 1)).p
     largest = max(count for count in range(1, 100) if gd.holm_sidak([least] + [1.0] * (count - 1)).rejected[0])
@@ -113,7 +108,3 @@ def main() -> None:
     print(f"\nChange against {EASIEST} [%]:\n\n" + _every_table(tests))
     different = f"{int(tests['different'].sum())} of {len(tests)} tests"
     print(f"\n{different}, each family the six muscles of one part and setting")
-
-
-if __name__ == "__main__":
-    main()

@@ -51,14 +51,12 @@ def ankle_trials(
     others = others + others_nm * _wander(rng, len(net))
     late = np.interp(walk.slow_s - emg_late_s, walk.slow_s, by_emg * (1 + emg_error * _wander(rng, len(net))))
     recorded = sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED)) - _low(net)
-    columns = [recorded, *(_low(one) for one in (per_kg, late, others))]
-    columns.append(np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1))
+    columns = [recorded, *map(_low, (per_kg, late, others)), np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1)]
     inner = slice(round(EDGE_S * SLOW_HZ), -round(EDGE_S * SLOW_HZ))
     inputs, seen = np.column_stack(columns)[inner], angle[inner, None]
     length = len(inputs) // TRIALS
-    cuts = [slice(n * length, (n + 1) * length) for n in range(TRIALS)]
-    time = np.arange(length) / SLOW_HZ
-    trials = [TrialColumns(str(n + 1), time, inputs[cut], seen[cut]) for n, cut in enumerate(cuts)]
+    cuts, time = [slice(n * length, (n + 1) * length) for n in range(TRIALS)], np.arange(length) / SLOW_HZ
+    trials = [TrialColumns(str(n), time, inputs[cut], seen[cut]) for n, cut in enumerate(cuts, 1)]
     return measured_of_trials(trials, INPUTS, ("theta",), walk.person.name)
 
 
@@ -86,7 +84,12 @@ def moments_per_foot_kg(walk: TrueWalk, hip: bool = True) -> Values:
     psi = _segments(angles[:, 0], angles[:, 3], angles[:, 4])
     turning = np.gradient(psi, 1 / SLOW_HZ, axis=0)
     faster = _segments(speedup[:, 0], speedup[:, 1], speedup[:, 2])
-    carried = _hip_speedup(walk) if hip else np.zeros((len(psi), 2))
+    carried = np.zeros((len(psi), 2))
+    if hip:  # acceleration forwards and upwards [m/s2]
+        grid, phase = np.arange(PHASES) / PHASES, walk.phase[:: round(QUICK_HZ / SLOW_HZ)] % 1.0
+        speed = [np.interp(phase, grid, one, period=1.0) for one in hip_motion(walk.person, grid).T]
+        whole = np.column_stack(speed) + np.gradient(walk.pelvis, 1 / SLOW_HZ, axis=0)
+        carried = np.gradient(whole, 1 / SLOW_HZ, axis=0)
     person, found = walk.person, np.zeros((len(psi), 3))
     for kilograms, sign in ((0.0, -1), (1.0, 1)):
         leg, m, b = leg_of(person.height_m, person.mass_kg, kilograms), np.zeros((3, 3)), np.zeros(3)
@@ -95,15 +98,6 @@ def moments_per_foot_kg(walk: TrueWalk, hip: bool = True) -> Values:
             bias(leg, psi[sample], turning[sample], *carried[sample], b)
             found[sample] += sign * (m @ faster[sample] + b)
     return np.column_stack([found.sum(axis=1), -found[:, 1] - found[:, 2], found[:, 2]])
-
-
-def _hip_speedup(walk: TrueWalk) -> Values:
-    """Acceleration of the hip, forwards and upwards (time, 2) [m/s2]."""
-    grid = np.arange(PHASES) / PHASES
-    phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] % 1.0
-    speed = [np.interp(phase, grid, one, period=1.0) for one in hip_motion(walk.person, grid).T]
-    whole = np.column_stack(speed) + np.gradient(walk.pelvis, 1 / SLOW_HZ, axis=0)
-    return np.gradient(whole, 1 / SLOW_HZ, axis=0)
 
 
 def _segments(hip: Values, knee: Values, ankle: Values) -> Values:

@@ -60,14 +60,12 @@ def answer_of(folder: Path, reference: Path, angles: str = "file", pages: bool =
     if not pages:
         return undrawn(study, reference, Answer(lines, {}, 0, people, [], []))
     printed += told("run", study, "-q", "--reference", reference)
-    printed = [line.replace(f"{folder}/", "") for line in printed]
-    lines += [f"printed: {line}" for line in printed if line and not line.startswith("note:")]
+    shown = (line.replace(f"{folder}/", "") for line in printed)
+    lines += [f"printed: {line}" for line in shown if line and not line.startswith("note:")]
     lines += [written(one) for one in rows_of(study / "run/report/tables/findings.csv")]
     kept = sum(row["kept"] == "True" for row in rows_of(study / "run/report/tables/cycles.csv"))
-    numbers = {
-        f"{one['rule']} {one['side']}": (float(one["value"]), one["words"])
-        for one in rows_of(study / PERSON / "outstanding.csv")
-    }
+    outstanding = rows_of(study / PERSON / "outstanding.csv")
+    numbers = {f"{one['rule']} {one['side']}": (float(one["value"]), one["words"]) for one in outstanding}
     drawn = [name for name in ("kinematics", "kinetics", "emg") if (study / PERSON / f"{name}.csv").exists()]
     emg = sorted({name.split("_mean")[0] for row in rows_of(study / PERSON / "emg.csv")[:1] for name in row})
     return Answer(lines, numbers, kept, people, [name for name in emg if name.startswith("emg_")], drawn)
@@ -92,13 +90,10 @@ def undrawn(study: Path, reference: Path, checked: Answer) -> Answer:
     numbers = {f"{one.rule} {one.side}": (one.value, one.words) for one in noted}
     held = {channel.name: channel.quantity for own in first for channel in own.channels}
     kinds = {"kinematics": "angle", "kinetics": "moment", "emg": "emg"}
-    return checked._replace(
-        lines=checked.lines + lines,
-        numbers=numbers,
-        cycles=sum(len(own.kept) for own in run.cycles),
-        emg=sorted(name for name, quantity in held.items() if quantity == "emg"),
-        pages=[page for page, quantity in kinds.items() if quantity in held.values()],
-    )
+    emg = sorted(name for name, quantity in held.items() if quantity == "emg")
+    pages = [page for page, quantity in kinds.items() if quantity in held.values()]
+    kept = sum(len(own.kept) for own in run.cycles)
+    return Answer(checked.lines + lines, numbers, kept, checked.people, emg, pages)
 
 
 def told(*words: object) -> list[str]:
@@ -152,8 +147,5 @@ def without_numbers(lines: Iterable[str]) -> set[str]:
 def new_lines(planted: Answer, clean: Answer, notes: bool = False) -> list[str]:
     """Warnings and refusals, and notes where they count, that the recordings without the fault do not have."""
     known = without_numbers(clean.lines)
-    return [
-        line
-        for line in dict.fromkeys(planted.lines)
-        if NUMBER.sub("#", line) not in known and (notes or not line.startswith("note"))
-    ]
+    lines = [line for line in dict.fromkeys(planted.lines) if notes or not line.startswith("note")]
+    return [line for line in lines if NUMBER.sub("#", line) not in known]

@@ -27,11 +27,11 @@ class InPlace:
     """
 
     def __init__(self, path: Path) -> None:
-        self.raw = bytearray(path.read_bytes())
+        self.path, self.raw = path, bytearray(path.read_bytes())
         parameters = BLOCK * (self.raw[0] - 1)
         if self.raw[parameters + 3] != INTEL or self.header("<f", 7) > 0:
             raise ValueError(f"{path}: not Intel floats")
-        self.places = dict(self._records(parameters + 4))
+        self.places = self._records(parameters + 4)
         self._view()
 
     def header(self, form: str, word: int) -> float:
@@ -49,7 +49,7 @@ class InPlace:
         self.analog = samples[:, 4 * count :].reshape(frames, per_frame, -1)
         self.points_rate = self.header("<f", 11)
 
-    def _records(self, at: int) -> Iterator[tuple[str, tuple[int, tuple[int, ...], int]]]:
+    def _records(self, at: int) -> dict[str, tuple[int, tuple[int, ...], int]]:
         groups: dict[int, str] = {}
         found: list[tuple[int, str, tuple[int, tuple[int, ...], int]]] = []
         while length := abs(struct.unpack_from("b", self.raw, at)[0]):
@@ -66,7 +66,7 @@ class InPlace:
             if not step:
                 break
             at = after + step
-        return ((f"{groups[number]}:{name}", place) for number, name, place in found)
+        return {f"{groups[number]}:{name}": place for number, name, place in found}
 
     def numbers(self, name: str) -> NDArray[Any]:
         """Numbers of a parameter, such as `EVENT:TIMES`, to be read or written in place; empty without it."""
@@ -115,8 +115,7 @@ class InPlace:
         """Largest change of the vertical force of each plate [N, or as its channel is scaled]."""
         if not self.analog.size:
             return []
-        third = [self.newtons(channels[2:3])[:, 0] for channels in self.plate_channels()]
-        return [float(np.ptp(force)) for force in third]
+        return [float(np.ptp(self.newtons(channels[2:3]))) for channels in self.plate_channels()]
 
     def resampled(self, frames: NDArray[np.float64], analog: NDArray[np.intp]) -> None:
         """Give the file other frames, each between two of those it has; of analog samples whole frames are taken."""
@@ -128,9 +127,8 @@ class InPlace:
         rows = np.hstack([points.reshape(len(points), -1), self.analog[analog].reshape(len(points), -1)])
         start = BLOCK * (int(self.header("<H", 9)) - 1)
         last = int(self.header("<H", 4)) + len(frames) - 1
-        head = bytes(self.raw[:start])
         samples = rows.astype("<f4").tobytes()
-        self.raw = bytearray(head + samples + bytes(-len(samples) % BLOCK))
+        self.raw = bytearray(bytes(self.raw[:start]) + samples + bytes(-len(samples) % BLOCK))
         struct.pack_into("<H", self.raw, 8, last)
         for name, parts in (("POINT:FRAMES", [len(frames)]), ("TRIAL:ACTUAL_END_FIELD", [last & 0xFFFF, last >> 16])):
             place = self.numbers(name)

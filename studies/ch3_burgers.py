@@ -21,13 +21,10 @@ GIVEN = report_line(__name__, __doc__, "ch3_burgers")  # before the slow imports
 import numpy as np
 from chapter3.augmented_run import with_learned_rates
 from chapter3.burgers import burgers, local_cell, places, recorded_field
-from chapter3.cell import NOISES, cell_of, learned_model
-from chapter3.discrepancy_cell import DiscrepancyCell
-from chapter3.error_signal import APPROACHES
+from chapter3.cell import NOISES, DiscrepancyCell, cell_of, learned_model
 from chapter3.methods import Method, MethodSettings
-from chapter3.pages import field_figure, grid_table, statements_table
-from chapter3.record import Conditions, Record, recorded
-from chapter3.report import Result, written
+from chapter3.pages import Result, field_figure, grid_table, statements_table, written
+from chapter3.record import APPROACHES, Conditions, Record, recorded
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
@@ -46,17 +43,10 @@ def run(quick: bool = False, folder: Path = Path("ch3_burgers")) -> Result:
     said = [("Eq. 3.12", "starts from exp((x + 2)^2)", text_start(conditions))]
     cells, blocks = {}, []
     for number, (variant, cubic) in enumerate(CUBICS.items(), 1):
-        said.append(
-            (
-                "Fig. 3.12",
-                "DMD recovers the missing physics",
-                f"{variant}: {artefact(recorded(burgers(cubic), conditions))}",
-            )
-        )
-        cells[variant] = cells_of(cubic, [
-            Conditions(noise, seed, duration_s=duration_s)
-            for noise in noises for seed in (SEEDS if noise else SEEDS[:1])
-        ])  # fmt: skip
+        found = artefact(recorded(burgers(cubic), conditions))
+        said.append(("Fig. 3.12", "DMD recovers the missing physics", f"{variant}: {found}"))
+        pairs = ((noise, seed) for noise in noises for seed in (SEEDS if noise else SEEDS[:1]))
+        cells[variant] = cells_of(cubic, [Conditions(*pair, duration_s=duration_s) for pair in pairs])
         drawn = tuple(
             field_figure(found, tuple(places()), f"field-{number}-{cell.approach}-{name}", f"Fig. 3.12: {name}")
             for cell in cells[variant] if cell.method == "dmd" and not cell.noise for name, found in cell.parts.items()

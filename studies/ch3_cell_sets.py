@@ -7,14 +7,10 @@ from dataclasses import dataclass, replace
 import ch3_lorenz
 import ch3_measurement_bias
 import ch3_van_der_pol
-from chapter3.error_signal import Approach
+from chapter3.cell import NOISES
 from chapter3.methods import Method, MethodSettings
-from chapter3.record import Conditions
-from chapter3.system import System
+from chapter3.record import Approach, Conditions, System
 
-SEEDS = 12
-
-NOISES = (0.0, 0.001, 0.01, 0.1)
 FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
 LONG, SHORT = 50.0, 10.0
 
@@ -28,7 +24,7 @@ class CellSet:
     approach: Approach = "dynamics"
     methods: tuple[Method, ...] = FOUR
     noises: tuple[float, ...] = NOISES  # shares of each channel's standard deviation
-    seeds: int = SEEDS
+    seeds: int = 12
     settings: MethodSettings | None = None
 
 
@@ -60,7 +56,7 @@ def cell_sets() -> dict[str, CellSet]:
 
 def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:
     """Sets of these names, at these noises; all where absent."""
-    sets = cell_sets()
-    found = {name: sets[name] for name in names or sets}
-    some = set(noises or NOISES)
-    return {name: replace(one, noises=tuple(n for n in one.noises if n in some)) for name, one in found.items()}
+    sets, some = cell_sets(), set(noises or NOISES)
+    return {
+        name: replace(sets[name], noises=tuple(n for n in sets[name].noises if n in some)) for name in names or sets
+    }

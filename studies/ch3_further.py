@@ -40,9 +40,11 @@ from markdown_table import markdown_table
 from gaitdisc.report.table import save_table
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
+COLUMNS = ["table", "row", "system", "noise", "seed", "value"]
+BOTH = "forecast [% less RMSE], of Lorenz valid time [Lyapunov times]"
 HEADINGS = {
-    "methods": "forecast [% less RMSE], of Lorenz valid time [Lyapunov times]",
-    "noise": "forecast [% less RMSE], of Lorenz valid time [Lyapunov times]",
+    "methods": BOTH,
+    "noise": BOTH,
     "filters": "valid time [Lyapunov times], SINDy",
     "trajectories": "forecast from 5 s on [% less RMSE], state approach",
     "variance": "missing rate within 1.96 SD of the Gaussian process [%]",
@@ -58,37 +60,30 @@ def compute(folder: Path, tables: list[str], seeds: int) -> None:
         path = folder / f"{number.table}-{number.row}-{number.system}-{number.noise:g}-{seed:02d}.csv"
         if path.exists():
             continue
+        *head, computed = number
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            row = {"table": number.table, "row": number.row, "system": number.system, "noise": number.noise}
-            save_table(pd.DataFrame([row | {"seed": seed, "value": number.computed(seed)}]), path)
+            save_table(pd.DataFrame([(*head, seed, computed(seed))], columns=pd.Index(COLUMNS)), path)
         done += 1
-        left = (time.monotonic() - begun) / done * (len(wanted) - place - 1)
-        print(
-            f"{place + 1} of {len(wanted)}, {left / 60:.0f} min left at most: {path.name}", file=sys.stderr, flush=True
-        )
+        left_min = (time.monotonic() - begun) / done * (len(wanted) - place - 1) / 60
+        said = f"{place + 1} of {len(wanted)}, {left_min:.0f} min left at most: {path.name}"
+        print(said, file=sys.stderr, flush=True)
 
 
 def gathered(folder: Path) -> pd.DataFrame:
     """Every number of a folder, in the order of the tables."""
     table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*.csv"))], ignore_index=True)
-    return table.sort_values(["table", "row", "system", "noise", "seed"], kind="stable", ignore_index=True)
+    return table.sort_values(COLUMNS[:-1], kind="stable", ignore_index=True)
 
 
 def printed(table: pd.DataFrame, name: str) -> str:
     """One table as documents hold it: median [least, greatest] over the seeds."""
     some, rows = table[table["table"] == name], []
-    columns = [
-        (str(system), noise)
-        for system in ("Van der Pol", "Lorenz")
-        for noise in sorted(some.loc[some["system"] == system, "noise"].unique())
-    ]
+    columns = sorted(set(zip(some["system"], some["noise"], strict=True)), key=lambda one: (one[0] == "Lorenz", one[1]))
     for row in dict.fromkeys(some["row"]):
-        said = []
-        for system, noise in columns:
-            here = (some["row"] == row) & (some["system"] == system) & (some["noise"] == noise)
-            said.append(said_of(some[here], "value"))
-        rows.append((row, str(some[some["row"] == row].groupby(["system", "noise"]).size().max()), *said))
+        found = some[some["row"] == row].groupby(["system", "noise"])
+        said = [said_of(found.get_group(one), "value") if one in found.groups else "" for one in columns]
+        rows.append((row, str(found.size().max()), *said))
     headings = (HEADINGS[name], "n", *(f"{system}, {100 * noise:g} % noise" for system, noise in columns))
     return markdown_table(" | ".join(headings), rows)
 

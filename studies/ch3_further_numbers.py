@@ -10,16 +10,13 @@ import ch3_lorenz
 import ch3_van_der_pol
 import numpy as np
 from chapter3.augmented_run import with_learned_rates
-from chapter3.cell import cell_of, learned_model
-from chapter3.discrepancy_cell import FORECAST, PartAccuracy
-from chapter3.error_signal import error_samples
+from chapter3.cell import FORECAST, PartAccuracy, cell_of, learned_model
 from chapter3.gaussian_process import fit_gaussian_process
 from chapter3.kept_cells import LYAPUNOV_PER_S
 from chapter3.methods import MethodSettings
 from chapter3.pages import METHOD_WORDS
-from chapter3.record import NOISE_KINDS, Conditions, recorded
+from chapter3.record import NOISE_KINDS, Conditions, System, error_samples, recorded
 from chapter3.starts import filtered_start, forecast_start
-from chapter3.system import System
 
 NOISES = (0.01, 0.1)
 SACRIFICED_S = 5.0
@@ -43,9 +40,8 @@ def systems() -> dict[str, System]:
 
 def score(part: PartAccuracy, system: str) -> float:
     """What a forecast is compared with."""
-    if system == "Lorenz":
-        return LYAPUNOV_PER_S * part.valid_s("augmented")
-    return float(np.median(part.accuracy()))
+    chaotic = system == "Lorenz"
+    return LYAPUNOV_PER_S * part.valid_s("augmented") if chaotic else float(np.median(part.accuracy()))
 
 
 def numbers(tables: list[str]) -> Iterator[Number]:
@@ -54,8 +50,8 @@ def numbers(tables: list[str]) -> Iterator[Number]:
         for noise in NOISES:
             if "methods" in tables:
                 for method in ("sindy", "esindy", "wsindy", "dmd", "exactdmd", "gp", "gpm"):
-                    computed = partial(of_method, system, name, noise, method)
-                    yield Number("methods", METHOD_WORDS[method], name, noise, computed)
+                    made = partial(of_method, system, name, noise, method)
+                    yield Number("methods", METHOD_WORDS[method], name, noise, made)
             if "variance" in tables:
                 yield Number("variance", "Gaussian process", name, noise, partial(of_variance, system, noise))
         if "noise" in tables:

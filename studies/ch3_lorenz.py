@@ -16,13 +16,10 @@ GIVEN = report_line(__name__, __doc__, "ch3_lorenz")  # before the slow imports
 
 import numpy as np
 import pandas as pd
-from chapter3.cell import ALL_METHODS, NOISES, grid
-from chapter3.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
-from chapter3.error_signal import APPROACHES
+from chapter3.cell import ALL_METHODS, FORECAST, NOISES, ORACLE, PART_WORDS, grid
 from chapter3.kept_cells import LYAPUNOV_PER_S
-from chapter3.record import Conditions
-from chapter3.report import Cells, Result, blocks_of, written
-from chapter3.system import System, system_of
+from chapter3.pages import Cells, Result, blocks_of, written
+from chapter3.record import APPROACHES, Conditions, System, system_of
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
@@ -37,14 +34,10 @@ FIGURES = {
 STATED = (
     ("Fig. 3.7", "dynamics: SINDy, GPR and NN without error for the first five seconds; DMD fails", "dynamics", 0.0),
     ("Fig. 3.10", "dynamics: little is left of it over the whole forecast (0.1 %)", "dynamics", 0.001),
-    (
-        "Fig. 3.8",
-        "state: SINDy and DMD change nothing; GPR and NN reduce the error, none recovers the truth",
-        "state",
-        0.0,
-    ),
+    ("Fig. 3.8", "state: SINDy and DMD change nothing; GPR and NN reduce the error, none recovers the truth",
+     "state", 0.0),
     ("section 3.5", "dt 0.001: almost perfect over short times", "dynamics", 0.0),
-)
+)  # fmt: skip
 
 
 def system() -> System:

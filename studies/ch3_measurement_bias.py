@@ -18,11 +18,9 @@ GIVEN = report_line(__name__, __doc__, "ch3_measurement_bias")  # before the slo
 import numpy as np
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.methods import MethodSettings
-from chapter3.pages import statements_table
-from chapter3.record import Conditions, Record, recorded
-from chapter3.report import Result, blocks_of, written
+from chapter3.pages import Result, blocks_of, statements_table, written
+from chapter3.record import Conditions, Record, System, recorded, system_of
 from chapter3.starts import Uncertainty, unscented_kalman
-from chapter3.system import System, system_of
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -56,9 +54,8 @@ def run(quick: bool = False, folder: Path = Path("ch3_measurement_bias")) -> Res
         for noise in noises:
             for seed in seeds if noise else seeds[:1]:
                 record = recorded(system, Conditions(noise, seed, duration_s=20.0))
-                rows.append(
-                    ("3.4.4", f"{variant}, {noise:.1%} noise, seed {seed}: filters do as well", filters(record))
-                )
+                what = f"{variant}, {noise:.1%} noise, seed {seed}: filters do as well"
+                rows.append(("3.4.4", what, filters(record)))
     neutral = Block("kalman", "The neutral result", (), tables=(statements_table(rows, "kalman"),))
     stated, *others = blocks_of(cells, FIGURES, STATED)
     return written(cells, [stated, neutral, *others], "Measurement bias, section 3.4.4", folder)

@@ -27,16 +27,14 @@ GIVEN = command_line(
 
 import sys
 import warnings
-from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pandas as pd
 from ch3_cell_sets import CellSet, cell_sets, chosen_sets
-from chapter3.cell import cell_of
-from chapter3.discrepancy_cell import METHODS, DiscrepancyCell
+from chapter3.cell import METHODS, DiscrepancyCell, cell_of
 from chapter3.kept_cells import CELLS, measured, sets_tables
-from chapter3.methods import Method
 from chapter3.recommend import FOUND, evidence_of
 from chapter3.record import recorded
 
@@ -48,7 +46,10 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
     warm = set()
     for seed in range(seeds):
         for name, cell_set in sets.items():
-            for noise, method in _wanted(cell_set, seed):
+            wanted = [
+                noise for noise in cell_set.noises if seed < (cell_set.seeds if noise else 1)
+            ]  # without noise one
+            for noise, method in product(wanted, cell_set.methods):
                 path = folder / f"{name}-{noise:g}-{seed:02d}-{method}.csv"
                 if path.exists():
                     continue
@@ -63,20 +64,11 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
                 print(path.name, file=sys.stderr, flush=True)
 
 
-def _wanted(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
-    for noise in cell_set.noises:
-        for method in cell_set.methods:
-            if seed < (cell_set.seeds if noise else 1):  # without noise all seeds are one
-                yield noise, method
-
-
 def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
     """Numbers of a cell, a row a part: medians over the channels, but the worst of them until the first jump."""
-    head = {
-        "system": cell.system, "variant": cell.variant, "approach": cell.approach, "method": cell.method,
-        "noise": cell.noise, "dt_s": cell.dt_s, "samples": cell.samples, "seed": cell.seed,
-        "seconds": cell.fit_s + cell.run_s, "terms": cell.terms, "refused": cell.refused,
-    }  # fmt: skip
+    names = ("system", "variant", "approach", "method", "noise", "dt_s", "samples", "seed")
+    head = {name: getattr(cell, name) for name in names}
+    head |= {"seconds": cell.fit_s + cell.run_s, "terms": cell.terms, "refused": cell.refused}
     rows = [
         head
         | {"part": name, "accuracy": float(np.median(part.accuracy())), "diverged_s": part.diverged_s}

@@ -13,13 +13,12 @@ from itertools import combinations
 
 from command_line import argument, command_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("table", "readme, recommended, evidence, rankings, SET:NUMBER, or all")
-)  # before the slow imports
+TABLE = argument("table", "readme, recommended, evidence, rankings, SET:NUMBER, or all")
+GIVEN = command_line(__name__, __doc__, TABLE)  # before the slow imports
 
 import numpy as np
 import pandas as pd
-from chapter3.discrepancy_cell import FORECAST, ORACLE
+from chapter3.cell import FORECAST, ORACLE
 from chapter3.kept_cells import (
     NUMBERS,
     START_WORDS,
@@ -77,26 +76,20 @@ def rankings(table: pd.DataFrame) -> str:
     return "\n".join(f"- {line}" for line in (counted, *sure))
 
 
-def every_table(table: pd.DataFrame) -> str:
-    """All that this study prints of the kept cells."""
-    named = {"In short": readme_table(table), "Rankings": rankings(table)}
-    named |= {"What `recommend` answers": recommended_table(), "What it answers from": evidence_table()}
-    return "\n".join([f"## {words}\n\n{said}" for words, said in named.items()] + [sets_tables(table)])
+NAMED = {
+    "readme": ("In short", readme_table),
+    "rankings": ("Rankings", rankings),
+    "recommended": ("What `recommend` answers", recommended_table),
+    "evidence": ("What it answers from", evidence_table),
+}
 
 
 def printed(name: str) -> str:
     """A table by its name."""
+    table = measured()
     if name == "all":
-        return every_table(measured())
-    if name == "readme":
-        return readme_table(measured())
-    if name == "recommended":
-        return recommended_table()
-    if name == "evidence":
-        return evidence_table()
-    if name == "rankings":
-        return rankings(measured())
-    return set_table(measured(), *name.split(":"))
+        return "\n".join([*(f"## {words}\n\n{made(table)}" for words, made in NAMED.values()), sets_tables(table)])
+    return NAMED[name][1](table) if name in NAMED else set_table(table, *name.split(":"))
 
 
 if __name__ == "__main__":

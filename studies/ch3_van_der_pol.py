@@ -16,12 +16,9 @@ from command_line import report_line
 
 GIVEN = report_line(__name__, __doc__, "ch3_van_der_pol")  # before the slow imports
 
-from chapter3.cell import ALL_METHODS, NOISES, grid
-from chapter3.discrepancy_cell import DiscrepancyCell
-from chapter3.error_signal import APPROACHES
-from chapter3.record import Conditions
-from chapter3.report import Result, blocks_of, written
-from chapter3.system import System, system_of
+from chapter3.cell import ALL_METHODS, NOISES, DiscrepancyCell, grid
+from chapter3.pages import Result, blocks_of, written
+from chapter3.record import APPROACHES, Conditions, System, system_of
 
 import gaitdisc as gd
 

@@ -21,10 +21,8 @@ import numpy as np
 from chapter3.cell import NOISES
 from chapter3.methods import Method
 from chapter3.naming import HiddenEffect, Naming, discover_answer, method_answer
-from chapter3.pages import naming_figure, naming_table
-from chapter3.record import Conditions, recorded
-from chapter3.report import Result, written
-from chapter3.system import KnownRates, StochasticRates, system_of
+from chapter3.pages import Result, naming_figure, naming_table, written
+from chapter3.record import Conditions, KnownRates, StochasticRates, recorded, system_of
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

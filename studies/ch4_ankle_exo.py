@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 from ch4_ours import OURS
+from markdown_table import markdown_table
 
 import gaitdisc as gd
 from gaitdisc.batch.demonstration import write_demonstration
@@ -58,16 +59,9 @@ def run(quick: bool, folder: Path = Path("ch4"), jobs: int = 2) -> Result:
     return Result(done, printed, page)
 
 
-def main() -> None:
-    """Compute the chapter and print what the dissertation prints beside ours."""
+if __name__ == "__main__":
     result = run(GIVEN.quick, GIVEN.folder)
-    print("| | dissertation | embedded cohort |\n|---|---|---|")
-    for row in result.printed.itertuples():
-        print(f"| {row.what} | {row.printed} | {row.ours} |")
+    print(markdown_table(" | dissertation | embedded cohort", result.printed.iloc[:, :3].itertuples(index=False)))
     for refusal in result.run.refusals:
         print(f"left out: {refusal.participant} {refusal.condition}: {refusal.reason}")
     print(f"report: {result.page}")
-
-
-if __name__ == "__main__":
-    main()

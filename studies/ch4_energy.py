@@ -25,12 +25,8 @@ def energy(quick: bool) -> Iterator[Number]:
     rng = np.random.default_rng(0)
     for kind, (which, mean) in kinds.items():
         rows = which or [k for k in range(22) if which is not None or k not in emg]
-        x = np.array(
-            [
-                [(c[rows].mean(axis=1) if mean else c[rows].ravel()) for c in (curves[p, s] for s in SETTINGS)]
-                for p in PEOPLE
-            ]
-        )
+        read = [[curves[person, setting][rows] for setting in SETTINGS] for person in PEOPLE]
+        x = np.array([[one.mean(axis=1) if mean else one.ravel() for one in own] for own in read])
         x = x / np.abs(x).mean(axis=1, keepdims=True)  # a person's own size of each: the EMG's reference is unknown
         own = x - x.mean(axis=1, keepdims=True)
         parts = [gd.Samples(own[k], change[k][:, None], tuple(map(str, range(own.shape[2]))), ("W",),
@@ -55,9 +51,5 @@ def energy(quick: bool) -> Iterator[Number]:
         yield Number("no setting known (null)", "RMSE [W]", person, float(change[place].std()))
         yield Number("setting known, mean of the others", "RMSE [W]", person, float((others - change[place]).std()))
     others = np.array([np.delete(change, k, axis=0).mean(axis=0) for k in range(len(PEOPLE))])
-    yield Number(
-        "setting known, mean of the others",
-        "within persons: R2 [1]",
-        "",
-        float(1 - np.mean((others - change) ** 2) / np.mean(change**2)),
-    )
+    explained = float(1 - np.mean((others - change) ** 2) / np.mean(change**2))
+    yield Number("setting known, mean of the others", "within persons: R2 [1]", "", explained)

@@ -25,6 +25,10 @@ def _range(values: pd.Series, factor: float = 1.0, digits: int = 3) -> str:
     return f"{factor * values.min():.{digits}f}-{factor * values.max():.{digits}f}"
 
 
+def _medians(model: str, names: Sequence[str], walk: str = "exo") -> Callable[[gd.ResponseRun], str]:
+    return lambda run: _range(medians(run, model, walk)[list(names)])
+
+
 def _differ(run: gd.ResponseRun, first: str, second: str, sign: int) -> pd.DataFrame:
     rows = run.tests.of_pair(first, second) if run.tests else pd.DataFrame()
     return rows[rows["different"].astype(bool) & (sign * rows["rank_biserial"] > 0)] if len(rows) else rows
@@ -32,11 +36,6 @@ def _differ(run: gd.ResponseRun, first: str, second: str, sign: int) -> pd.DataF
 
 def _named(rows: pd.DataFrame) -> str:
     return ", ".join(sideless(name) for name in rows["variable"]) if len(rows) else "none"
-
-
-def _gain(run: gd.ResponseRun) -> str:
-    augmented, nominal = (r2_by_participant(run.responses, model) for model in ("augmented", "nominal"))
-    return _range((augmented - nominal).median(), 100, 1)
 
 
 def _over_nominal(run: gd.ResponseRun) -> str:
@@ -60,7 +59,7 @@ def _reduced(run: gd.ResponseRun, names: Sequence[str]) -> pd.DataFrame:
 
 def _hip_all(run: gd.ResponseRun) -> str:
     found = 100 * _reduced(run, ANGLES[:1]).reindex(columns=["shift", "low", "high"]).to_numpy(float)
-    return "; ".join(f"{middle:.0f} [{low:.0f}, {high:.0f}]" for middle, low, high in found)
+    return "; ".join(f"{middle:.0f} [{low:.0f}, {high:.0f}]" for middle, low, high in found) or "not tested"
 
 
 def _emg_reduced(run: gd.ResponseRun) -> str:
@@ -81,8 +80,7 @@ def _at_one_second(run: gd.ResponseRun) -> str:
 
 
 def _lengths(run: gd.ResponseRun) -> str:
-    rows = run.over.lengths if run.over else pd.DataFrame()
-    if not len(rows):
+    if run.over is None or not len(rows := run.over.lengths):
         return "not tested"
     counts = rows[(rows["second"] == "exo") & rows["different"].astype(bool)].groupby("length_s").size()
     return "; ".join(f"{length:g} ({count} variables)" for length, count in counts.items()) or "none"
@@ -96,22 +94,24 @@ def _enough(run: gd.ResponseRun) -> str:
 
 OURS: dict[str, Callable[[gd.ResponseRun], str]] = {
     "people": lambda run: str(len(run.responses)),
-    "nominal_angles_without": lambda run: _range(medians(run, "nominal", "nominal")[list(ANGLES)]),
-    "nominal_emg_without": lambda run: _range(medians(run, "nominal", "nominal")[list(EMG)]),
-    "nominal_angles": lambda run: _range(medians(run, "nominal")[list(ANGLES)]),
-    "nominal_emg": lambda run: _range(medians(run, "nominal")[list(EMG)]),
-    "augmented_angles": lambda run: _range(medians(run, "augmented")[list(ANGLES)]),
-    "augmented_emg": lambda run: _range(medians(run, "augmented")[list(EMG)]),
-    "exo_angles": lambda run: _range(medians(run, "exo")[list(ANGLES)]),
-    "exo_emg": lambda run: _range(medians(run, "exo")[list(EMG)]),
+    "nominal_angles_without": _medians("nominal", ANGLES, "nominal"),
+    "nominal_emg_without": _medians("nominal", EMG, "nominal"),
+    "nominal_angles": _medians("nominal", ANGLES),
+    "nominal_emg": _medians("nominal", EMG),
+    "augmented_angles": _medians("augmented", ANGLES),
+    "augmented_emg": _medians("augmented", EMG),
+    "exo_angles": _medians("exo", ANGLES),
+    "exo_emg": _medians("exo", EMG),
     "augmented_over_nominal": _over_nominal,
-    "gain": _gain,
+    "gain": lambda run: _range(
+        (r2_by_participant(run.responses, "augmented") - r2_by_participant(run.responses, "nominal")).median(), 100, 1
+    ),
     "augmented_below_exo": lambda run: _named(_differ(run, "augmented", "exo", 1)),
     "below_exo_by": _below_exo_by,
     "augmented_above_exo": lambda run: _named(_differ(run, "augmented", "exo", -1)),
     "exo_below_one": lambda run: _named(_differ(run, "exo", "perfect", 1)),
     "hip_reduction": _hip,
-    "hip_reduction_all": lambda run: _hip_all(run) or "not tested",
+    "hip_reduction_all": _hip_all,
     "emg_reduced": _emg_reduced,
     "at_one_second": _at_one_second,
     "lengths_augmented_exo": _lengths,

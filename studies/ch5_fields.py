@@ -72,7 +72,7 @@ def middle_of(test: gd.Samples) -> tuple[gd.Samples, int]:
 
 def on_departures(field: gd.Field, routes: Sequence[Route], task: FieldTask, rules: Sequence[str]) -> list[FieldCell]:
     """Every route again, with readings and field taken as departures from the season: the cheap models."""
-    cells: list[FieldCell] = []
+    cells = []
     for rule in rules:
         departing = replace(task, rule=rule, departures=True)
         targets = targets_of(field, departing)

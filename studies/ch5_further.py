@@ -52,9 +52,8 @@ def text(quick: bool) -> Iterator[Number]:
     kinds = (*WITHOUT_NETWORK[1:], OF_TEXT) if quick else (*KINDS, OF_TEXT)
     field, task, _ = next(each for each in fields() if each[1].name.startswith("Pacific"))
     for rule in ("temporal",) if quick else ("temporal", RANDOM):
-        for one in reconstruct_field(
-            field, fixed_at_random(field, 3, 0), replace(task, rule=rule), kinds, floors=False
-        ):
+        route = fixed_at_random(field, 3, 0)
+        for one in reconstruct_field(field, route, replace(task, rule=rule), kinds, floors=False):
             yield Number(one.model, f"Pacific, {rule}: R2 [1]", "", one.r2)
             yield Number(one.model, f"Pacific, {rule}: fit [s]", "", one.seconds)
     walk, angles = runner()

@@ -12,15 +12,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import KEPT, QUICK, SHARED, argument, command_line
+from command_line import GAIT, KEPT, QUICK, argument, command_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", KEPT, Path("ch5_individual")),
-    argument("data", "folder of the real gait recordings", SHARED / "gait"),
-    QUICK,
-)  # before the slow imports
+OUT = argument("folder", KEPT, Path("ch5_individual"))
+GIVEN = command_line(__name__, __doc__, OUT, GAIT, QUICK)  # before the slow imports
 
 from collections.abc import Mapping
 
@@ -52,9 +47,8 @@ def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path =
         errors = pd.concat([found["errors"] for found in cells])
         blocks.append(Block(name, study.title, (), (gait.sensor_sets_figure(errors, study.title, name, "temporal"),)))
     table = pd.concat(summaries, ignore_index=True)
-    first = Block(
-        "sets", "Table 5.2", (), tables=(gait.sensor_sets_table(table, gait.printed("individual"), "sets", "temporal"),)
-    )
+    sets = gait.sensor_sets_table(table, gait.printed("individual"), "sets", "temporal")
+    first = Block("sets", "Table 5.2", (), tables=(sets,))
     blocks = [first, *blocks, leaks(walks, kinds, folder), disturbed(walks["cohort"], kinds, folder)]
     page = write_blocks("Individual models, section 5.3.3", "Ebers 2023, chapter 5, computed anew.", blocks, folder)
     return gait.Result(table, page)
@@ -66,10 +60,8 @@ def studies(quick: bool, folder: Path, data: Path) -> Mapping[str, Study]:
         return {"cohort": gait.cohort(folder / "recordings", 1, 30.0)}
     found = {"cohort": gait.cohort(folder / "recordings")}
     if data.is_dir():
-        found |= {
-            "treadmill_walk_ik": gait.treadmill(data, folder / "treadmill"),
-            "exotendon_run": gait.exotendon(data),
-        }
+        found["treadmill_walk_ik"] = gait.treadmill(data, folder / "treadmill")
+        found["exotendon_run"] = gait.exotendon(data)
     return found
 
 

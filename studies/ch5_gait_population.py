@@ -12,16 +12,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import KEPT, QUICK, SHARED, argument, command_line
+from command_line import GAIT, KEPT, QUICK, argument, command_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", KEPT, Path("ch5_population")),
-    argument("data", "folder of the real gait recordings", SHARED / "gait"),
-    QUICK,
-    argument("--without-networks", "ridge regressions alone", False),
-)  # before the slow imports
+OUT = argument("folder", KEPT, Path("ch5_population"))
+WITHOUT_NETWORKS = argument("--without-networks", "ridge regressions alone", False)
+GIVEN = command_line(__name__, __doc__, OUT, GAIT, QUICK, WITHOUT_NETWORKS)  # before the slow imports
 
 import pandas as pd
 from chapter5 import gait
@@ -35,12 +30,7 @@ WITHOUT = ("linear", "delay ridge", "fourier ridge")
 RULE = "one person left out"
 
 
-def run(
-    quick: bool = False,
-    folder: Path = Path("ch5_population"),
-    data: Path = gait.DATA,
-    kinds: tuple[str, ...] = tuple(KINDS),
-) -> gait.Result:
+def run(quick: bool, folder: Path, data: Path = gait.DATA, kinds: tuple[str, ...] = tuple(KINDS)) -> gait.Result:
     """Reconstruct everybody by models of the others, before and after ten strides, and write the page."""
     kinds = WITHOUT if quick else kinds
     study = gait.cohort(folder / "recordings", 4, 30.0) if quick else gait.cohort(folder / "recordings")
@@ -64,11 +54,8 @@ def calibration_sentences(table: pd.DataFrame) -> list[str]:
     said = []
     for sensors, own in table.groupby("sensors", sort=False):
         rmse = own.groupby("model")["rmse_deg"].mean()
-        pairs = [(model, CALIBRATED.format(model)) for model in KINDS if CALIBRATED.format(model) in rmse]
-        words = [
-            f"{model} {rmse[model]:.2f} to {rmse[after]:.2f} deg ({100 * (rmse[after] / rmse[model] - 1):+.0f} %)"
-            for model, after in pairs
-        ]
+        pairs = [(model, rmse[model], rmse.get(CALIBRATED.format(model))) for model in KINDS if model in rmse]
+        words = [f"{n} {a:.2f} to {b:.2f} deg ({100 * (b / a - 1):+.0f} %)" for n, a, b in pairs if b is not None]
         said.append(f"{sensors}, by ten strides: {', '.join(words)}.")
     return said
 
@@ -81,12 +68,10 @@ def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
         settings = ReconstructionSettings(split=CONDITION, condition=word, kinds=kinds)
         for sensors in gait.SENSORS:
             place = folder / "exotendon_run" / word / sensors.replace(" ", "_")
-            found.append(
-                gait.cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} tested")
-            )
-    table = gait.sensor_sets_table(
-        pd.concat(found), gait.NOTHING_PRINTED, "conditions", "fitted to the other condition"
-    )
+            summary = gait.cell(one, sensors, settings, place)["summary"]
+            found.append(summary.assign(data=f"exotendon_run, {word} tested"))
+    rule = "fitted to the other condition"
+    table = gait.sensor_sets_table(pd.concat(found), gait.NOTHING_PRINTED, "conditions", rule)
     return Block("conditions", "Another condition", (), tables=(table,))
 
 

@@ -13,13 +13,9 @@ from pathlib import Path
 
 from command_line import KEPT, QUICK, argument, command_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", KEPT, Path("ch5_sea_surface")),
-    QUICK,
-    argument("--kinds", "of model, the text's own is shred-text (default: the usual five)", nargs="+"),
-)  # before the slow imports
+OUT = argument("folder", KEPT, Path("ch5_sea_surface"))
+OF_MODEL = argument("--kinds", "of model, the text's own is shred-text (default: the usual five)", nargs="+")
+GIVEN = command_line(__name__, __doc__, OUT, QUICK, OF_MODEL)  # before the slow imports
 
 import tomllib
 from collections.abc import Sequence
@@ -68,14 +64,10 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface"), kinds: Sequ
                 print(f"{task.name}: {route.name}, {rule}: {cells[-1].model} R2 {cells[-1].r2:.3f}", flush=True)
         paths = {route.name: route.places(field)[: task.season, 0] for route in routes[1:5]}
         shown = [cell for cell in cells if (cell.quantity, cell.model) == (field.quantities[0], kinds[-1])]
+        maps = reconstructed_maps(field, routes[0], task, kinds[-1], SPLITS)
         drawn = [
             routes_figure(field, paths, f"routes-{number}", "Routes, as in Fig. 5.3"),
-            maps_figure(
-                field,
-                reconstructed_maps(field, routes[0], task, kinds[-1], SPLITS),
-                f"maps-{number}",
-                "As Fig. 5.3, top",
-            ),
+            maps_figure(field, maps, f"maps-{number}", "As Fig. 5.3, top"),
             histograms_figure(shown, f"errors-{number}", "As Fig. 5.3, bottom"),
         ]
         if not quick and region == "pacific":

@@ -30,7 +30,6 @@ from ch5_fields import Result, middle_of, written
 from chapter5.pages import boxes_figure, flow_figure, histograms_figure, maps_figure, medians_table
 from chapter5.reconstruct_field import (
     CEILING,
-    FieldCell,
     FieldTask,
     load_cells,
     prepare,
@@ -47,9 +46,8 @@ from gaitdisc.sensing.windows import RANDOM, Lags
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100
 KINDS = ("linear", "delay ridge", "fourier ridge", "shred")
-TASK = FieldTask(
-    "stand-in turbulence", Lags(13, 8)
-)  # reaches as far back as the 100 snapshots of the dissertation: 1.2 turnovers
+# reaches as far back as the 100 snapshots of the dissertation: 1.2 turnovers
+TASK = FieldTask("stand-in turbulence", Lags(13, 8))
 STAND_IN = (
     "This flow is a stand-in, not the database's, whose Reynolds number of Taylor's microscale is above 400; its cut "
     "holds most of the box, where the dissertation's holds a hundred-thirtieth. The dissertation prints no error in "
@@ -58,18 +56,13 @@ STAND_IN = (
 
 
 def run(
-    quick: bool = False,
-    folder: Path = Path("ch5_turbulence"),
-    models: int = MODELS,
-    nodes: int = 48,
-    cut: int | None = None,
+    quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int = MODELS, nodes: int = 48, cut: int = 0
 ) -> Result:
     """Compute the flow, reconstruct it from fixed and from walking sensors under both splits, and draw Fig. 5.2."""
     settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else FlowSettings(nodes, cut or 5 * nodes // 6)
     kinds = KINDS[:2] if quick else KINDS
     flow, numbers = record_turbulence(settings, folder / "flow", _said("flow"))
-    cells: list[FieldCell] = []
-    shown: dict = {}
+    cells, shown = [], {}
     for rule in SPLITS:
         task = replace(TASK, rule=rule)
         targets = targets_of(flow, task)

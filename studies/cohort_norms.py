@@ -44,36 +44,13 @@ def numbers(walk: TrueWalk) -> dict[str, float]:
     durations = np.diff(walk.contacts())
     seen = np.diff(force_contacts(measured(walk, "walk", "nominal").stream("forces"))["r"].time)
     cv = [100 * float(d.std() / d.mean()) for d in (durations, seen)]
-    values = [
-        hip.max(),
-        hip.min(),
-        knee[5:25].max(),
-        knee.max(),
-        knee.min(),
-        ankle.max(),
-        ankle.min(),
-        angles[:, 1].max(),
-        knee.argmax(),
-        ankle.argmax(),
-        ankle.argmin(),
-        -moments[:, 0].min(),
-        moments[:55, 0].max(),
-        -moments[:, 1].min(),
-        -moments[:, 2].min(),
-        100 * np.mean(walk.force[:, 0, 1] > 20.0),
-        120 / durations.mean(),
-        force[5:25, 1].max(),
-        force[20:40, 1].min(),
-        force[38:60, 1].max(),
-        force[:, 0].max(),
-        walk.strides(walk.sole)[:, 12:47, 0].mean() / -person.speed_m_per_s,
-        cv[0],
-        spread[0],
-        spread[3],
-        spread[4],
-        cv[1] - cv[0],
-        -walk.mean_stride(walk.spring).min(),
-    ]
+    slip = walk.strides(walk.sole)[:, 12:47, 0].mean() / -person.speed_m_per_s
+    values = [hip.max(), hip.min(), knee[5:25].max(), knee.max(), knee.min(), ankle.max(), ankle.min()]
+    values += [angles[:, 1].max(), knee.argmax(), ankle.argmax(), ankle.argmin()]
+    values += [-moments[:, 0].min(), moments[:55, 0].max(), -moments[:, 1].min(), -moments[:, 2].min()]
+    values += [100 * np.mean(walk.force[:, 0, 1] > 20.0), 120 / durations.mean()]
+    values += [force[5:25, 1].max(), force[20:40, 1].min(), force[38:60, 1].max(), force[:, 0].max(), slip]
+    values += [cv[0], *spread[[0, 3, 4]], cv[1] - cv[0], -walk.mean_stride(walk.spring).min()]
     return dict(zip(SOURCES, map(float, values), strict=True))
 
 
@@ -98,14 +75,11 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
         curves = nominal.mean_stride(emg.values[:, : len(MUSCLES)])
         envelopes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")
-    found, exo = (
-        {name: np.array([row[name] for row in rows]) for name in SOURCES} for rows in (tables["nominal"], tables["exo"])
-    )
+    found, exo = ({name: np.array([row[name] for row in rows]) for name in SOURCES} for rows in tables.values())
     rows = [(name, _spread(found[name]), _spread(exo[name]), source) for name, source in SOURCES.items()]
     print(markdown_table("quantity | Nominal | Exo | literature", rows), end="\n\n")
-    bursts = [
-        (name, burst(curve), BURSTS[name]) for name, curve in zip(MUSCLES, np.mean(envelopes, axis=0).T, strict=True)
-    ]
+    mean = zip(MUSCLES, np.mean(envelopes, axis=0).T, strict=True)
+    bursts = [(name, burst(curve), BURSTS[name]) for name, curve in mean]
     print(markdown_table("muscle | on-off [% stride] | literature", bursts))
     return found
 

@@ -73,8 +73,7 @@ def draw_published(axes: Axes, title: str) -> None:
             axes.axvspan(start, max(start, end), ymax=0.05, color="0.6", zorder=0)
 
 
-def main() -> None:
-    """Walk the twelve and draw them."""
+if __name__ == "__main__":
     people = [curves(person, number) for number, person in enumerate(the_twelve())]
     figure = Figure(figsize=(13, 7.6), layout="constrained")
     for axes, title in zip(figure.subplots(3, 5).ravel(), people[0], strict=True):
@@ -86,7 +85,3 @@ def main() -> None:
         axes.tick_params(labelsize=7)
     figure.supxlabel("stride [%]", fontsize=9)
     figure.savefig(GIVEN.picture, dpi=90)
-
-
-if __name__ == "__main__":
-    main()

@@ -34,6 +34,8 @@ def argument(name: str, meaning: str, default: Any = None, **settings: Any) -> A
     return Argument(name, {"help": meaning.replace("%", "%%"), "default": default, **settings})
 
 
+GAIT = argument("data", "folder of the real gait recordings", SHARED / "gait")
+RECORDINGS = argument("data", "folder of the real recordings", SHARED)
 QUICK = argument("--quick", "a small part of the study, as its test runs it", False)
 KEPT = "where recordings, results and the pages go; what is there is not computed again"
 

@@ -10,14 +10,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import SHARED, argument, command_line
+from command_line import GAIT, argument, command_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("data", "folder that holds ankle_exo_emg_grf", SHARED / "gait"),
-    argument("out", "where the report goes (default: no report)", nargs="?", type=Path),
-)  # before the slow imports
+OUT = argument("out", "where the report goes (default: no report)", nargs="?", type=Path)
+GIVEN = command_line(__name__, __doc__, GAIT, OUT)  # before the slow imports
 
 import numpy as np
 import pandas as pd
@@ -38,14 +34,9 @@ def run(data: Path, first: str = EASY, second: str = HARD) -> gd.Mismatch:
     """Mismatch of two settings, second minus first, paired over the eight people."""
     stored = np.load(data / "ankle_exo_emg_grf" / "assisted.npz")
     signals = [str(name) for name in stored["signals"]][FORCES:]
-    pairs = [
-        (
-            summary(stored[f"x_S{person:02d}{first}"], signals, f"S{person:02d}", first),
-            summary(stored[f"x_S{person:02d}{second}"], signals, f"S{person:02d}", second),
-        )
-        for person in range(1, PEOPLE + 1)
-    ]
-    return compare_people(pairs)
+    people = [f"S{number:02d}" for number in range(1, PEOPLE + 1)]
+    both = [[summary(stored[f"x_{who}{one}"], signals, who, one) for who in people] for one in (first, second)]
+    return compare_people(list(zip(*both, strict=True)))
 
 
 def summary(strides: NDArray[np.float64], signals: list[str], person: str, condition: str) -> WalkSummary:

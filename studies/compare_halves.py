@@ -9,17 +9,18 @@ stride. Nothing differs but the marks, the noise, and what the person changed ov
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import GAIT, QUICK, command_line
 
-DATA = argument("data", "folder of the real gait recordings", SHARED / "gait")
-GIVEN = command_line(__name__, __doc__, DATA, QUICK)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, GAIT, QUICK)  # before the slow imports
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from markdown_table import markdown_table
 
 import gaitdisc as gd
 
@@ -44,7 +45,8 @@ class Halves(NamedTuple):
 
 def run(data: Path, quick: bool = False) -> list[Halves]:
     """Every walk and shift; quick: the three running trials, not moved and moved by 7 %."""
-    chosen = [*running(data)] if quick else [*walking(data), *running(data)]
+    running = [gd.read(file) for file in sorted((data / "exotendon_run").rglob("*.mot"))]
+    chosen = running if quick else [*walking(data), *running]
     return [halves(walk, shift) for shift in (QUICK_SHIFTS if quick else SHIFTS) for walk in chosen]
 
 
@@ -53,21 +55,11 @@ def walking(data: Path) -> Iterator[gd.Trial]:
     stored = np.load(data / "treadmill_walk_ik" / "addbio_expert3_ik.npz")
     columns = [str(name) for name in stored["columns"]]
     kept = [i for i, name in enumerate(columns) if not name.startswith(POSITION)]
-    channels = tuple(gd.Channel(columns[i], "angle", "deg", side_of(columns[i])) for i in kept)
+    sides = [next((side for side in "rl" if re.search(f"_{side}(_beta)?$", columns[i])), "") for i in kept]
+    channels = tuple(gd.Channel(columns[i], "angle", "deg", side) for i, side in zip(kept, sides, strict=True))
     for name in sorted(key for key in stored.files if key.startswith("S01") and key != CALIBRATION):
         values = np.asarray(stored[name], float)[:, kept]
         yield gd.Trial(name, {"kinematics": gd.Recording(np.arange(len(values)) / 100.0, values, channels)})
-
-
-def side_of(name: str) -> str:
-    """`r` or `l` of OpenSim's name of an angle; empty for the trunk."""
-    return next((side for side in "rl" if name.removesuffix("_beta").endswith(f"_{side}")), "")
-
-
-def running(data: Path) -> Iterator[gd.Trial]:
-    """Three runs, two of them of one person."""
-    for file in sorted((data / "exotendon_run").rglob("*.mot")):
-        yield gd.read(file)
 
 
 def halves(walk: gd.Trial, shift: int) -> Halves:
@@ -103,17 +95,12 @@ def table(found: list[Halves]) -> list[tuple[str, ...]]:
     return rows
 
 
-def main() -> None:
-    """Print what is named by shift, and the walks in which something is."""
+if __name__ == "__main__":
     found = run(GIVEN.data, GIVEN.quick)
-    print("| contacts moved [% stride] | pairs with nothing named | channels named | largest [deg] | shift found [%] |")
-    print("|---|---|---|---|---|")
-    print("\n".join(f"| {' | '.join(row)} |" for row in table(found)))
-    print("\n| walk | contacts moved [% stride] | named: largest gap [deg] |\n|---|---|---|")
+    head = "contacts moved [% stride] | pairs with nothing named | channels named | largest [deg] | shift found [%]"
+    print(markdown_table(head, table(found)))
+    named = []
     for one in (one for one in found if one.largest() > 0):
         gaps = {name: one.mismatch.summary_of(name)["largest_gap"] for name in one.mismatch.ordered()}
-        print(f"| {one.walk} | {one.shift} | {', '.join(f'{name} {gap:+.1f}' for name, gap in gaps.items())} |")
-
-
-if __name__ == "__main__":
-    main()
+        named.append((one.walk, one.shift, ", ".join(f"{name} {gap:+.1f}" for name, gap in gaps.items())))
+    print("\n" + markdown_table("walk | contacts moved [% stride] | named: largest gap [deg]", named))

@@ -9,10 +9,9 @@ the program corrects them by a plate; contacts farther apart than 250 ms are no 
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import GAIT, QUICK, command_line
 
-DATA = argument("data", "folder of the real gait recordings", SHARED / "gait")
-GIVEN = command_line(__name__, __doc__, DATA, QUICK)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, GAIT, QUICK)  # before the slow imports
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -100,12 +99,7 @@ TABLES = (
 )
 
 
-def main() -> None:
-    """Print the three tables."""
+if __name__ == "__main__":
     found = walks(GIVEN.data, GIVEN.quick)
     for head, rows in zip(TABLES, (against_events(found), *against_plates(found)), strict=True):
         print(markdown_table(head, rows), end="\n\n")
-
-
-if __name__ == "__main__":
-    main()

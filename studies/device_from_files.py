@@ -50,7 +50,6 @@ from gaitdisc.results.discovery import Estimate, FoundEffect
 CONDITIONS, CHANNELS = Conditions(nominal="nominal", device="exo"), {name: f"{name} [N]" for name in FORCES}
 WALK_S, PRESSURE_M, ERROR_HZ = 36.0, 0.003, 6.0
 MODELS = ("Nominal", "Nominal + named effect", "Augmented (plain regression)", "Exo")
-Said = tuple[tuple[FoundEffect, ...], dict[str, float]]
 RIGHT = {
     "none": ("", "", np.nan),
     "spring": ("one_sided_spring", "ankle_moment", np.degrees(STIFFNESS)),
@@ -80,7 +79,8 @@ def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
     """One study of one person, one search: what it says beside what is true."""
     with TemporaryDirectory() as folder:
         study = write_person(person, hidden, Path(folder))
-        effects, beside = fitted(study, person.name) if fit else searched(study, person.name)
+        found = None if fit else discover_study(study, person.name)[0]
+        effects, beside = (found.effects, dict(found.beside)) if found else (fitted(study, person.name), {})
     *wanted, truth = RIGHT[hidden]
     own = [next(iter(one.estimates.values())) for one in effects if [one.name, one.place] == wanted]
     right, named = bool(own) if wanted[0] else not effects, ", ".join(one.place for one in effects)
@@ -89,22 +89,16 @@ def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
     return row | beside
 
 
-def searched(study: Path, who: str) -> Said:
-    """What `discover` says, and the error of each model on held-out strides [N m]."""
-    found = discover_study(study, who)[0]
-    return found.effects, dict(found.beside)
-
-
-def fitted(study: Path, who: str) -> Said:
+def fitted(study: Path, who: str) -> tuple[FoundEffect, ...]:
     """What the fit of both walks says: at the ankle, or where nothing changed there, of the foot."""
     read = load_study(study)
     changed = device_walks(read, who).changed
     if changed is None:
         mass = weighed_foot(joint_records(read, who, FOOT_SHOWS_AT))
-        return ((FoundEffect("", "added_foot_mass", "wrong_parameter", "", {"value": mass}),) if mass else ()), {}
+        return (FoundEffect("", "added_foot_mass", "wrong_parameter", "", {"value": mass}),) if mass else ()
     half = NORMAL_95 * changed.spread
     number = Estimate(changed.value, changed.value - half, changed.value + half)
-    return (FoundEffect("", changed.change.place, changed.change.name, "", {changed.change.number: number}),), {}
+    return (FoundEffect("", changed.change.place, changed.change.name, "", {changed.change.number: number}),)
 
 
 def write_person(person: Person, hidden: str, folder: Path) -> Path:

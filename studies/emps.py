@@ -12,9 +12,8 @@ from __future__ import annotations
 
 from command_line import QUICK, SHARED, argument, command_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("data", "folder that holds DATA_EMPS.mat", SHARED / "hidden_effect" / "emps"), QUICK
-)  # before the slow imports
+DATA = argument("data", "folder that holds DATA_EMPS.mat", SHARED / "hidden_effect" / "emps")
+GIVEN = command_line(__name__, __doc__, DATA, QUICK)  # before the slow imports
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ import numpy as np
 import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.forward_selection import select_forward
-from gaitdisc.discovery.held_out import Trial, runs_of
+from gaitdisc.discovery.held_out import runs_of
 from gaitdisc.discovery.problem import Problem, set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
@@ -41,7 +40,7 @@ class Result:
     named: str
     place: str
     friction_n: float  # [N]
-    left_mm: dict[str, tuple[float, float]]  # free-run error before and after, held-out stretches and pulses
+    left_mm: dict[str, tuple[float, ...]]  # free-run error before and after, held-out stretches and pulses
     whole: gd.Discovery | None
 
 
@@ -53,14 +52,13 @@ def run(quick: bool, data: Path) -> Result:
     as_read = problem.as_read()
     first, _ = select_forward(problem.search, as_read, 1)
     part = first.model.parts[0]
-    runs = {"held-out stretches": free_runs(problem, problem.held_out, as_read, first)}
+    left = {"held-out stretches": errors_mm(problem, problem.held_out, as_read, first)}
     if (data / "DATA_EMPS_PULSES.mat").exists():
         pulses = set_up_problem(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))
-        runs["pulses"] = free_runs(pulses, (*pulses.learned, *pulses.held_out), as_read, first)
-    left = {name: (rms(before), rms(after)) for name, (before, after) in runs.items()}
+        left["pulses"] = errors_mm(pulses, (*pulses.learned, *pulses.held_out), as_read, first)
     whole = None if quick else discover(simulation, measured)[0]
-    named, place = part.candidate.name, part.candidate.place
-    return Result(named, place, -part.values.get("factor", float("nan")), left, whole)
+    friction_n = -part.values.get("factor", float("nan"))
+    return Result(part.candidate.name, part.candidate.place, friction_n, left, whole)
 
 
 def stretches(path: Path, simulation: gd.Simulation) -> Measured:
@@ -72,25 +70,15 @@ def stretches(path: Path, simulation: gd.Simulation) -> Measured:
     force = record["vir"].ravel() * record["gtau"].item()
     slow = np.column_stack([decimate(one, EVERY, ftype="fir") for one in (force, 1000 * record["qm"].ravel())])
     length = int(STRETCH_S * RATE_HZ)
-    trials = [
-        TrialColumns(
-            str(n + 1), np.arange(at, at + length) / RATE_HZ, slow[at : at + length, :1], slow[at : at + length, 1:]
-        )
-        for n, at in enumerate(range(0, len(slow) - length, length))
-    ]
+    cuts = [np.arange(at, at + length) for at in range(0, len(slow) - length, length)]
+    trials = [TrialColumns(str(n), cut / RATE_HZ, slow[cut, :1], slow[cut, 1:]) for n, cut in enumerate(cuts, 1)]
     return measured_of_trials(trials, ("force",), tuple(name for name, _ in simulation.observations), path.name)
 
 
-def free_runs(
-    problem: Problem, trials: tuple[int, ...], before: ScoredModel, after: ScoredModel
-) -> tuple[Trial, Trial]:
-    """Runs of the model as read and with what was named, over trials that were not fitted."""
-    return runs_of(problem, before, trials, after), runs_of(problem, after, trials, after)
-
-
-def rms(runs: Trial) -> float:
-    """Root mean square error of free runs [mm]."""
-    return float(np.sqrt(np.mean(runs.fit.residual**2)))
+def errors_mm(problem: Problem, trials: tuple[int, ...], *models: ScoredModel) -> tuple[float, ...]:
+    """Root mean square of free runs of the model as read and with what was named, on trials not fitted [mm]."""
+    runs = (runs_of(problem, model, trials, models[-1]) for model in models)
+    return tuple(float(np.sqrt(np.mean(run.fit.residual**2))) for run in runs)
 
 
 def lines(found: Result) -> list[str]:

@@ -1,8 +1,10 @@
-"""A case of the studies of engines: its record with noise, what `discover` names of it, and what that costs."""
+"""Cases of the studies of engines: their records with noise, what `discover` names, what that costs, and the sums."""
 
 from __future__ import annotations
 
 import resource
+import tempfile
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
-from gaitdisc.batch.discover_engine import EngineAnswer, discover_model_file
+from gaitdisc.batch.discover_engine import discover_model_file
 from gaitdisc.engines.engine import Engine, Motion, read_model
 from gaitdisc.engines.mapping import drafted
 
@@ -70,9 +72,13 @@ def sines(rng: np.random.Generator, t: NDArray[np.float64], size: float) -> NDAr
     return size * (rng.uniform(0.3, 1.0, 4) * np.sin(2 * np.pi * np.outer(t, frequencies) + phases)).sum(axis=1)
 
 
-def judged(case: Case, answer: EngineAnswer) -> dict[str, object]:
-    """One line of the table."""
-    found = answer.found
+def searched(case: Case, model: Path, table: Path) -> dict[str, object]:
+    """One line of the table, with what it cost: `discover` on a copy of the model beside the record."""
+    copy, before, text = table.parent / model.name, cpu_s(), model.read_text(encoding="utf-8")
+    copy.write_text(text, encoding="utf-8")
+    gd.write_simulation(drafted(read_model(copy), degrees=True), copy.with_suffix(".toml"))
+    answer = discover_model_file(copy, table)
+    found, seconds = answer.found, cpu_s() - before  # the engine's own process has ended
     named = ", ".join(f"{one.name} at {one.place}" for one in found.effects) or found.verdict
     row: dict[str, object] = {"hidden": case.kind, "named": named}
     if case.kind == "none":
@@ -83,31 +89,30 @@ def judged(case: Case, answer: EngineAnswer) -> dict[str, object]:
         row["right"] = len(ours) == 1 and len(found.effects) == 1
         estimate = ours[0].estimates.get(number) if ours else None
         if estimate is not None:
-            row |= {
-                "true": case.number,
-                "found": f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g})",
-                "inside": estimate.low <= case.number <= estimate.high,
-            }
+            interval = f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g})"
+            inside = estimate.low <= case.number <= estimate.high
+            row |= {"true": case.number, "found": interval, "inside": inside}
     row["tied"] = sum(one.tied for one in found.rivals)
     row["native"] = sum("is written into" in note for note in answer.written.notes)
-    return row
-
-
-def searched(case: Case, model: Path, table: Path) -> dict[str, object]:
-    """One line of the table, with what it cost: `discover` on a copy of the model beside the record."""
-    copy, before, text = table.parent / model.name, cpu_s(), model.read_text(encoding="utf-8")
-    copy.write_text(text, encoding="utf-8")
-    gd.write_simulation(drafted(read_model(copy), degrees=True), copy.with_suffix(".toml"))
-    row = judged(case, discover_model_file(copy, table))
-    return row | {"cpu s": round(cpu_s() - before, 1)}  # the engine's own process has ended
+    return row | {"cpu s": round(seconds, 1)}
 
 
 def cpu_s() -> float:
     """Processor time of this process and of those that have ended."""
-    return sum(
-        used.ru_utime + used.ru_stime
-        for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    )
+    used = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+def study(names: Sequence[str], kinds: Sequence[str], made: Callable[..., tuple[Case, Path, Path]]) -> pd.DataFrame:
+    """Every case, as rows; `made` takes the names of model and kind and a folder, and gives case, model and record."""
+    rows = []
+    for name in names:
+        for kind in kinds:
+            with tempfile.TemporaryDirectory() as folder:
+                case, model, table = made(name, kind, Path(folder))
+                rows.append({"model": name, **searched(case, model, table)})
+            print("; ".join(f"{key} {value}" for key, value in rows[-1].items()), flush=True)
+    return pd.DataFrame(rows)
 
 
 def print_sums(table: pd.DataFrame) -> None:

@@ -24,31 +24,15 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import re
-import tempfile
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+import engine_cases as cases
 import numpy as np
 import pandas as pd
-from engine_cases import (
-    RATE_HZ,
-    SECONDS,
-    TRIALS,
-    Case,
-    Model,
-    measured,
-    print_sums,
-    ran,
-    read_model,
-    searched,
-    sines,
-    written,
-)
+from engine_cases import RATE_HZ, SECONDS, TRIALS, Case, Model, measured, ran, read_model, sines, written
 
 SYSTEMS = Path(__file__).parent / "systems"
-
-
 MODELS = {
     "leg": Model("leg.xml", "knee", "shank", (0.25, 0.15)),
     "arm": Model("arm.xml", "elbow", "forearm", (0.3, 0.3, 0.2), strength=0.25),
@@ -112,8 +96,7 @@ def _in_mujoco(model: Model, kind: str, text: str, number: float) -> tuple[str, 
         tendon = f'<fixed name="hidden" stiffness="{number!r}" springlength="-1000 0.1">'
         tendon = f'<tendon>{tendon}<joint joint="{model.joint}" coef="1"/></fixed></tendon>'
         return text.replace("</mujoco>", f"{tendon}</mujoco>"), number
-    engine = read_model(SYSTEMS / model.file)
-    own = {one.name: one.value for one in engine.parameters}
+    own = {one.name: one.value for one in read_model(SYSTEMS / model.file).parameters}
     word = {"spring": "stiffness", "viscous": "damping", "Coulomb": "frictionloss"}[kind]
     more = own[f"{model.joint}_{word}"] + number
     found = re.search(rf'<joint name="{model.joint}"[^>]*?/?>', text)
@@ -130,12 +113,9 @@ def _in_opensim(model: Model, kind: str, text: str, number: float) -> str:
         "viscous": f"-{number!r}*qdot",
         "Coulomb": f"-{number!r}*tanh(qdot/0.02)",
     }[kind]
-    force = (
-        f'<ExpressionBasedCoordinateForce name="hidden"><coordinate>{model.joint}</coordinate>'
-        f"<expression>{expression}</expression></ExpressionBasedCoordinateForce>"
-    )
-    end = text.index("</ForceSet>")
-    at = text.rindex("</objects>", 0, end)
+    force = f"<coordinate>{model.joint}</coordinate><expression>{expression}</expression>"
+    force = f'<ExpressionBasedCoordinateForce name="hidden">{force}</ExpressionBasedCoordinateForce>'
+    at = text.rindex("</objects>", 0, text.index("</ForceSet>"))
     return text[:at] + force + text[at:]
 
 
@@ -143,10 +123,8 @@ def recorded(case: Case, noise_deg: float, rng: np.random.Generator, folder: Pat
     """Write the table that a laboratory would hand over."""
     truth = folder / f"truth{Path(case.model.file).suffix}"
     truth.write_text(case.truth, encoding="utf-8")
-    engine = read_model(truth)
-    count = len(engine.coordinates)
-    t = np.arange(int(RATE_HZ * SECONDS)) / RATE_HZ
-    tables = []
+    engine, tables = read_model(truth), []
+    count, t = len(engine.coordinates), np.arange(int(RATE_HZ * SECONDS)) / RATE_HZ
     for _ in range(TRIALS):
         u = np.column_stack([case.model.offset + sines(rng, t, size) for size in case.model.sizes])
         u = np.maximum(u, 0.0) if case.model.offset else u
@@ -157,31 +135,17 @@ def recorded(case: Case, noise_deg: float, rng: np.random.Generator, folder: Pat
     return written(tables, folder)
 
 
-def study(
-    models: list[str], kinds: list[str], seed: int, noise_deg: float, progress: Callable[[str], None]
-) -> pd.DataFrame:
+def study(models: list[str], kinds: list[str], seed: int, noise_deg: float) -> pd.DataFrame:
     """Every case, as rows."""
-    rows = []
-    for name in models:
-        for kind in kinds:
-            rng = np.random.default_rng([seed, sorted(MODELS).index(name), list(HIDDEN).index(kind)])
-            case = hidden_in(MODELS[name], kind, rng)
-            with tempfile.TemporaryDirectory() as folder:
-                table = recorded(case, noise_deg, rng, Path(folder))
-                row = {"model": name, **searched(case, SYSTEMS / case.model.file, table)}
-            progress("; ".join(f"{key} {value}" for key, value in row.items()))
-            rows.append(row)
-    return pd.DataFrame(rows)
 
+    def made(name: str, kind: str, folder: Path) -> tuple[Case, Path, Path]:
+        rng = np.random.default_rng([seed, sorted(MODELS).index(name), list(HIDDEN).index(kind)])
+        case = hidden_in(MODELS[name], kind, rng)
+        return case, SYSTEMS / case.model.file, recorded(case, noise_deg, rng, folder)
 
-def main() -> None:
-    """Print the cases and their sums."""
-    kinds = list(HIDDEN) if GIVEN.hidden == ["all"] else GIVEN.hidden
-    models = GIVEN.models
-    if GIVEN.quick:
-        models, kinds = ["leg"], ["viscous"]
-    print_sums(study(models, kinds, GIVEN.seed, GIVEN.noise, lambda line: print(line, flush=True)))
+    return cases.study(models, kinds, made)
 
 
 if __name__ == "__main__":
-    main()
+    chosen = (GIVEN.models, list(HIDDEN) if GIVEN.hidden == ["all"] else GIVEN.hidden)
+    cases.print_sums(study(*((["leg"], ["viscous"]) if GIVEN.quick else chosen), GIVEN.seed, GIVEN.noise))

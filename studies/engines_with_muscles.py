@@ -24,12 +24,10 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import re
-import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
 from engine_cases import (
     RATE_HZ,
     SECONDS,
@@ -40,8 +38,8 @@ from engine_cases import (
     print_sums,
     ran,
     read_model,
-    searched,
     sines,
+    study,
     written,
 )
 from engines import hidden_in as hidden_at
@@ -80,14 +78,6 @@ EARLY = 20  # samples before the record
 MOST_DRAWN = 200  # trials
 
 
-def model_text(name: str, folder: Path) -> str:
-    """Text of a model, its pelvis locked."""
-    text = (folder / f"{name}.osim").read_text(encoding="utf-8")
-    for one in MODELS[name].locked:
-        text = re.sub(rf'(<Coordinate name="{one}">.*?<locked>)false', r"\1true", text, count=1, flags=re.DOTALL)
-    return text
-
-
 def hidden_in(name: str, kind: str, model: Path, rng: np.random.Generator) -> Case:
     """Hide an effect in the text of a model; a late excitation is hidden in the record alone."""
     one, text = MODELS[name], model.read_text(encoding="utf-8")
@@ -95,8 +85,7 @@ def hidden_in(name: str, kind: str, model: Path, rng: np.random.Generator) -> Ca
     if kind == "late excitation":
         return Case(place, kind, text, rng.uniform(*LATE_S), ("input_delay", one.muscle, "delay"))
     if kind == "weak muscle":
-        parameter = f"{one.weak}_max_isometric_force"
-        return with_share(place, kind, text, rng.uniform(*WEAK), parameter)
+        return with_share(place, kind, text, rng.uniform(*WEAK), f"{one.weak}_max_isometric_force")
     case = hidden_at(place, kind, rng)
     return case._replace(truth=case.truth.replace("max(0,q-0.1)", f"max(0,q-({one.corner}))"))
 
@@ -125,22 +114,16 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
     raise SystemExit(f"{name} with {case.kind} stays within its angles in {len(found)} trials of {MOST_DRAWN} drawn")
 
 
-def study(models: list[str], kinds: list[str], seed: int, folder: Path) -> pd.DataFrame:
-    """Every case, as rows."""
-    rows = []
-    for name in models:
-        for kind in kinds:
-            rng = np.random.default_rng([seed, sorted(MODELS).index(name), KINDS.index(kind)])
-            with tempfile.TemporaryDirectory() as work:
-                model, truth = Path(work) / f"{name}.osim", Path(work) / "truth.osim"
-                model.write_text(model_text(name, folder), encoding="utf-8")
-                case = hidden_in(name, kind, model, rng)
-                table = recorded(case, name, rng, truth)
-                row = {"model": name, **searched(case, model, table)}
-            print("; ".join(f"{key} {value}" for key, value in row.items()), flush=True)
-            rows.append(row)
-    return pd.DataFrame(rows)
+def made(name: str, kind: str, work: Path) -> tuple[Case, Path, Path]:
+    """A case with its model, the pelvis locked, and its record."""
+    rng = np.random.default_rng([GIVEN.seed, sorted(MODELS).index(name), KINDS.index(kind)])
+    text = (Path(GIVEN.folder) / f"{name}.osim").read_text(encoding="utf-8")
+    for one in MODELS[name].locked:
+        text = re.sub(rf'(<Coordinate name="{one}">.*?<locked>)false', r"\1true", text, count=1, flags=re.DOTALL)
+    (work / f"{name}.osim").write_text(text, encoding="utf-8")
+    case = hidden_in(name, kind, work / f"{name}.osim", rng)
+    return case, work / f"{name}.osim", recorded(case, name, rng, work / "truth.osim")
 
 
 if __name__ == "__main__":
-    print_sums(study(GIVEN.models, GIVEN.hidden, GIVEN.seed, Path(GIVEN.folder)))
+    print_sums(study(GIVEN.models, GIVEN.hidden, made))

@@ -155,15 +155,8 @@ def row_of(person: str, kind: str, trials: int, answer: Answer) -> dict[str, Any
     alarms = sorted({line for line in answer.lines if not line.startswith(("note", "printed"))})
     spoken = answer.spoken()
     said = any(SPOKEN[kind] in sentence for sentence in spoken) if kind in SPOKEN else ""
-    return {
-        "person": person,
-        "kind": kind,
-        "trials": trials,
-        "cycles": answer.cycles,
-        "alarms": " || ".join(alarms),
-        "sentences": "; ".join(spoken),
-        "said": said,
-    }
+    values = (person, kind, trials, answer.cycles, " || ".join(alarms), "; ".join(spoken), said)
+    return dict(zip(COLUMNS, values, strict=True))
 
 
 def table(rows: Sequence[dict[str, str]], before: Sequence[dict[str, str]] = ()) -> str:

@@ -13,6 +13,7 @@ from command_line import command_line
 command_line(__name__, __doc__)  # before the slow imports
 
 import numpy as np
+from markdown_table import markdown_table
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -58,14 +59,7 @@ def _smaller_sum(differences: NDArray[np.float64]) -> NDArray[np.intp]:
     return np.minimum(positive, ranks.sum(axis=0) - positive)
 
 
-def main() -> None:
-    """Print the table."""
-    print("| n | variables | correlation | one pair's family | three pairs | all tests | each variable's pairs |")
-    print("|" + "---|" * 7)
-    for case in CASES:
-        found = false_alarms(*case)
-        print(f"| {case[0]} | {case[1]} | {case[2]:g} | {' | '.join(f'{share:.3f}' for share in found.values())} |")
-
-
 if __name__ == "__main__":
-    main()
+    rows = [(*case[:2], f"{case[2]:g}", *map("{:.3f}".format, false_alarms(*case).values())) for case in CASES]
+    head = "n | variables | correlation | one pair's family | three pairs | all tests | each variable's pairs"
+    print(markdown_table(head, rows))

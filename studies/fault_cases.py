@@ -7,15 +7,17 @@ import re
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from fault_cases_in_text import angle_cases, opensim_cases
-from faults_in_c3d import analog, analog_exchanged, point_labels, points_times
-from faults_of_meaning import Case, in_c3d
+from faults_of_meaning import Case, analog, analog_exchanged, point_labels, points_times
 from plug_in_gait_bones import WALKERS, static_file
 
-PLATES = (range(6), range(6, 12))
 RIGHT_LEFT = re.compile(r"^([LR])(?=[A-Z])")
 LEG = re.compile(r"^[LR](?=THI|KNE|TIB|ANK|HEE|TOE|FTC|KNM|MMA|P1M|D1M|P5M|D5M|PCA|LCA|STL|CPG|HFB|SHN|TUB)")
+# analog channels, from 0, of the calf and of the tibialis anterior of a leg whose EMG lives: manifest.csv
+LIVE = {name: ([16], [18]) if name in ("HC032A", "HC036A") else ([17], [19]) for name in WALKERS}
+SIDES = "left and right are (exchanged|swapped)"
 
 
 def cases(data: Path, quick: bool = False) -> Iterator[Case]:
@@ -24,13 +26,11 @@ def cases(data: Path, quick: bool = False) -> Iterator[Case]:
     records = {path.stem[:12]: path for path in (gait / "treadmill_walk_ik").glob("S01DE*.mot")}
     records |= {f"exotendon {path.stem[-27:-22]}": path for path in (gait / "exotendon_run").glob("*.mot")}
     every = itertools.chain(_young(gait), _treadmill(gait), opensim_cases(data), angle_cases(records))
-    if not quick:
-        yield from every
-        return
     wanted = [("m for mm", "HC030A"), ("radians", "S01DE504"), ("another person", "HC030A")]
     for case in every:
-        if any(word in case.fault and name in case.name for word, name in wanted):
-            wanted = [pair for pair in wanted if not (pair[0] in case.fault and pair[1] in case.name)]
+        own = [pair for pair in wanted if pair[0] in case.fault and pair[1] in case.name]
+        wanted = [pair for pair in wanted if pair not in own]
+        if own or not quick:
             yield case
 
 
@@ -39,40 +39,49 @@ def held_back(data: Path) -> Iterator[Case]:
     gait = data / "gait"
     yield from _young(gait, "turn")
     for path in sorted((gait / "opensim_walks" / "c3d_walk_noemg").glob("*.c3d")):
-        yield from _without_emg(path)
+        case = _planter(path.stem, {"walk.c3d": path})
+        yield case("numbers in m for mm", "looks like m", points_times, 1e-3)
+        yield case("forces per kg", "per kg", analog, "^[FM]", 0.014)
+        yield case("left and right swapped", SIDES, point_labels, _mirrored)
+        yield case("plates swapped", r"follows the other|swapped|cm beside the nearest foot", in_plates)
     names = {"S01DN603": gait / "treadmill_walk_ik" / "S01DN603_ik.mot"}
     names |= {f"exotendon {path.parent.name}": path for path in (gait / "exotendon_run").glob("*/manual_ik.mot")}
     yield from angle_cases(names)
 
 
 def _planter(name: str, files: Mapping[str, Path]) -> Callable[..., Case]:
-    return lambda fault, turn, words: Case(fault, name, files, in_c3d("walk.c3d", turn), words)
+    """Make a case of a fault, the words that have to be said, and what turns the file, with its arguments."""
 
+    def case(fault: str, words: str, turn: Callable[..., None], *given: Any) -> Case:
+        def plant(folder: Path) -> None:
+            import ezc3d
 
-def _without_emg(path: Path) -> Iterator[Case]:
-    case = _planter(path.stem, {"walk.c3d": path})
-    yield case("numbers in m for mm", points_times(1e-3), "looks like m")
-    yield case("forces per kg", analog("^[FM]", 0.014), "per kg")
-    yield case("left and right swapped", point_labels(_mirrored), "left and right are (exchanged|swapped)")
-    yield case("plates swapped", in_plates, r"follows the other|swapped|cm beside the nearest foot")
+            c3d = ezc3d.c3d(str(folder / "walk.c3d"))
+            turn(c3d, *given)
+            c3d.write(str(folder / "walk.c3d"))
+
+        return Case(fault, name, files, plant, words)
+
+    return case
 
 
 def _young(gait: Path, kind: str = "straight") -> Iterator[Case]:
     for place, person in enumerate(WALKERS):
         walk = next((gait / "young_straight_and_turn" / person / kind).glob("*.c3d"))
         files = {"walk.c3d": walk, "static.c3d": static_file(gait, person)}
-        live = LIVE[person]
         case = _planter(person, files)
-        yield case("numbers in m for mm", points_times(1e-3, r"^(?!.*(Angles|Moment|Power|Force))"), "looks like m")
-        yield case("angles in radians for degrees", points_times(0.0174533, "Angles"), "look like radians")
-        yield case("EMG in V for mV", analog("Voltage", 1.0, "mV"), r"looks? like V")
-        yield case("EMG in mV for V", analog("Voltage", 1e3), r"looks? like mV")
-        yield case("forces per kg", analog("Force|Moment", 0.02), r"per kg")
-        yield case("left and right swapped", point_labels(_mirrored), "left and right are (exchanged|swapped)")
-        yield case("legs swapped", point_labels(_legs_mirrored), "left and right")
-        yield case("knee's sign", points_times(-1.0, "KneeAngles", 0), r"flexion is (negative|positive)|turned")
-        yield case("plates swapped", in_plates, r"follows the other|swapped|cm beside the nearest foot")
-        yield case("EMG channels exchanged", analog_exchanged(*live), "exchanged")
+        measured = r"^(?!.*(Angles|Moment|Power|Force))"
+        yield case("numbers in m for mm", "looks like m", points_times, 1e-3, measured)
+        yield case("angles in radians for degrees", "look like radians", points_times, 0.0174533, "Angles")
+        yield case("EMG in V for mV", r"looks? like V", analog, "Voltage", 1.0, "mV")
+        yield case("EMG in mV for V", r"looks? like mV", analog, "Voltage", 1e3)
+        yield case("forces per kg", r"per kg", analog, "Force|Moment", 0.02)
+        yield case("left and right swapped", SIDES, point_labels, _mirrored)
+        yield case("legs swapped", "left and right", point_labels, lambda x: _mirrored(x) if LEG.match(x) else x)
+        turned = r"flexion is (negative|positive)|turned"
+        yield case("knee's sign", turned, points_times, -1.0, "KneeAngles", slice(0, 1))
+        yield case("plates swapped", r"follows the other|swapped|cm beside the nearest foot", in_plates)
+        yield case("EMG channels exchanged", "exchanged", analog_exchanged, *LIVE[person])
         for other in (WALKERS[place - 1], WALKERS[place - 2]):
 
             def plant(folder, other=other):
@@ -82,12 +91,12 @@ def _young(gait: Path, kind: str = "straight") -> Iterator[Case]:
             yield Case("static trial of another person", f"{person} with {other}", files, plant, words)
 
 
-def in_plates(c3d) -> None:
+def in_plates(c3d: Any) -> None:
     """Exchange what two plates measured and leave where they lie."""
-    analog_exchanged(*PLATES)(c3d)
+    analog_exchanged(c3d, range(6), range(6, 12))
 
 
-def in_corners(c3d) -> None:
+def in_corners(c3d: Any) -> None:
     """Exchange where two plates lie and leave what they measured."""
     corners = c3d["parameters"]["FORCE_PLATFORM"]["CORNERS"]
     corners["value"] = corners["value"][:, :, [1, 0]]
@@ -97,20 +106,12 @@ def _mirrored(label: str) -> str:
     return RIGHT_LEFT.sub(lambda found: "L" if found[1] == "R" else "R", label)
 
 
-def _legs_mirrored(label: str) -> str:
-    return _mirrored(label) if LEG.match(label) else label
-
-
-# analog channels, from 0, of the calf and of the tibialis anterior of a leg whose EMG lives: manifest.csv
-LIVE = {name: ([16], [18]) if name in ("HC032A", "HC036A") else ([17], [19]) for name in WALKERS}
-
-
 def _treadmill(gait: Path) -> Iterator[Case]:
     case = _planter("treadmill C3D", {"walk.c3d": gait / "treadmill_c3d_emg" / "walking_1.c3d"})
-    yield case("numbers in m for mm", points_times(1e-3), "looks like m")
-    yield case("EMG in V for mV", analog("Voltage", 1.0, "mV"), "looks? like V")
-    yield case("EMG in mV for V", analog("Voltage", 1e3), "looks? like mV")
-    yield case("forces per kg", analog("Force|Moment", 0.014), "per kg")
-    yield case("left and right swapped", point_labels(_mirrored), "left and right are (exchanged|swapped)")
-    yield case("belts swapped", in_corners, "swapped|follows the other")
-    yield case("belts swapped", in_plates, "swapped|follows the other")
+    yield case("numbers in m for mm", "looks like m", points_times, 1e-3)
+    yield case("EMG in V for mV", "looks? like V", analog, "Voltage", 1.0, "mV")
+    yield case("EMG in mV for V", "looks? like mV", analog, "Voltage", 1e3)
+    yield case("forces per kg", "per kg", analog, "Force|Moment", 0.014)
+    yield case("left and right swapped", SIDES, point_labels, _mirrored)
+    yield case("belts swapped", "swapped|follows the other", in_corners)
+    yield case("belts swapped", "swapped|follows the other", in_plates)

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -68,10 +70,11 @@ class Kind:
     needs: str = ""  # of the page without faults: kinematics, kinetics
 
 
-def middle(file: InPlace, seconds: float, at: float = 0.5) -> slice:
-    """Frames of some seconds about a place in the file."""
-    centre, half = at * len(file.points), 0.5 * seconds * file.points_rate
-    return slice(max(round(centre - half), 0), round(centre + half))
+def opened(paths: Iterable[Path]) -> Iterator[InPlace]:
+    """Each file, written before the next."""
+    for path in paths:
+        with edited(path) as file:
+            yield file
 
 
 def exchange(first: str, second: str, kind: str = "walk", seconds: float = 0.0) -> Plant:
@@ -79,7 +82,8 @@ def exchange(first: str, second: str, kind: str = "walk", seconds: float = 0.0) 
 
     def plant(person: Recorded) -> None:
         with edited(person.static if kind == "static" else person.walk) as file:
-            rows = middle(file, seconds) if seconds else slice(None)
+            centre, half = 0.5 * len(file.points), 0.5 * seconds * file.points_rate
+            rows = slice(max(round(centre - half), 0), round(centre + half)) if seconds else slice(None)
             a, b = column(file, first), column(file, second)
             file.points[rows, [a, b]] = file.points[rows, [b, a]]
 
@@ -98,23 +102,13 @@ def points(label: str, factor: float = 1.0, plus: float = 0.0, kinds: str = "wal
     """Multiply or shift an output of the file's own model."""
 
     def plant(person: Recorded) -> None:
-        for path in person.files(kinds):
-            if "static" in str(path) and not has(path, label):
-                continue
-            with edited(path) as file:
+        for file in opened(person.files(kinds)):
+            with suppress(NotHereError) if "static" in str(file.path) else nullcontext():
                 place = column(file, label)
                 seen = file.points[:, place, 3] >= 0
                 file.points[seen, place, axes] = factor * file.points[seen, place, axes] + plus
 
     return plant
-
-
-def has(path: Path, label: str) -> bool:
-    """Whether a file has a point."""
-    try:
-        return InPlace(path).point(label) >= 0
-    except LookupError:
-        return False
 
 
 def stuck(label: str, seconds: float, zero: bool) -> Plant:
@@ -146,12 +140,11 @@ def measures(name: str, factor: float, of_all: bool = False) -> Plant:
                 raise NotHereError("the static trial does not stand on the plates")
         if states <= {person.walk} or not (of_all or person.walk in states):
             raise NotHereError(f"no {name} in the first walk and in another file")
-        for path in person.files() if of_all else [person.walk]:
-            with edited(path) as file:
-                file.numbers(f"PROCESSING:{name}")[...] *= factor
-                per_kg = [k for k, label in enumerate(file.labels) if re.search("Moment|Power|Force|GRF", label)]
-                if of_all:
-                    file.points[:, per_kg, :3] /= factor
+        for file in opened(person.files() if of_all else [person.walk]):
+            file.numbers(f"PROCESSING:{name}")[...] *= factor
+            per_kg = [k for k, label in enumerate(file.labels) if re.search("Moment|Power|Force|GRF", label)]
+            if of_all:
+                file.points[:, per_kg, :3] /= factor
 
     return plant
 
@@ -167,22 +160,19 @@ def loaded(person: Recorded) -> list[int]:
 def gain(person: Recorded) -> None:
     """One plate's gain is 1.3 times too large, in all files."""
     plate = loaded(person)[0]
-    for path in person.files():
-        with edited(path) as file:
-            if file.plate_channels() and file.analog.size:
-                channels = file.plate_channels()[plate]
-                offset = file.numbers("ANALOG:OFFSET").astype(float)[channels]
-                file.analog[..., channels] = 1.3 * (file.analog[..., channels] - offset) + offset
+    for file in opened(person.files()):
+        if file.plate_channels() and file.analog.size:
+            channels = file.plate_channels()[plate]
+            offset = file.numbers("ANALOG:OFFSET").astype(float)[channels]
+            file.analog[..., channels] = 1.3 * (file.analog[..., channels] - offset) + offset
 
 
 def plates_exchanged(person: Recorded) -> None:
     """What two plates measured is exchanged, in all files."""
     first, second = loaded(person)[:2]
-    for path in person.files():
-        with edited(path) as file:
-            if file.plate_channels() and file.analog.size:
-                listed = file.plate_channels()
-                swap_channels(file, np.r_[listed[first], listed[second]], np.r_[listed[second], listed[first]])
+    for file in opened(person.files()):
+        if (listed := file.plate_channels()) and file.analog.size:
+            swap_channels(file, np.r_[listed[first], listed[second]], np.r_[listed[second], listed[first]])
 
 
 def swap_channels(file: InPlace, to: np.ndarray, source: np.ndarray) -> None:
@@ -205,11 +195,9 @@ def emg_sides(person: Recorded) -> None:
     """Electrodes of left and right are exchanged, in all walks."""
     if len(person.live_emg) < 2:
         raise NotHereError("fewer than two live electrodes")
-    for path in person.files("walk"):
-        with edited(path) as file:
-            left = np.array([emg_column(file, muscle, "L") for muscle in MUSCLES])
-            right = np.array([emg_column(file, muscle, "R") for muscle in MUSCLES])
-            swap_channels(file, np.r_[left, right], np.r_[right, left])
+    for file in opened(person.files("walk")):
+        left, right = (np.array([emg_column(file, muscle, side) for muscle in MUSCLES]) for side in "LR")
+        swap_channels(file, np.r_[left, right], np.r_[right, left])
 
 
 def electrode(person: Recorded, dead: bool) -> None:
@@ -218,24 +206,22 @@ def electrode(person: Recorded, dead: bool) -> None:
     if not live:
         raise NotHereError("no live electrode that the labels name")
     _, muscle, side = live[0].split("_")
-    for path in person.files("walk"):
-        with edited(path) as file:
-            at = emg_column(file, muscle, side.upper())
-            mean = file.analog[..., at].mean()
-            apart = file.analog[..., at] - mean
-            limit = np.abs(apart).max()
-            file.analog[..., at] = mean + (1e-3 * apart if dead else np.clip(30 * apart, -limit, limit))
+    for file in opened(person.files("walk")):
+        at = emg_column(file, muscle, side.upper())
+        mean = file.analog[..., at].mean()
+        apart = file.analog[..., at] - mean
+        limit = np.abs(apart).max()
+        file.analog[..., at] = mean + (1e-3 * apart if dead else np.clip(30 * apart, -limit, limit))
 
 
 def late_events(person: Recorded) -> None:
     """Events are 0.1 s late, in all walks."""
     loaded(person)
-    for path in person.files("walk"):
-        with edited(path) as file:
-            times = file.numbers("EVENT:TIMES")
-            if times.size < 4:
-                raise NotHereError("no events")
-            times[1] += LATE_S
+    for file in opened(person.files("walk")):
+        times = file.numbers("EVENT:TIMES")
+        if times.size < 4:
+            raise NotHereError("no events")
+        times[1] += LATE_S
 
 
 def standing(person: Recorded, after: bool) -> None:
@@ -277,23 +263,16 @@ def recording_again(*parts: str) -> Plant:
 
 SAME = r"counts once|samples are those|same (recording|file|trial|data)|identical|equal|twice|duplicate|copies"
 FOOT, PLATE = r"[LR](ANK|HEE|TOE)\b|foot|ankle", r"plate|force|newton|weigh"
+moved = partial(Kind, angles="markers", needs="kinematics")
 KINDS = (
-    Kind("1 static ankle and heel", exchange("LANK", "LHEE", "static"), FOOT, "markers", needs="kinematics"),
-    Kind("1 static heel and toe", exchange("RHEE", "RTOE", "static"), FOOT, "markers", needs="kinematics"),
-    Kind("1 walk ankle and toe", exchange("RANK", "RTOE"), FOOT, "markers", needs="kinematics"),
-    Kind("1 walk heel and toe 0.5 s", exchange("RHEE", "RTOE", "walk", SHORT_S), FOOT, "markers", needs="kinematics"),
-    Kind("1 walk thigh and knee", exchange("LTHI", "LKNE"), r"L(THI|KNE)|thigh|knee", "markers", needs="kinematics"),
-    Kind("1 walk knees", exchange("LKNE", "RKNE"), r"[LR]KNE|thigh|knee|left and right", "markers", needs="kinematics"),
-    Kind(
-        "1 walk ankles 0.5 s",
-        exchange("LANK", "RANK", "walk", SHORT_S),
-        FOOT + "|shank|left and right",
-        "markers",
-        needs="kinematics",
-    ),
-    Kind(
-        "1 walk front spines", exchange("LASI", "RASI"), "[LR]ASI|pelvis|left and right", "markers", needs="kinematics"
-    ),
+    moved("1 static ankle and heel", exchange("LANK", "LHEE", "static"), FOOT),
+    moved("1 static heel and toe", exchange("RHEE", "RTOE", "static"), FOOT),
+    moved("1 walk ankle and toe", exchange("RANK", "RTOE"), FOOT),
+    moved("1 walk heel and toe 0.5 s", exchange("RHEE", "RTOE", "walk", SHORT_S), FOOT),
+    moved("1 walk thigh and knee", exchange("LTHI", "LKNE"), r"L(THI|KNE)|thigh|knee"),
+    moved("1 walk knees", exchange("LKNE", "RKNE"), r"[LR]KNE|thigh|knee|left and right"),
+    moved("1 walk ankles 0.5 s", exchange("LANK", "RANK", "walk", SHORT_S), FOOT + "|shank|left and right"),
+    moved("1 walk front spines", exchange("LASI", "RASI"), "[LR]ASI|pelvis|left and right"),
     Kind("2 one name in two groups", group_folders, r"group|same name|mass|two people", people=2),
     Kind("2 mass of one trial +10 %", measures("BODYMASS", 1.1), r"mass|kg"),
     Kind("2 leg length of one trial +5 %", measures("LLEGLENGTH", 1.05), r"leg length|leg is|legs? .*(mm|cm| m)\b"),
@@ -311,24 +290,12 @@ KINDS = (
     Kind("8 hip sign", points("LHipAngles", -1.0, kinds="*", axes=slice(0, 1)), "hip", needs="kinematics"),
     Kind("8 left knee +20 deg", points("LKneeAngles", plus=20.0, axes=slice(0, 1)), "knee", needs="kinematics"),
     Kind("8 EMG sides", emg_sides, r"emg|electrode|muscle"),
-    Kind(
-        "9 zeros, marker",
-        stuck("LKNE", ZERO_S, True),
-        r"LKNE|zero places|knee|shank",
-        "markers",
-        True,
-        needs="kinematics",
-    ),
+    moved("9 zeros, marker", stuck("LKNE", ZERO_S, True), r"LKNE|zero places|knee|shank", notes=True),
     Kind("9 zeros, angle", stuck("LKneeAngles", ZERO_S, True), r"knee", needs="kinematics"),
-    Kind("9 frozen marker", stuck("LTOE", FROZEN_S, False), FOOT, "markers", needs="kinematics"),
+    moved("9 frozen marker", stuck("LTOE", FROZEN_S, False), FOOT),
     Kind("10 dead electrode", lambda person: electrode(person, True), r"dead|flat|unplugged"),
     Kind("10 clipped electrode", lambda person: electrode(person, False), r"clip|satur|unplugged|range"),
-    Kind(
-        "11 heels 0.5 s",
-        exchange("LHEE", "RHEE", "walk", SHORT_S),
-        r"[LR]HEE|heel|foot|left and right",
-        cycles=">=",
-    ),
+    Kind("11 heels 0.5 s", exchange("LHEE", "RHEE", "walk", SHORT_S), r"[LR]HEE|heel|foot|left and right", cycles=">="),
     Kind("11 standing before", lambda p: standing(p, False), r"stand|still|not walking", notes=True),
     Kind("11 standing after", lambda p: standing(p, True), r"stand|still|not walking", notes=True),
 )

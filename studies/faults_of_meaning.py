@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Rows = NDArray[np.float64]
 Turn = Callable[[list[str], Rows], None]
+Plant = Callable[[Path], None]
 
 
 class Case(NamedTuple):
@@ -20,12 +21,12 @@ class Case(NamedTuple):
     fault: str
     name: str
     files: Mapping[str, Path]
-    plant: Callable[[Path], None]
+    plant: Plant
     words: str
     crop_s: tuple[float, float] | None = None
 
 
-def in_storage(file: str, turn: Turn, header: tuple[str, str] = ("", "")) -> Callable[[Path], None]:
+def in_storage(file: str, turn: Turn, header: tuple[str, str] = ("", "")) -> Plant:
     """Turn the numbers or labels of a .mot or .sto, or a word of its header."""
 
     def plant(folder: Path) -> None:
@@ -42,20 +43,7 @@ def in_storage(file: str, turn: Turn, header: tuple[str, str] = ("", "")) -> Cal
     return plant
 
 
-def in_c3d(file: str, turn: Callable[[object], None]) -> Callable[[Path], None]:
-    """Turn points, analog channels or parameters of a C3D file."""
-
-    def plant(folder: Path) -> None:
-        import ezc3d
-
-        c3d = ezc3d.c3d(str(folder / file))
-        turn(c3d)
-        c3d.write(str(folder / file))
-
-    return plant
-
-
-def in_trc(file: str, factor: float, unit: str) -> Callable[[Path], None]:
+def in_trc(file: str, factor: float, unit: str) -> Plant:
     """Write the markers of a .trc in another unit than its header states, or state another."""
 
     def plant(folder: Path) -> None:
@@ -80,16 +68,46 @@ def scaled(pattern: str, factor: float) -> Turn:
     return turn
 
 
-def mirrored(pattern: str) -> Turn:
-    """Exchange r and l where the pattern has them as its group."""
+def renamed(change: Callable[[str], str]) -> Turn:
+    """Change the labels, and leave the numbers."""
 
     def turn(labels: list[str], _: Rows) -> None:
-        for i, label in enumerate(labels):
-            labels[i] = re.sub(pattern, lambda found: "l" if found[0] == "r" else "r", label)
+        labels[:] = map(change, labels)
 
     return turn
 
 
-def cut_row(_: list[str], rows: Rows) -> None:
-    """Lose the last sample, as a curve of 100 points does beside one of 101."""
-    rows[-1, 0] = np.nan
+def mirrored(pattern: str) -> Turn:
+    """Exchange r and l where the pattern has them as its group."""
+    return renamed(lambda label: re.sub(pattern, lambda found: "l" if found[0] == "r" else "r", label))
+
+
+def point_labels(c3d: Any, change: Callable[[str], str]) -> None:
+    """Rename the points of a C3D file."""
+    points = c3d["parameters"]["POINT"]
+    for key in [key for key in points if re.fullmatch(r"LABELS\d*", key)]:
+        points[key]["value"] = [change(label) for label in points[key]["value"]]
+
+
+def points_times(c3d: Any, factor: float, pattern: str = "", axes: slice = slice(0, 3)) -> None:
+    """Multiply the points whose labels match."""
+    points = c3d["parameters"]["POINT"]
+    keys = sorted((key for key in points if re.fullmatch(r"LABELS\d*", key)), key=lambda key: (len(key), key))
+    for i, label in enumerate(label for key in keys for label in points[key]["value"]):
+        if re.search(pattern, label):
+            c3d["data"]["points"][axes, i] *= factor
+
+
+def analog(c3d: Any, pattern: str, factor: float = 1.0, unit: str = "") -> None:
+    """Multiply analog channels whose label or unit matches, or state another unit for them."""
+    group = c3d["parameters"]["ANALOG"]
+    for i, label in enumerate(group["LABELS"]["value"]):
+        if re.search(pattern, label):
+            c3d["data"]["analogs"][0, i] *= factor
+            group["UNITS"]["value"][i] = unit or group["UNITS"]["value"][i]
+
+
+def analog_exchanged(c3d: Any, firsts: Sequence[int], seconds: Sequence[int]) -> None:
+    """Exchange the numbers of analog channels and leave their labels."""
+    rows = c3d["data"]["analogs"]
+    rows[0, [*firsts, *seconds]] = rows[0, [*seconds, *firsts]]

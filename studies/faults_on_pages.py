@@ -42,7 +42,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from as_a_user import Answer, answer_of, new_lines, told
+from as_a_user import Answer, answer_of, new_lines, rows_of, told
 from faults_in_people import KINDS, Kind, NotHereError, Recorded
 from markdown_table import markdown_table
 
@@ -132,30 +132,17 @@ def tried(job: Job) -> dict[str, Any]:
     (folder / "new_lines.txt").write_text("\n".join(new), encoding="utf-8")
     hits = [line for line in new if re.search(kind.words, line, re.IGNORECASE)]
     moved = [abs(value - clean.numbers[key][0]) for key, (value, _) in answer.numbers.items() if key in clean.numbers]
-    return row | {
-        "said": said(kind, answer, clean, bool(hits)),
-        "line": (hits or [f"other words: {line}" for line in new] or [""])[0][:300],
-        "sentences": "; ".join(answer.spoken(clean)),
-        "moved": round(max(moved, default=0.0), 1),
-        "cycles": answer.cycles,
-        "cycles_clean": clean.cycles,
-        "seconds": round(time.monotonic() - began, 1),
-    }
+    row["said"] = said(kind, answer, clean, bool(hits))
+    row["line"] = (hits or [f"other words: {line}" for line in new] or [""])[0][:300]
+    row |= {"sentences": "; ".join(answer.spoken(clean)), "moved": round(max(moved, default=0.0), 1)}
+    row |= {"cycles": answer.cycles, "cycles_clean": clean.cycles}
+    return row | {"seconds": round(time.monotonic() - began, 1)}
 
 
 def said(kind: Kind, answer: Answer, clean: Answer, named: bool) -> bool:
     """Whether the fault is named, or its people are told apart, and no cycle is lost or doubled."""
-    right = named or (kind.people > 1 and answer.people == kind.people)
     many = {"": True, "==": answer.cycles == clean.cycles, ">=": answer.cycles >= clean.cycles}
-    return right and many[kind.cycles]
-
-
-def kept_rows(path: Path) -> list[dict[str, str]]:
-    """Rows that an earlier call wrote."""
-    if not path.exists():
-        return []
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return (named or 1 < kind.people == answer.people) and many[kind.cycles]
 
 
 def written_rows(path: Path, columns: Sequence[str], rows: Iterable[dict[str, Any]], count: int) -> None:
@@ -232,18 +219,18 @@ def main() -> None:
         work, chosen = (of_person, jobs) if GIVEN.healthy else (of_made, made)
         rows = (row for rows in mapped(work, chosen, GIVEN.j) for row in rows)
         written_rows(out / name, SEEN, rows, 0)
-        print(table(kept_rows(out / name), kept_rows(Path(GIVEN.against or "-"))))
+        print(table(rows_of(out / name), rows_of(Path(GIVEN.against or "-"))))
         return
     everybody = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast)[: 1 if GIVEN.quick else None]
     words = QUICK_KINDS if GIVEN.quick else [word.strip() for word in GIVEN.kinds.split(",")]
-    done = {(row["kind"], row["person"]) for row in kept_rows(out / "faults.csv")}
+    done = {(row["kind"], row["person"]) for row in rows_of(out / "faults.csv")}
     names = [kind.name for kind in KINDS if any(word in kind.name for word in words)]
     jobs = [one._replace(kind=kind) for one in everybody for kind in names if (kind, one.who) not in done]
     for who in mapped(clean_both, everybody, GIVEN.j):
         print(f"without faults: {who}", flush=True)
     written_rows(out / "faults.csv", COLUMNS, mapped(tried, jobs, GIVEN.j), len(jobs))
     chosen = {one.who for one in everybody}
-    print(tables([row for row in kept_rows(out / "faults.csv") if row["person"] in chosen and row["kind"] in names]))
+    print(tables([row for row in rows_of(out / "faults.csv") if row["person"] in chosen and row["kind"] in names]))
 
 
 if __name__ == "__main__":

@@ -132,8 +132,7 @@ def files_of(study: Path) -> dict[tuple[str, str], Path]:
     return found
 
 
-def main() -> None:
-    """Compare, write `OUT/values.csv`, and print the largest of each kind of channel."""
+if __name__ == "__main__":
     out = Path(GIVEN.out).resolve()
     rows = []
     for job in jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), pages=False):
@@ -154,7 +153,3 @@ def main() -> None:
         cycles = sum(row["cycles"] for row in own)
         lines.append((name, unit, len(own), cycles, within, f"{np.median(rms):.4f}", f"{max(rms):.4f}", signs))
     print(markdown_table("channel | unit | legs and trials | cycles | within | median rms | largest rms | sign", lines))
-
-
-if __name__ == "__main__":
-    main()

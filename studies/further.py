@@ -65,9 +65,8 @@ def printed(found: pd.DataFrame, name: str, made: Made) -> str:
     columns, rows = dict.fromkeys(some["column"]), []
     for row in dict.fromkeys(some["row"]):
         own = some[some["row"] == row]
-        rows.append(
-            (str(row), *(_said(own.loc[own["column"] == column, "value"].to_numpy(float)) for column in columns))
-        )
+        cells = [own.loc[own["column"] == column, "value"].to_numpy(float) for column in columns]
+        rows.append((str(row), *map(_said, cells)))
     return markdown_table(" | ".join((made.heading, *map(str, columns))), rows)
 
 

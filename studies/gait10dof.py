@@ -85,10 +85,6 @@ class Gait10dof:
             found[f"foot_{side}"] = Pose(ankle, foot)
         return found
 
-    def slide_rate(self, knee: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the shank's origin slides in the thigh for each radian of extension, (frame, 3) [m/rad]."""
-        return (self.slide(knee + 1e-4) - self.slide(knee - 1e-4)) / 2e-4
-
 
 def about_z(angle: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotations about the axis of flexion, (frame, 3, 3)."""

@@ -47,7 +47,8 @@ def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial)
             moment = wrench.about(poses[f"{segment}_{side}"].origin)[:, 2]
             if name == "knee_angle":
                 bent = -np.radians(smooth[f"knee_angle_{side}"])
-                slide = np.einsum("fij,fj->fi", poses[f"thigh_{side}"].rotation, model.slide_rate(bent))
+                rate = (model.slide(bent + 1e-4) - model.slide(bent - 1e-4)) / 2e-4  # [m/rad]
+                slide = np.einsum("fij,fj->fi", poses[f"thigh_{side}"].rotation, rate)
                 moment = -moment - np.einsum("fx,fx->f", wrench.force, slide)
             found[f"{name}_{side}_moment"] = moment
     return found

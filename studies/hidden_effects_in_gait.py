@@ -23,7 +23,7 @@ GIVEN = command_line(
     QUICK,
 )  # before the slow imports
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -49,33 +49,19 @@ RIGHT = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """What was found, a row a person and effect; `before`, `after` and `floor` are errors held out [deg]."""
-
-    table: pd.DataFrame
-
-    def summary(self) -> pd.DataFrame:
-        """What is right, and how far off, by what was hidden."""
-        rows = self.table.assign(off=100 * (self.table["value"] / self.table["truth"] - 1).abs())
-        rows["inside"] = (rows["low"] <= rows["truth"]) & (rows["truth"] <= rows["high"])
-        first = rows.groupby("hidden", sort=False)
-        return first.agg(
-            n=("right", "size"),
-            right=("right", "sum"),
-            off_percent=("off", "median"),
-            inside=("inside", "sum"),
-            before_deg=("before", "median"),
-            after_deg=("after", "median"),
-            floor_deg=("floor", "median"),
-        )
+def summary(table: pd.DataFrame) -> pd.DataFrame:
+    """What is right, and how far off, by what was hidden."""
+    rows = table.assign(off_percent=100 * (table["value"] / table["truth"] - 1).abs())
+    groups = rows.assign(inside=rows["truth"].between(rows["low"], rows["high"])).groupby("hidden", sort=False)
+    counts = groups.agg(n=("right", "size"), right=("right", "sum"), inside=("inside", "sum"))
+    return counts.join(groups[["off_percent", "before", "after", "floor"]].median())
 
 
-def run(quick: bool, people_count: int = 12, *errors: float) -> Result:
-    """Hide each effect in each person's walk, and search for what is missing."""
+def run(quick: bool, people_count: int = 12, *errors: float) -> pd.DataFrame:
+    """Hide each effect in each person's walk, and search; `before`, `after` and `floor` are errors held out [deg]."""
     people = the_twelve()[: 1 if quick else people_count]
     hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
-    return Result(pd.DataFrame([found_in(person, effect, *errors) for person in people for effect in hidden]))
+    return pd.DataFrame([found_in(person, effect, *errors) for person in people for effect in hidden])
 
 
 def found_in(person: Person, hidden: str, *errors: float) -> dict[str, object]:
@@ -111,8 +97,7 @@ def found_in(person: Person, hidden: str, *errors: float) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    result = run(GIVEN.quick, GIVEN.people, GIVEN.emg_error, GIVEN.others_nm)
-    print(result.table.round(4).to_string())
-    print(result.summary().round(3).to_string())
+    table = run(GIVEN.quick, GIVEN.people, GIVEN.emg_error, GIVEN.others_nm)
+    print(table.round(4).to_string(), summary(table).round(3).to_string(), sep="\n")
     if GIVEN.out:
-        result.table.to_csv(GIVEN.out, index=False)
+        table.to_csv(GIVEN.out, index=False)

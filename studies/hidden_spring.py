@@ -15,9 +15,8 @@ from pathlib import Path
 
 from command_line import argument, command_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("out", "folder that gets ankle.toml and walk.csv", type=Path)
-)  # before the slow imports
+OUT = argument("out", "folder that gets ankle.toml and walk.csv", type=Path)
+GIVEN = command_line(__name__, __doc__, OUT)  # before the slow imports
 
 import numpy as np
 import pandas as pd
@@ -27,7 +26,6 @@ import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.person import STIFFNESS, Spring
 from gaitdisc.cohort.walk import walked
-from gaitdisc.simulation.measured import Measured
 
 MODEL = Path(__file__).with_name("tracked_ankle.toml")
 WALK_S, STARTING_S = 24.0, 4.0
@@ -40,22 +38,15 @@ def run(folder: Path) -> tuple[Path, Path]:
     walk = walked(person.adapted_to(spring), spring, WALK_S + STARTING_S, seed=1)
     simulation = gd.read_simulation(MODEL).with_values({"foot_mass": own_foot_kg(person)})
     gd.write_simulation(simulation, folder / "ankle.toml")
-    table_of(ankle_trials(walk, 0.0, EMG_ERROR, OTHERS_NM)).to_csv(
-        folder / "walk.csv", index=False, float_format="%.6g"
-    )
-    return folder / "ankle.toml", folder / "walk.csv"
-
-
-def table_of(measured: Measured) -> pd.DataFrame:
-    """Measured trials as the table that `gaitdisc discover` reads."""
-    tables = []
+    measured, tables = ankle_trials(walk, 0.0, EMG_ERROR, OTHERS_NM), []
     for number, trial in enumerate(measured.trials):
         count = int(measured.drive.samples[number])
         time, inputs = np.arange(count) / measured.rate, measured.drive.inputs[number, :count]
         values = np.column_stack([time, inputs, measured.observed[number, :count]])
         names = ["time", *INPUTS, *measured.channels]
         tables.append(pd.DataFrame(values, columns=pd.Index(names)).assign(trial=trial))
-    return pd.concat(tables, ignore_index=True)
+    pd.concat(tables).to_csv(folder / "walk.csv", index=False, float_format="%.6g")
+    return folder / "ankle.toml", folder / "walk.csv"
 
 
 if __name__ == "__main__":

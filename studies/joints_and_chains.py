@@ -26,15 +26,56 @@ GIVEN = command_line(
 
 import sys
 import time
+import tomllib
+from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
-from driven_trials import Driven, Sensed
-from driven_trials import recorded as trials_of
-from hidden_in_systems import KNOWN, Hidden, complete, model_of, put_off
+from driven_trials import Driven, Sensed, recorded
 
 import gaitdisc as gd
+
+SYSTEMS = Path(__file__).parent / "systems"
+
+
+class Hidden(NamedTuple):
+    """What is missing in a model; `{a}` and `{b}` of its term are drawn between their limits."""
+
+    model: str
+    port: str
+    effect: str
+    term: str
+    a: list[float]
+    b: list[float]
+    driven_by: list[float]
+    fastest_hz: float
+
+
+FILE = Path(__file__).with_suffix(".toml")
+KNOWN = {name: Hidden(**each) for name, each in tomllib.loads(FILE.read_text(encoding="utf-8")).items()}
+
+
+def model_of(hidden: Hidden) -> gd.Simulation:
+    """The model as its author believes it."""
+    own = SYSTEMS / f"{hidden.model}.toml"
+    return gd.read_simulation(own) if own.is_file() else gd.bundled_simulation(hidden.model)
+
+
+def complete(model: gd.Simulation, hidden: Hidden, rng: np.random.Generator) -> gd.Simulation:
+    """The model with what is hidden in it."""
+    a, b = (f"{rng.uniform(low, high):.4g}" for low, high in (hidden.a, hidden.b))
+    return model.with_effect(gd.Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
+
+
+def put_off(model: gd.Simulation, share: float, rng: np.random.Generator) -> gd.Simulation:
+    """The model with each number a little wrong, and bounds that say so."""
+    wrong = []
+    for one in model.parameters:
+        value = one.value * (1 + share * float(np.clip(rng.standard_normal(), -2, 2)))
+        low, high = sorted((value * (1 - 2.5 * share), value * (1 + 2.5 * share)))
+        wrong.append(replace(one, value=value, low=low, high=high))
+    return replace(model, parameters=tuple(wrong)) if share else model
 
 
 class Record(NamedTuple):
@@ -45,18 +86,13 @@ class Record(NamedTuple):
     lowpass_hz: float
 
 
-def recorded(truth: gd.Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> pd.DataFrame:
-    """Trials of the true system, driven by sums of sines, as they come from a laboratory."""
-    driven = Driven(tuple(hidden.driven_by), 0.2, hidden.fastest_hz)
-    return trials_of(truth, driven, Sensed(record.noise, record.lowpass_hz), rng)
-
-
 def answer(name: str, seed: int, record: Record, nothing: bool) -> tuple[str, float]:
     """What is named, `nothing` where the model agrees, and the seconds that it took."""
     hidden, rng = KNOWN[name], np.random.default_rng([seed, list(KNOWN).index(name), nothing])
     model = model_of(hidden)
     truth = model if nothing else complete(model, hidden, rng)
-    measured = recorded(truth, hidden, record, rng)
+    driven = Driven(tuple(hidden.driven_by), 0.2, hidden.fastest_hz)
+    measured = recorded(truth, driven, Sensed(record.noise, record.lowpass_hz), rng)
     started = time.process_time()
     found, _ = gd.discover(put_off(model, record.off, rng), measured)
     names = " and ".join(one.name for one in found.effects)
@@ -70,11 +106,9 @@ def run(names: list[str], seeds: int, record: Record) -> list[str]:
         for nothing, wanted in ((False, KNOWN[name].effect), (True, "nothing")):
             answers = [answer(name, seed, record, nothing) for seed in range(seeds)]
             others = [found for found, _ in answers if found != wanted]
-            median = np.median([seconds for _, seconds in answers])
             said = f"; instead: {', '.join(others)}" if others else ""
-            lines.append(
-                f"{name}, {wanted.replace('_', ' ')}: {seeds - len(others)} of {seeds}, median {median:.0f} s{said}"
-            )
+            right = f"{seeds - len(others)} of {seeds}, median {np.median([one[1] for one in answers]):.0f} s"
+            lines.append(f"{name}, {wanted.replace('_', ' ')}: {right}{said}")
             print(lines[-1], file=sys.stderr, flush=True)
     return lines
 

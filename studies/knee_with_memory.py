@@ -22,9 +22,7 @@ GIVEN = command_line(
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
-from driven_trials import Driven, Sensed
-from driven_trials import recorded as trials_of
+from driven_trials import Driven, Sensed, recorded
 
 import gaitdisc as gd
 
@@ -40,18 +38,12 @@ def hidden(kind: str, rng: np.random.Generator) -> tuple[gd.Simulation, float]:
     rates = {"hysteresis": f"{BENT} - abs({BENT})*z/{memory}", "series_elasticity": f"{BENT} - z/{memory}"}
     z = replace(leg.states[0], name="z", meaning="", initial=0.0)
     if kind in rates:
-        return leg.with_state(z, rates[kind]).with_effect(
-            gd.Term("knee_moment", "port", kind, f"-{stiffness}*z")
-        ), memory
+        effect = gd.Term("knee_moment", "port", kind, f"-{stiffness}*z")
+        return leg.with_state(z, rates[kind]).with_effect(effect), memory
     if kind == "input_lag":
         late = leg.with_state(replace(z, unit="N m"), "0").with_input("tau_knee", "z")
         return late.with_equation("z", f"(tau_knee - z)/{memory}"), memory
     return leg, float("nan")
-
-
-def recorded(truth: gd.Simulation, rng: np.random.Generator, noise: float) -> pd.DataFrame:
-    """Trials of the leg, driven at hip and knee."""
-    return trials_of(truth, DRIVEN, Sensed(noise, channels=("hip", "knee")), rng)
 
 
 def run(seeds: int, noise: float) -> list[str]:
@@ -62,7 +54,7 @@ def run(seeds: int, noise: float) -> list[str]:
         for seed in range(seeds):
             rng = np.random.default_rng([seed, KINDS.index(kind)])
             truth, memory = hidden(kind, rng)
-            found, _ = gd.discover(nominal, recorded(truth, rng, noise))
+            found, _ = gd.discover(nominal, recorded(truth, DRIVEN, Sensed(noise, channels=("hip", "knee")), rng))
             names = [one.name for one in found.effects]
             if names == ([] if kind == "nothing" else [kind]):
                 right += 1

@@ -47,14 +47,9 @@ def run_script(text: str, folder: Path) -> None:
         os.chdir(before)
 
 
-def main() -> None:
-    """Run every script and keep its picture."""
+if __name__ == "__main__":
     for name, text in scripts().items():
         with tempfile.TemporaryDirectory() as folder:
             run_script(text, Path(folder))
             (DOCS / "pictures").mkdir(exist_ok=True)
             shutil.copy(Path(folder) / f"{name}.png", DOCS / "pictures" / f"{name}.png")
-
-
-if __name__ == "__main__":
-    main()

@@ -13,15 +13,15 @@ mean squares over frames, legs and draws [deg]. FOLDER takes the picture.
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import QUICK, RECORDINGS, argument, command_line
 
-DATA = argument("data", "folder of the real recordings", SHARED)
 OUT = argument("--out", "folder of the picture; none is drawn without it")
-GIVEN = command_line(__name__, __doc__, DATA, OUT, QUICK)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, RECORDINGS, OUT, QUICK)  # before the slow imports
 
 from pathlib import Path
 
 import numpy as np
+from markdown_table import markdown_table
 from moved_markers import Body, bodies, lost, slid
 
 import gaitdisc as gd
@@ -32,12 +32,11 @@ SHOWN = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "knee_add
 
 def errors(found: list[gd.Recording], truth: gd.Recording) -> dict[str, float]:
     """Root mean square error of each angle over both legs [deg]."""
-    return {
-        name: float(
-            np.sqrt(np.nanmean([(one[f"{name}_{s}"] - truth[f"{name}_{s}"]) ** 2 for one in found for s in "rl"]))
-        )
+    squares = {
+        name: [(one[f"{name}_{side}"] - truth[f"{name}_{side}"]) ** 2 for one in found for side in "rl"]
         for name in SHOWN
     }
+    return {name: float(np.sqrt(np.nanmean(each))) for name, each in squares.items()}
 
 
 def skin(several: list[Body], draws: int) -> dict[tuple[str, float], dict[str, float]]:
@@ -80,20 +79,15 @@ def draw(slides: dict[tuple[str, float], dict[str, float]], folder: Path) -> Non
     drawn.savefig(folder / "marker_noise.png", dpi=90)
 
 
-def main() -> None:
-    """Print both tables, draw the picture."""
+if __name__ == "__main__":
     several, draws = bodies(GIVEN.data), 2 if GIVEN.quick else 10
     slides = skin(several, draws)
-    print(f"Skin that slides\n\n| markers | thigh [mm] | {' | '.join(SHOWN)} |\n|{'---|' * (len(SHOWN) + 2)}")
-    for (name, size), found in slides.items():
-        print(f"| {name} | {size:g} | {' | '.join(f'{found[angle]:.1f}' for angle in SHOWN)} |")
-    titles = f"| markers | lost [%] | angles known [%] | {' | '.join(SHOWN)} |"
-    print(f"\nMarkers lost\n\n{titles}\n|{'---|' * (len(SHOWN) + 3)}")
-    for (name, share), (known, found) in dropout(several, draws).items():
-        print(f"| {name} | {share} | {known:.1f} | {' | '.join(f'{found[angle]:.1f}' for angle in SHOWN)} |")
+    rows = [(*key[:1], f"{key[1]:g}", *map("{:.1f}".format, found.values())) for key, found in slides.items()]
+    print(f"Skin that slides\n\n{markdown_table(' | '.join(('markers', 'thigh [mm]', *SHOWN)), rows)}")
+    rows = [
+        (*key, *map("{:.1f}".format, (known, *one.values()))) for key, (known, one) in dropout(several, draws).items()
+    ]
+    head = " | ".join(("markers", "lost [%]", "angles known [%]", *SHOWN))
+    print(f"\nMarkers lost\n\n{markdown_table(head, rows)}")
     if GIVEN.out:
         draw(slides, Path(GIVEN.out))
-
-
-if __name__ == "__main__":
-    main()

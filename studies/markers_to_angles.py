@@ -11,11 +11,10 @@ pictures of the curves over each other.
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import QUICK, RECORDINGS, argument, command_line
 
-DATA = argument("data", "folder of the real recordings", SHARED)
 OUT = argument("--out", "folder of the pictures; none are drawn without it")
-GIVEN = command_line(__name__, __doc__, DATA, OUT, QUICK)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, RECORDINGS, OUT, QUICK)  # before the slow imports
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -58,19 +57,6 @@ def against_opensim(data: Path) -> list[Row]:
     return [(name, "3", *(f"{rms(both[joints][name]):.2f}" for joints in both)) for name in both["free"]]
 
 
-def main() -> None:
-    """Print the tables, draw the pictures."""
-    several = people(GIVEN.data, WRITTEN_WITH[:1] if GIVEN.quick else (*WRITTEN_WITH, *HELD_BACK))
-    for chosen in ("plug_in_gait", "plug_in_gait, harrington", "oxford_foot", "oxford_foot, harrington"):
-        print(f"\n{chosen}: rms difference to Plug-in Gait, median (largest) [deg]\n")
-        print(markdown_table(PLUG_IN_GAIT, against_plug_in_gait(several, chosen)))
-    print("\nrms difference to OpenSim's inverse kinematics after the mean difference [deg]\n")
-    print(markdown_table(OPENSIM, against_opensim(GIVEN.data)))
-    if GIVEN.out:
-        straight = {p.name + " (held back)" * (p.name in HELD_BACK): drawn_curves(p) for p in several}
-        draw(straight, opensim_curves(GIVEN.data, "planar"), Path(GIVEN.out))
-
-
 def draw(people: Mapping[str, Pairs], opensim: Pairs, folder: Path) -> None:
     """Plug-in Gait's and ours of each person's straight walk; OpenSim's and ours."""
     from matplotlib.figure import Figure
@@ -104,4 +90,12 @@ def panel(axes, pair: tuple[np.ndarray, np.ndarray], label: str) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    several = people(GIVEN.data, WRITTEN_WITH[:1] if GIVEN.quick else (*WRITTEN_WITH, *HELD_BACK))
+    for chosen in ("plug_in_gait", "plug_in_gait, harrington", "oxford_foot", "oxford_foot, harrington"):
+        print(f"\n{chosen}: rms difference to Plug-in Gait, median (largest) [deg]\n")
+        print(markdown_table(PLUG_IN_GAIT, against_plug_in_gait(several, chosen)))
+    print("\nrms difference to OpenSim's inverse kinematics after the mean difference [deg]\n")
+    print(markdown_table(OPENSIM, against_opensim(GIVEN.data)))
+    if GIVEN.out:
+        straight = {p.name + " (held back)" * (p.name in HELD_BACK): drawn_curves(p) for p in several}
+        draw(straight, opensim_curves(GIVEN.data, "planar"), Path(GIVEN.out))

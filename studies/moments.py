@@ -9,11 +9,10 @@ by the package; `bones`: Plug-in Gait's own segments, to test kinetics alone. Tw
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import QUICK, RECORDINGS, argument, command_line
 
-DATA = argument("data", "folder of the real recordings", SHARED)
 PICTURE = argument("--picture", "file for the curves over each other", type=str)
-GIVEN = command_line(__name__, __doc__, DATA, PICTURE, QUICK)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, RECORDINGS, PICTURE, QUICK)  # before the slow imports
 
 from pathlib import Path
 
@@ -75,8 +74,7 @@ HEADS = (
 )
 
 
-def main() -> None:
-    """Print the tables; draw the curves where a file is named."""
+if __name__ == "__main__":
     found = walks(GIVEN.data, GIVEN.quick)
     opensim = against_opensim(GIVEN.data / "opensim_gait10dof")
     for head, rows in zip(HEADS, (against_plug_in_gait(found), balances(found), opensim), strict=True):
@@ -84,7 +82,3 @@ def main() -> None:
     print(filter_effect(found))
     if GIVEN.picture:
         over_each_other({w.person: w.steps for w in found if w[1:4] == ("straight", "markers", SETS[0])}, GIVEN.picture)
-
-
-if __name__ == "__main__":
-    main()

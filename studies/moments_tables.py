@@ -6,13 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from plug_in_gait_angles import HELD_BACK
 
-KEPT_BACK = ("HC033A", "HC036A")  # by whom markers to angles were not written either
 PARTS = ("ankle_angle", "knee_angle", "hip_flexion", "ankle_inversion", "knee_adduction", "hip_adduction")
 PARTS += ("ankle_rotation", "knee_rotation", "hip_rotation")
-NAMES = tuple(f"{part}_{{}}_moment" for part in PARTS) + tuple(
-    f"{joint}_power_{{}}" for joint in ("ankle", "knee", "hip")
-)
+NAMES = (*(f"{part}_{{}}_moment" for part in PARTS), *(f"{joint}_power_{{}}" for joint in ("ankle", "knee", "hip")))
 SETS = ("6/20 Hz", "6/6 Hz", "6/20 Hz, distal frame")
 Curves = dict[str, tuple[np.ndarray, np.ndarray]]  # channel -> ours, theirs over one step
 
@@ -26,11 +24,6 @@ class Walk(NamedTuple):
     settings: str
     balance: str
     steps: list[Curves]
-
-    @property
-    def kept_back(self) -> bool:
-        """Whether the person is one of those that nothing was chosen by."""
-        return self.person in KEPT_BACK
 
 
 def rms(ours: np.ndarray, theirs: np.ndarray) -> float:
@@ -47,10 +40,9 @@ def against_plug_in_gait(found: list[Walk]) -> list[tuple[str, ...]]:
         for name in NAMES:
             cells = []
             for kind, only in (("straight", False), ("straight", True), ("turn", False), ("turn", True)):
-                chosen = [w for w in found if w[1:4] == (kind, source, settings) and w.kept_back >= only]
+                chosen = [w for w in found if w[1:4] == (kind, source, settings) and (w.person in HELD_BACK) >= only]
                 errors = [rms(*curves[name]) for walk in chosen for curves in walk.steps]
-                size = f"{np.median(errors):.3f} ({max(errors):.3f}), {len(errors)}" if errors else "-"
-                cells.append(size)
+                cells.append(f"{np.median(errors):.3f} ({max(errors):.3f}), {len(errors)}" if errors else "-")
             rows.append((source, settings, name.replace("_{}", ""), *cells))
     return rows
 

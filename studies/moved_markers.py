@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -38,13 +39,8 @@ def bodies(data: Path) -> list[Body]:
     """Each set on the recording it was worn in, with joints free and held."""
     [person] = people(data, ("HC030A",))
     static, walk, _ = opensim(data)
-    found = []
-    for chosen, joints in (
-        ("plug_in_gait", "free"),
-        ("oxford_foot", "free"),
-        ("gait2354", "free"),
-        ("gait2354", "held"),
-    ):
+    found, worn = [], ("plug_in_gait", "oxford_foot", "gait2354")
+    for chosen, joints in (*((name, "free") for name in worn), ("gait2354", "held")):
         of = (walk, static) if chosen == "gait2354" else (person.walks["straight"], person.static)
         markers, standing = (trial.stream("markers") for trial in of)
         calibration = calibrated(standing, marker_set(chosen).with_joints(joints), person.measures)
@@ -56,12 +52,16 @@ def rigid(markers: gd.Recording, calibration: Calibration) -> gd.Recording:
     """The markers where their segments have them, joints held together so that no segment leaves its joint."""
     held = replace(calibration, marker_set=calibration.marker_set.with_joints("held"))
     poses = motion(markers, held, FORWARD).poses
-    labels = calibration.marker_set.names([name[:-2] for name in markers.names if name.endswith(".x")])
-    values = np.array(markers.values)
+    labels, values = labels_of(calibration, markers), np.array(markers.values)
     for segment, body in calibration.body.items():
         for point in (point for point in body if point not in METHODS and point in labels):
             values[:, columns(markers, labels[point])] = poses[segment].to_laboratory(body[point])
     return markers.with_values(values)
+
+
+def labels_of(calibration: Calibration, markers: gd.Recording) -> Mapping[str, str]:
+    """Label of each point of the set that is among the markers."""
+    return calibration.marker_set.names([name[:-2] for name in markers.names if name.endswith(".x")])
 
 
 def columns(markers: gd.Recording, label: str) -> list[int]:
@@ -71,8 +71,7 @@ def columns(markers: gd.Recording, label: str) -> list[int]:
 
 def slid(body: Body, size_mm: float, random: np.random.Generator) -> gd.Recording:
     """Markers that slide on their segments."""
-    labels = body.calibration.marker_set.names([name[:-2] for name in body.rigid.names if name.endswith(".x")])
-    values = np.array(body.rigid.values)
+    labels, values = labels_of(body.calibration, body.rigid), np.array(body.rigid.values)
 
     def wave() -> np.ndarray:
         harmonics = np.arange(1, 3)[:, None, None] * body.rigid.time[None, :, None] * 2 * np.pi / STRIDE_S
@@ -89,13 +88,10 @@ def slid(body: Body, size_mm: float, random: np.random.Generator) -> gd.Recordin
 
 def lost(body: Body, share: float, random: np.random.Generator) -> gd.Recording:
     """The real markers with a share of samples missing, 0.2 s at a time."""
-    labels = body.calibration.marker_set.names([name[:-2] for name in body.markers.names if name.endswith(".x")])
-    values = np.array(body.markers.values)
-    length = round(LOST_S * body.markers.rate_hz)
-    for label in labels.values():
+    values, length = np.array(body.markers.values), round(LOST_S * body.markers.rate_hz)
+    for label in labels_of(body.calibration, body.markers).values():
         missing = np.zeros(len(values), bool)
         for first in random.integers(0, len(values), random.poisson(share / 100 * len(values) / length)):
             missing[first : first + length] = True
-        for column in columns(body.markers, label):
-            values[missing, column] = np.nan
+        values[np.flatnonzero(missing)[:, None], columns(body.markers, label)] = np.nan
     return body.markers.with_values(values)

@@ -13,6 +13,7 @@ from command_line import QUICK, command_line
 GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 
 import numpy as np
+from markdown_table import markdown_table
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -34,17 +35,14 @@ WALK_S = 240.0
 def run(quick: bool = False) -> NDArray[np.float64]:
     """Walk the pairs, print mean difference and standard error by variable, and return every pair's difference."""
     people, pairs, duration_s = (2, 1, 40.0) if quick else (PEOPLE, PAIRS, WALK_S)
-    found = []
-    for pair in range(pairs):
-        for number in range(people):
-            person = drawn("A", PERSON_SEED + number, "fm"[number % 2]).unadapted()
-            found.append(difference(person, duration_s, WALK_SEED + 1000 * pair + 2 * number))
-    apart = np.array(found)
+    everybody = [drawn("A", PERSON_SEED + number, "fm"[number % 2]).unadapted() for number in range(people)]
+    seeds = [WALK_SEED + 1000 * pair for pair in range(pairs)]
+    apart = np.array([difference(one, duration_s, s + 2 * k) for s in seeds for k, one in enumerate(everybody)])
     error = apart.std(axis=0, ddof=1) / np.sqrt(len(apart))
     print(f"{len(apart)} pairs of walks of {duration_s:.0f} s, {people} people; ridge with phase harmonics\n")
-    print("| |", " | ".join(OUTPUTS), "|\n|---|" + "---|" * len(OUTPUTS))
-    for name, row in (("difference", apart.mean(axis=0)), ("standard error", error)):
-        print(f"| {name} |", " | ".join(f"{value:+.4f}" if row is not error else f"{value:.4f}" for value in row), "|")
+    rows = [("difference", *map("{:+.4f}".format, apart.mean(axis=0)))]
+    rows.append(("standard error", *map("{:.4f}".format, error)))
+    print(markdown_table(" | ".join(("", *OUTPUTS)), rows))
     return apart
 
 
@@ -57,12 +55,9 @@ def difference(person: Person, duration_s: float, seed: int) -> NDArray[np.float
 
 
 def _parts(person: Person, device: Spring | None, duration_s: float, seed: int) -> tuple[gd.Samples, gd.Samples]:
-    study = Study(
-        conditions=Conditions(nominal="nominal", device="exo"),
-        participants=(Participant(id="A"),),
-        models=Models(emg=EMG, outputs=OUTPUTS),
-        quality=Quality(late_change="report"),
-    )
+    both, models = Conditions(nominal="nominal", device="exo"), Models(emg=EMG, outputs=OUTPUTS)
+    settled = Quality(late_change="report")
+    study = Study(conditions=both, participants=(Participant(id="A"),), models=models, quality=settled)
     walk = processed(measured(walked(person, device, duration_s, seed), "walk", "nominal"), study).trajectory
     training, held_out = held_out_part(walk, ResponseSettings(OUTPUTS))
     return gait_samples(training, OUTPUTS)[0], gait_samples(held_out, OUTPUTS)[0]

@@ -9,18 +9,17 @@ there is a static trial, `moments`. Found: a new warning or refusal (or a note t
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import QUICK, RECORDINGS, argument, command_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("data", "folder of the real recordings", SHARED),
-    argument("--only", "only faults whose name has this word", type=str, default=""),
-    argument("--held-back", "cases in files that nothing was set on", False),
-    QUICK,
-)  # before the slow imports
+ONLY = argument("--only", "only faults whose name has this word", "")
+HELD_BACK = argument("--held-back", "cases in files that nothing was set on", False)
+GIVEN = command_line(__name__, __doc__, RECORDINGS, ONLY, HELD_BACK, QUICK)  # before the slow imports
 
+import contextlib
+import io
 import re
+import shutil
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -28,7 +27,13 @@ from typing import NamedTuple
 from fault_cases import cases, held_back
 from faults_of_meaning import Case
 from markdown_table import markdown_table
-from said_of_files import said_of
+
+import gaitdisc as gd
+from gaitdisc.commands.moments import moments
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
+from gaitdisc.processing.inspection import inspected_study
+
+TURNED_BACK = ("knee sign", "per body mass")  # notes that say that the reader set a fault right
 
 ALARM = re.compile(
     r"swapped|exchanged|mirrored|looks? like|another person|another shape|states? (degrees|radians)|per kg of body "
@@ -44,6 +49,32 @@ class Outcome(NamedTuple):
     said: list[str]
 
 
+def said_of(case: Case, planted: bool = True) -> list[str]:
+    """Warnings, refusals and notes of what was turned back, by `check` and, with a static trial, by `moments`."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, text, lines = Path(name), io.StringIO(), []
+        for file, source in case.files.items():
+            shutil.copyfile(source, folder / file)
+        if planted:
+            case.plant(folder)
+        walk = [file for file in case.files if not file.startswith("static")]
+        static = [file for file in case.files if file.startswith("static")]
+        trials = [PlannedTrial(condition="walking", files=tuple(walk), crop_s=case.crop_s)]
+        trials += [PlannedTrial(condition="static", files=(one,)) for one in static]
+        person, few = Participant(id="P01", trials=tuple(trials)), Quality(min_strides=1)
+        study = Study(conditions=Conditions(nominal="walking"), participants=(person,), quality=few)
+        for seen in inspected_study(study.placed(folder)):
+            lines += [seen.refusal] * bool(seen.refusal)
+            lines += [f.line() for f in seen.findings if f.severity != "note" or f.kind in TURNED_BACK]
+        for one in static:
+            with contextlib.redirect_stdout(text):
+                try:
+                    moments([folder / file for file in walk], folder / one, folder / "moments.mot", None)
+                except gd.GaitdiscError as error:
+                    text.write(f"warning: {error}\n")
+        return lines + [one for one in text.getvalue().splitlines() if one.startswith("warning") or "plate step" in one]
+
+
 def outcomes(data: Path, only: str = "", quick: bool = False, kept: bool = False) -> tuple[list[Outcome], list[str]]:
     """Every case, those held back where they are wanted, and the alarms of the same walks untouched."""
     clean: dict[tuple[Path, ...], set[str]] = {}
@@ -54,14 +85,11 @@ def outcomes(data: Path, only: str = "", quick: bool = False, kept: bool = False
         key = tuple(case.files.values())
         if key not in clean:
             clean[key] = set(said_of(case, planted=False))
-            alarms += [f"{case.name}: {line}" for line in clean[key] if _alarm(line)]
+            said = (line for line in clean[key] if ALARM.search(line) and not line.startswith("note"))
+            alarms += [f"{case.name}: {line}" for line in said]
         said = [line for line in said_of(case) if line not in clean[key]]
         found.append(Outcome(case, any(re.search(case.words, line) for line in said), said))
     return found, alarms
-
-
-def _alarm(line: str) -> bool:
-    return ALARM.search(line) is not None and not line.startswith("note")
 
 
 def table(found: Sequence[Outcome]) -> list[tuple[str | int, ...]]:
@@ -75,8 +103,7 @@ def table(found: Sequence[Outcome]) -> list[tuple[str | int, ...]]:
     return [*rows, ("all", *(sum(int(row[i]) for row in rows) for i in range(1, 5)))]
 
 
-def main() -> None:
-    """Print the table, the false alarms and what was missed."""
+if __name__ == "__main__":
     found, alarms = outcomes(GIVEN.data, GIVEN.only, GIVEN.quick, GIVEN.held_back)
     print(markdown_table("fault | n | found | other words | not found", table(found)))
     walks = len({tuple(one.case.files.values()) for one in found})
@@ -84,7 +111,3 @@ def main() -> None:
     for one in found:
         if not one.found:
             print(f"missed: {one.case.fault}, {one.case.name}: {one.said[0][:220] if one.said else 'nothing said'}")
-
-
-if __name__ == "__main__":
-    main()

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from plug_in_gait_bones import static_file
 
 import gaitdisc as gd
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
+from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.recording.body_measures import BodyMeasures
 
@@ -43,8 +44,7 @@ def people(data: Path, names: tuple[str, ...]) -> list[Person]:
     found = []
     with gd.C3DReader() as reader:
         for name in names:
-            walks = data / "gait" / "young_straight_and_turn" / name
-            [static] = [*(data / "gait" / "young_static").glob(f"{name}/*.c3d"), *walks.glob("static/*.c3d")]
+            walks, static = data / "gait" / "young_straight_and_turn" / name, static_file(data / "gait", name)
             trials = {kind: gd.read(next(walks.glob(f"{kind}/*.c3d")), reader=reader) for kind in ("straight", "turn")}
             found.append(Person(name, gd.read(static, reader=reader), trials, read_body_measures(static)))
     return found
@@ -66,15 +66,14 @@ def theirs(trial: gd.Trial, ours: str) -> np.ndarray:
     return angles[ours] if ours in angles.names else angles[label]
 
 
-def named_set(name: str) -> MarkerSet:
-    """A set that comes along; `plug_in_gait, harrington` has Harrington's hips in place of Plug-in Gait's own."""
-    plain, _, hip = name.partition(", ")
-    return marker_set(plain).with_hip(hip) if hip else marker_set(plain)
-
-
 def curves(person: Person, chosen: str, kind: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Ours and theirs over a walk; joint angles without the difference of the static trial."""
-    calibration = calibrated(person.static.stream("markers"), named_set(chosen), person.measures)
+    """Ours and theirs over a walk; joint angles without the difference of the static trial.
+
+    chosen: a set that comes along; `plug_in_gait, harrington` has Harrington's hips in place of Plug-in Gait's own
+    """
+    plain, _, hip = chosen.partition(", ")
+    worn = marker_set(plain).with_hip(hip) if hip else marker_set(plain)
+    calibration = calibrated(person.static.stream("markers"), worn, person.measures)
     walk, markers = person.walks[kind], person.walks[kind].stream("markers")
     forward = nearest_axis(motion(markers, calibration).walking.rotation[0, :, 0])
     ours = motion(markers, calibration, forward).angles

@@ -9,10 +9,9 @@ that the plates saw. Differences are found minus the file's own [ms].
 
 from __future__ import annotations
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import GAIT, QUICK, command_line
 
-DATA = argument("data", "folder of the real gait recordings", SHARED / "gait")
-GIVEN = command_line(__name__, __doc__, DATA, QUICK)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, GAIT, QUICK)  # before the slow imports
 
 import time
 from collections.abc import Sequence
@@ -75,14 +74,11 @@ def counts(found: Sequence[gd.PooledCycles]) -> list[tuple[str, str]]:
     emg = 0
     for one in kept:
         feet = one.kept["side"].to_numpy()
-        for column, channel in enumerate(one.channels):
-            if channel.quantity == "emg":
-                emg += int(np.isfinite(one.curves[feet == channel.side, :, column]).all(axis=1).sum())
+        for column, channel in ((k, each) for k, each in enumerate(one.channels) if each.quantity == "emg"):
+            emg += int(np.isfinite(one.curves[feet == channel.side, :, column]).all(axis=1).sum())
+    both = sum(min(map(one.counted, "lr")) > 0 for one in kept)
     return [
-        (
-            "walks with a kept cycle of each foot",
-            f"{sum(min(map(one.counted, 'lr')) > 0 for one in kept)} of {len(found)}",
-        ),
+        ("walks with a kept cycle of each foot", f"{both} of {len(found)}"),
         ("cycles kept", str(sum(len(one.kept) for one in kept))),
         ("cycles left out", str(sum(len(one.left_out) for one in found))),
         ("cycles on a plate", str(sum(int(one.kept["kinetic"].sum()) for one in kept))),
@@ -102,18 +98,11 @@ def against_events(found: Sequence[gd.PooledCycles], trials: dict[str, gd.Trial]
     return rows
 
 
-def main(data: Path, quick: bool = False) -> None:
-    """Print both tables and the time they took."""
-    study = study_of(data, quick)
-    began = time.perf_counter()
+if __name__ == "__main__":
+    study, began = study_of(GIVEN.data, GIVEN.quick), time.perf_counter()
     found, _ = pooled(study)
     seconds = time.perf_counter() - began
-    for row in counts(found):
+    for row in (*counts(found), ("from files to cycles", f"{seconds:.1f} s")):
         print(*row, sep=": ")
-    print(f"from files to cycles: {seconds:.1f} s")
     for row in against_events(*pooled(study, withhold=True)):
         print(*row, sep=": ")
-
-
-if __name__ == "__main__":
-    main(GIVEN.data, GIVEN.quick)

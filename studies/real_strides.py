@@ -8,11 +8,9 @@ GAITDISC_DATA/gait. Each row is a promise and what was found.
 
 from __future__ import annotations
 
-from command_line import SHARED, argument, command_line
+from command_line import GAIT, command_line
 
-GIVEN = command_line(
-    __name__, __doc__, argument("data", "folder of the real gait recordings", SHARED / "gait")
-)  # before the slow imports
+GIVEN = command_line(__name__, __doc__, GAIT)  # before the slow imports
 
 from pathlib import Path
 
@@ -31,11 +29,8 @@ WALKING_STRIDES, HIP_LIMIT_DEG = 221, -29.9
 
 def run(data: Path) -> list[Row]:
     """Every row."""
-    return [
-        *exotendon(data / "exotendon_run"),
-        *treadmill_angles(data / "treadmill_walk_ik"),
-        *treadmill_c3d(data / "treadmill_c3d_emg"),
-    ]
+    angles = treadmill_angles(data / "treadmill_walk_ik")
+    return [*exotendon(data / "exotendon_run"), *angles, *treadmill_c3d(data / "treadmill_c3d_emg")]
 
 
 def exotendon(folder: Path) -> list[Row]:
@@ -44,9 +39,8 @@ def exotendon(folder: Path) -> list[Row]:
     for word, count in RUNNING_STRIDES.items():
         [file] = [path for path in folder.rglob("*.mot") if word in path.name]
         strides = right_strides(gd.read(file).stream("kinematics"))
-        rows.append(
-            (f"exotendon_run/{word}", f"{count} strides, +-1", f"{len(strides)}, {len(strides.dropped)} dropped")
-        )
+        found = f"{len(strides)}, {len(strides.dropped)} dropped"
+        rows.append((f"exotendon_run/{word}", f"{count} strides, +-1", found))
     return rows
 
 
@@ -55,10 +49,11 @@ def treadmill_angles(folder: Path) -> list[Row]:
     stored = np.load(folder / "addbio_expert3_ik.npz")
     names = [str(name) for name in stored["columns"]]
     kept = dropped = with_plateau = 0
-    limits, refused = [], []
+    limits, refused, walks = [], [], {"S01DN603": gd.read(folder / "S01DN603_ik.mot").stream("kinematics")}
     for trial in sorted(key for key in stored.files if key.startswith("S01DE")):
         table = pd.DataFrame(np.asarray(stored[trial], float), columns=pd.Index(names))
-        kinematics = gd.read(table.assign(time=np.arange(len(table)) / 100.0)).stream("kinematics")
+        walks[trial] = gd.read(table.assign(time=np.arange(len(table)) / 100.0)).stream("kinematics")
+    for trial, kinematics in sorted(walks.items()):
         try:
             strides = right_strides(kinematics)
             verify_walking(kinematics, strides)
@@ -69,22 +64,11 @@ def treadmill_angles(folder: Path) -> list[Row]:
         found = [p for p in plateaus(kinematics) if p.channel in ("hip_flexion_r", "hip_flexion_l")]
         with_plateau += len(found) > 0
         limits += [p.limit for p in found]
-    try:
-        kinematics = gd.read(folder / "S01DN603_ik.mot").stream("kinematics")
-        verify_walking(kinematics, right_strides(kinematics))
-    except gd.GaitdiscError as error:
-        refused.append(f"S01DN603: {error.found.split(': ', 1)[-1]}")
+    walks, strides = "treadmill_walk_ik, 12 walks", f"{kept} kept + {dropped} dropped = {kept + dropped}"
+    plateau = f"in {with_plateau} walks, at {min(limits):.1f} to {max(limits):.1f} deg"
     return [
-        (
-            "treadmill_walk_ik, 12 walks",
-            f"{WALKING_STRIDES} strides, +-1 %",
-            f"{kept} kept + {dropped} dropped = {kept + dropped}",
-        ),
-        (
-            "treadmill_walk_ik, 12 walks",
-            f"hip plateau at {HIP_LIMIT_DEG} deg",
-            f"in {with_plateau} walks, at {min(limits):.1f} to {max(limits):.1f} deg",
-        ),
+        (walks, f"{WALKING_STRIDES} strides, +-1 %", strides),
+        (walks, f"hip plateau at {HIP_LIMIT_DEG} deg", plateau),
         ("treadmill_walk_ik, 2 calibrations", "refused as walking", "; ".join(refused)),
     ]
 
@@ -92,10 +76,8 @@ def treadmill_angles(folder: Path) -> list[Row]:
 def treadmill_c3d(folder: Path) -> list[Row]:
     """EMG channels kept apart; strides from belts whose force chatters."""
     trial = gd.read(folder / "walking_1.c3d")
-    emg = trial.stream("emg")
-    strides = {side: len(gd.cycles(trial, side, "force")) for side in "rl"}
-    envelopes = gd.envelope(emg)
-    peaks = 1e3 * np.nanmax(envelopes.values, axis=0)
+    emg, strides = trial.stream("emg"), {side: len(gd.cycles(trial, side, "force")) for side in "rl"}
+    peaks = 1e3 * np.nanmax(gd.envelope(emg).values, axis=0)
     return [
         ("treadmill_c3d_emg", "16 EMG channels apart", f"{len(set(emg.names))}: {emg.names[0]} to {emg.names[-1]}"),
         ("treadmill_c3d_emg", "envelopes", f"{len(peaks)}, peaks from {peaks.min():.1f} to {peaks.max():.1f} mV"),
@@ -108,10 +90,5 @@ def right_strides(kinematics: gd.Recording) -> gd.Strides:
     return gd.cycles(kinematics, "r", "angles", kinematics)
 
 
-def main() -> None:
-    """Print the rows."""
-    print(markdown_table("recordings | promise | found", run(GIVEN.data)))
-
-
 if __name__ == "__main__":
-    main()
+    print(markdown_table("recordings | promise | found", run(GIVEN.data)))

@@ -2,17 +2,50 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
+from gaitdisc.ingest import array_file, c3d, hdf5, reader_process
+
 # An example may take as long as it does: no test rests on how busy this machine is.
-settings.register_profile("no clock", deadline=None)
-settings.load_profile("no clock")
+# By default few are drawn; `make elsewhere` draws as many as hypothesis does.
+settings.register_profile("few", deadline=None, max_examples=30)
+settings.register_profile("many", deadline=None)
+settings.load_profile("few")
 
 PROJECT = Path(__file__).parents[1]
+
+
+def pytest_collection_finish():
+    """Look for garbage seldom, and never in what was imported: else a tenth of the time goes there."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
+
+
+class _LastingReader(reader_process.ReaderProcess):
+    def close(self) -> None:
+        """The next test reads with it too."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_reader_for_all_files():
+    """To start a process takes longer than to read most files; another program or folder gets its own."""
+    started, lasting = reader_process.ReaderProcess, _LastingReader()
+    usual = reader_process.WORKER, Path.cwd()
+
+    def given():
+        return lasting if usual == (reader_process.WORKER, Path.cwd()) else started()
+
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (array_file, c3d, hdf5):
+            patch.setattr(module, "ReaderProcess", given)
+        yield
+    started.close(lasting)
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ import re
 
 import pytest
 from numpydoc.docscrape import FunctionDoc
+from texts import says
 
 import gaitdisc
 
@@ -125,10 +126,10 @@ def test_a_line_in_place_of_a_section_names_a_real_parameter_too():
         length (leg, 3) [m]: of the leg
         """
 
-    assert _with_other_parameters({"right": right}) == [
-        "right: documented ['time', 'length_m'], signature ['length_m', 'time']"
-    ]
-    assert _with_other_parameters({"wrong": wrong}) == ["wrong: documented ['length'], signature ['length_m']"]
+    [said] = _with_other_parameters({"right": right})
+    assert says(said, "right", "['time', 'length_m']", "['length_m', 'time']")
+    [said] = _with_other_parameters({"wrong": wrong})
+    assert says(said, "wrong", "['length']", "['length_m']")
 
 
 def test_a_docstring_that_names_another_parameter_is_found():

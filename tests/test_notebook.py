@@ -2,6 +2,7 @@
 
 import numpy as np
 from manufactured_discovery import manufactured
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.notebook import html_of
@@ -23,7 +24,7 @@ def made(channels=2):
 
 
 def test_a_recording_is_one_line_and_a_table_of_ranges():
-    assert repr(made()) == "Recording(2 channels (c0, c1), 5 samples at 100 Hz)"
+    assert says(repr(made()), "Recording(2 channels (c0, c1)", "5 samples", "100 Hz)")
     page = made(14)._repr_html_()
     assert "<th>c0</th><td>1 to 4 [V]</td>" in page and "and 2 more" in page and "&lt;walk&gt;.csv" in page
 
@@ -36,15 +37,13 @@ def test_a_recording_without_samples_or_values_is_shown_too():
 
 def test_strides_say_how_many_and_what_was_dropped():
     strides = Strides(np.array([0.0, 1.0]), np.array([1.0, 2.2]), "r", "force", (DroppedStride(2.2, 9.0, "too long"),))
-    assert repr(strides) == "Strides(2 of side 'r' by force, 0.00 to 2.20 s; 1 dropped)"
+    assert says(repr(strides), "Strides(2", "'r' by force", "0.00 to 2.20 s", "1 dropped)")
     assert "1.00 to 1.20 s" in strides._repr_html_() and "too long" in strides._repr_html_()
-    assert repr(Strides(np.empty(0), np.empty(0), "l", "force")) == "Strides(0 of side 'l' by force; 0 dropped)"
+    assert says(repr(Strides(np.empty(0), np.empty(0), "l", "force")), "Strides(0", "'l' by force", "0 dropped)")
 
 
 def test_a_trial_and_a_discovery_are_one_line():
-    assert repr(Trial("walk", {"emg": made()})) == "Trial('walk': emg 2 at 100 Hz; 0 events, 0 findings)"
+    assert says(repr(Trial("walk", {"emg": made()})), "Trial('walk'", "emg 2", "100 Hz", "0 events, 0 findings)")
     found = manufactured()
-    assert (
-        repr(found) == "Discovery(missing_physics: The simulation lacks a one-sided spring at the ankle_moment port.)"
-    )
-    assert "stiffness 286 (279 to 293) N m/rad" in found._repr_html_()
+    assert says(repr(found), "Discovery(missing_physics", "one-sided spring", "ankle_moment port.)")
+    assert says(found._repr_html_(), "stiffness 286", "279 to 293", "N m/rad")

@@ -22,27 +22,11 @@ from gaitdisc.ingest.table import write_table
 
 pytestmark = pytest.mark.usefixtures("trained_briefly")
 # each is planted in one kind of place, and told from the others if it is found
-TOKENS = (
-    "Zqfolder",
-    "Zqperson",
-    "Zqfile",
-    "Zqheader",
-    "Zqcolumn",
-    "Zqsubject",
-    "Zqmaker",
-    "Zqdescribed",
-    "Zqanalog",
-    "Zqpoint",
-    "Zqevent",
-    "Zqgroup",
-    "Zqtrc",
-    "Zqmarker",
-    "Zqcomment",
-    "Zqcsv",
-    "Zqmeta",
-    "Zqbroken",
-    "Zqhome",
-)
+PLACES = """
+folder person file header column subject maker described analog point
+event group trc marker comment csv meta broken home
+"""
+TOKENS = tuple(f"Zq{place}" for place in PLACES.split())
 OF_A_CLINIC = ("Zqward", "Zqname", "1987-06-05", "19870605", "Zqcontrols")  # fmt: skip
 ANGLES = [f"{joint}_{side}" for side in "rl" for joint in ("hip_flexion", "knee_angle", "ankle_angle")]
 
@@ -255,6 +239,7 @@ def test_what_is_made_of_a_run_holds_none_of_them(study):
     assert found_in(study) == {}
 
 
+@pytest.mark.usefixtures("painted")
 def test_a_comparison_holds_none_of_them(study, recordings, tmp_path):
     for what in (
         [study, "--participant", "P01"],

@@ -99,19 +99,17 @@ def test_the_limits_are_met_to_the_byte(tmp_path):
 @linux
 def test_check_of_a_pipe_ends_with_a_refusal(tmp_path):
     """As a user meets it: the command in a process of its own, which a pipe would hold for ever."""
-    paths = [tmp_path / "x.c3d", tmp_path / "x.mot"]
-    for path in paths:
-        os.mkfifo(path)
-        done = subprocess.run(
-            [sys.executable, "-m", "gaitdisc", "check", str(path), "--json"],
-            capture_output=True,
-            text=True,
-            timeout=600,  # a pipe would hold it for ever
-            check=False,
-            cwd=Path(__file__).parents[1],
-        )
-        (seen,) = json.loads(done.stdout)
-        assert seen["light"] == "red" and f"{path.name} is a named pipe" in seen["refusal"]
+    os.mkfifo(tmp_path / "x.c3d")
+    done = subprocess.run(
+        [sys.executable, "-m", "gaitdisc", "check", str(tmp_path / "x.c3d"), "--json"],
+        capture_output=True,
+        text=True,
+        timeout=600,  # a pipe would hold it for ever
+        check=False,
+        cwd=Path(__file__).parents[1],
+    )
+    (seen,) = json.loads(done.stdout)
+    assert seen["light"] == "red" and "x.c3d is a named pipe" in seen["refusal"]
 
 
 @pytest.mark.parametrize("ending", [".c3d", ".mot", ".csv", ".mat", ".npz", ".parquet"])

@@ -21,13 +21,14 @@ from gaitdisc.batch.tracked_pass import (
     refuse_other_motion,
     tracked_pass,
 )
-from gaitdisc.discovery.catalogue import read_catalogue
+from gaitdisc.discovery.catalogue import ALL, Asked
 from gaitdisc.discovery.prescribed import JointFinding
 from gaitdisc.engines.mapping import drafted
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_files import TrackedMotion
 from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
 from gaitdisc.engines.written import WrittenModel, written_model
+from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import TRACKED, Discovery
@@ -56,17 +57,23 @@ class TrackedAnswer:
 def discover_tracked(
     tracked: Tracked,
     kinematics: Path,
-    catalogue: Path | None = None,
+    asked: Asked = ALL,
     progress: Callable[[str], None] = lambda _: None,
 ) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
+    if asked.effects:
+        raise SchemaError(
+            "effects are given for a simulation, a function or a model that runs forward",
+            f"{kinematics.name} is a walk that is tracked",
+            "Leave the effects out: each joint is searched.",
+        )
     progress(f"reading {kinematics.name} and the forces")
     walk = tracked_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
     progress("computing what noise of the angles makes of them")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, angle_noise, read_catalogue(catalogue) if catalogue else (), progress)
+    base, joints = joints_of(walk, angle_noise, asked.shapes, progress)
     found = discovery_of(base, joints)
     progress("writing it into the model")
     augmented = _augmented(engine, found)

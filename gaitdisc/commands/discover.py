@@ -21,7 +21,7 @@ EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
 
 
-def discover(
+def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     simulation: Annotated[
         Path,
         typer.Argument(
@@ -40,6 +40,9 @@ def discover(
         ),
     ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
+    effects: Annotated[
+        str, typer.Option(help="Search nothing: fit exactly these, effect@place, with commas between them.")
+    ] = "",
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
     quiet: Quiet = False,
 ) -> None:
@@ -60,9 +63,11 @@ def discover(
             typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
 
     from gaitdisc.batch.discover_files import discover_files, discover_study
+    from gaitdisc.discovery.catalogue import Asked
     from gaitdisc.engines.mapping import names_engine
     from gaitdisc.simulation.writing import write_simulation
 
+    asked = Asked.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()))
     if measured is not None and names_engine(simulation):
         from gaitdisc.batch.discover_engine import discover_model_file, write_answer
         from gaitdisc.engines.tracked_mapping import read_tracked
@@ -71,11 +76,11 @@ def discover(
         if walk is not None:
             from gaitdisc.batch.discover_tracked import discover_tracked, write_tracked
 
-            answered = discover_tracked(walk, measured, catalogue, progress)
+            answered = discover_tracked(walk, measured, asked, progress)
             said = (*answered.written.notes, *answered.said)
             _write(answered.found, out, draw, progress, lambda: write_tracked(answered, out), said)
             return
-        answer = discover_model_file(simulation, measured, catalogue, progress)
+        answer = discover_model_file(simulation, measured, asked, progress)
         said = (*answer.written.notes, answer.runs.said)
         _write(answer.found, out, draw, progress, lambda: write_answer(answer, out), said)
         return
@@ -84,13 +89,13 @@ def discover(
         _write(found, folder, draw, progress, lambda: [write_simulation(augmented, folder / "augmented.toml").name])
 
     if measured is not None:
-        with_model(*discover_files(simulation, measured, catalogue, progress), out)
+        with_model(*discover_files(simulation, measured, asked, progress), out)
         return
     whose, _, joint = participant.partition(":")
 
     def discovered(person: str, folder: Path) -> Discovery:
         claim_folder(folder, *FILES)
-        found, augmented = discover_study(simulation, person, catalogue, progress, joint or ANKLE)
+        found, augmented = discover_study(simulation, person, asked, progress, joint or ANKLE)
         with_model(found, augmented, folder)
         return found
 

@@ -6,13 +6,14 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
-from gaitdisc.discovery.corrections import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
-from gaitdisc.discovery.estimates import estimates_of
-from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
+from gaitdisc.discovery.estimates import NORMAL_95, estimates_of
+from gaitdisc.discovery.held_out import Proof, Trial, drawn_runs, gap_size, grows_along_runs, proof_of, runs_of, tested
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.problem import Problem
@@ -22,11 +23,14 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.discovery.wrong_start import begun_at
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.results.discovery import Account, Correction, Discovery, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.results.effect_words import amount, spoken, with_unit
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 HALF = 0.5
+MOST_ACCOUNTS = 5
+DRAWN = 200  # samples of a run
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
 
 
@@ -47,24 +51,35 @@ def answer(
     before, after = (runs_of(problem, one, problem.learned, now) for one in (as_read, now))
     train = gap_size(before, after, floor, channels, tested(problem, before, after, now))
     held = proof if proof and now.model.parts else proof_of(problem, as_read, now, now)
-    held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
+    of = f"trial {', '.join(problem.measured.trials[one] for one in problem.held_out)}"
+    held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
     gained = bic_gain(problem.search, now)
+    rivals = rivals_of(problem.search, now, verdict.rivals, gained)
     stated = replace(verdict, found=replace(now, model=refitted(now)))
     parts, moved = stated.found.model.parts, corrections_of(stated.found.model, base)
     effects = effects_of(problem, stated, 1 - held_out.unexplained, gained)
+    if verdict.given:
+        effects = tuple(replace(one, small=idle) for one, idle in zip(effects, verdict.given, strict=True))
+    named = (Account(effects, held_out, *first_run(problem, held.after, held_out)),) if effects else ()
+    agrees = verdict.word != "no_gap" or not grows_along_runs(problem, as_read)
     discovery = Discovery(
-        verdict.word,
+        verdict.word if agrees else "unexplained",
         "",
-        whereabouts(problem, stated, train),
+        whereabouts(problem, stated, train) if effects or not agrees else (),
         effects,
-        (*reported_rivals(problem, rivals_of(problem.search, now, verdict.rivals, gained)), *small_ones(verdict.small)),
+        (
+            *(reported_rival(problem, one) for one in rivals if one.part.candidate.label not in now.labels),
+            *small_ones(verdict.small),
+        ),
         train,
         held_out,
         channels,
         units_of(problem),
         drawn_runs(problem, held.before, held.after),
-        (*problem.measured.findings, *nearly_off(effects, problem.measured.source)),
+        (*problem.measured.findings, *nearly_off(effects, problem.measured.source), *exact_inputs(problem, now)),
         corrections=moved,
+        accounts=(*named, *accounts_of(problem, verdict, held, held_out, rivals))[:MOST_ACCOUNTS],
+        given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
     augmented = begun_at(augmented_of(corrected(base, moved), parts), verdict.starts)
     said = sentence_of(discovery, base, parts)
@@ -128,24 +143,45 @@ def found_effects(problem: Problem, now: ScoredModel, closed: float, gained: flo
     return found
 
 
-def reported_rivals(problem: Problem, rivals: tuple[Rival, ...]) -> tuple[FoundEffect, ...]:
-    """List what else was weighed, with its numbers."""
-    listed = []
-    for rival in rivals:
-        candidate, model = rival.part.candidate, rival.scored.model
-        estimates = estimates_of(model, len(model.parts) - 1, problem.search.base)
-        place = (candidate.kind, candidate.place, candidate.name)
-        listed.append(
-            FoundEffect(
-                *place,
-                "",
-                estimates,
-                bic=rival.gained,
-                tied=rival.tied,
-                bounds=file_bounds(problem.search.base, candidate),
-            )
-        )
-    return tuple(listed)
+def reported_rival(problem: Problem, rival: Rival, part: int = -1) -> FoundEffect:
+    """Say one of a rival's explanations, the last by default, with its numbers."""
+    candidate, model = rival.scored.model.parts[part].candidate, rival.scored.model
+    return FoundEffect(
+        candidate.kind,
+        candidate.place,
+        candidate.name,
+        "",
+        estimates_of(model, part % len(model.parts), problem.search.base),
+        bic=rival.gained,
+        tied=rival.tied,
+        bounds=file_bounds(problem.search.base, candidate),
+    )
+
+
+def accounts_of(
+    problem: Problem, verdict: Verdict, held: Proof, size: GapSize, rivals: tuple[Rival, ...]
+) -> list[Account]:
+    """List what else was weighed by what it leaves of the held-out data, the least first.
+
+    held, size: held-out runs of the simulation as read and of what was found, and their gap
+    """
+    found: list[tuple[float, Account]] = []
+    for one in rivals:
+        after = runs_of(problem, one.scored, problem.held_out, verdict.found)
+        effects = tuple(reported_rival(problem, one, number) for number in range(len(one.scored.model.parts)))
+        floor = np.array([floor for _, _, floor in size.channels.values()])
+        test = tested(problem, held.before, after, verdict.found)
+        left = gap_size(held.before, after, floor, tuple(size.channels), test)
+        account = Account(effects, replace(left, of=size.of), *first_run(problem, after, size))
+        found.append((float(np.nan_to_num(left.after, nan=np.inf)), account))
+    return [account for _, account in sorted(found, key=lambda one: one[0])]
+
+
+def first_run(problem: Problem, after: Trial, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return times [s] of the first held-out run, and measured minus run of the channel with the largest gap."""
+    left = after.fit.residual[0, :DRAWN, [*size.channels].index(size.ranked[0])]
+    time = after.segments.samples[0, after.segments.compared][:DRAWN] / problem.measured.rate
+    return tuple(time.tolist()), tuple(left.tolist())
 
 
 def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
@@ -166,6 +202,9 @@ def whereabouts(problem: Problem, verdict: Verdict, train: GapSize) -> tuple[Whe
     if verdict.starts:
         return tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
     now = verdict.found
+    if not now.model.parts:
+        firsts = [one.model.parts[0].candidate for one in verdict.rivals[:1] if one.model.parts]
+        return tuple(Whereabouts(one.kind, one.place, float("nan")) for one in firsts)
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     return tuple(
         Whereabouts(
@@ -179,26 +218,56 @@ def whereabouts(problem: Problem, verdict: Verdict, train: GapSize) -> tuple[Whe
     )
 
 
+def push_along(problem: Problem, now: ScoredModel, part: Part) -> NDArray[np.float64] | None:
+    """Return how strongly an effect acts along the runs that were fitted (run, sample) [the place's unit].
+
+    returns: None of what is no term, and of one that comes late
+    """
+    term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
+    if part.candidate.verdict != "missing_physics" or "delay(" in term:
+        return None
+    segments, drive, fit = now.shooting.segments, problem.measured.drive, now.model.fit
+    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
+    # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
+    runs = [
+        Points(*one, fit.values, rate=drive.rate)
+        for one in zip(time, fit.states, segments.of(drive.inputs), strict=True)
+    ]
+    return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
+
+
 def phase_of(problem: Problem, now: ScoredModel, part: Part) -> tuple[float, ...]:
     """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
     names = [one.name for one in problem.search.base.inputs]
-    if "phase" not in names or part.candidate.verdict != "missing_physics":
+    push = push_along(problem, now, part) if "phase" in names else None
+    if push is None:
         return ()
-    term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
-    if "delay(" in term:
-        return ()
-    segments, drive, fit = now.shooting.segments, problem.measured.drive, now.model.fit
-    inputs = segments.of(drive.inputs)
-    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
-    # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
-    runs = [Points(*one, fit.values, rate=drive.rate) for one in zip(time, fit.states, inputs, strict=True)]
-    push = np.abs(np.concatenate([evaluate(now.model.simulation, term, run) for run in runs]))
-    inputs = inputs.reshape(-1, len(names))
-    phase = inputs[:, names.index("phase")]
+    phase = now.shooting.segments.of(problem.measured.drive.inputs)[:, :, names.index("phase")].ravel()
     bins = np.minimum((phase * 100).astype(int), 99)
-    mean = np.bincount(bins, push, 100) / np.maximum(np.bincount(bins, minlength=100), 1)
+    mean = np.bincount(bins, push.ravel(), 100) / np.maximum(np.bincount(bins, minlength=100), 1)
     strong = np.flatnonzero(mean > HALF * mean.max())
     return (float(strong[0] / 100), float((strong[-1] + 1) / 100)) if strong.size else ()
+
+
+def exact_inputs(problem: Problem, now: ScoredModel) -> tuple[Finding, ...]:
+    """Say how large an error of the inputs would explain a missing term as well: they were taken as exact."""
+    base, found = problem.search.base, []
+    for part in now.model.parts:
+        push, candidate = push_along(problem, now, part), part.candidate
+        if push is None:
+            continue
+        unit = places_unit(base, candidate.kind, candidate.place)
+        like = [repr(one.name) for one in base.driving if one.unit == unit]
+        if like:
+            size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
+            what = (
+                f"an error of {' or '.join(like)} in step with the {spoken(candidate.name)}, {size} (rms), "
+                "would explain it as well: inputs were taken as exact"
+            )
+            found.append(
+                Finding("note", "exact inputs", problem.measured.source, what, "the name, if an input errs so")
+            )
+    return tuple(found)
 
 
 def region_of(part: Part) -> str:
@@ -216,3 +285,31 @@ def units_of(problem: Problem) -> tuple[str, ...]:
     """Return the units of the observed channels."""
     base = problem.search.base
     return tuple(unit_of_channel(base, name) for name, _ in base.observations)
+
+
+def corrections_of(model: CandidateModel, base: Simulation) -> tuple[Correction, ...]:
+    """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
+    prior, free = model.fit.prior, model.fit.free
+    error = np.sqrt(np.diag(model.fit.covariance))
+    units, found = {one.name: one.unit for one in base.parameters}, []
+    for name, place, given, low, high in zip(
+        prior.names, prior.places, prior.value, prior.low, prior.high, strict=True
+    ):
+        value, half = float(f"{model.fit.values[place]:.6g}"), NORMAL_95 * float(error[free.index(name)])
+        if value != float(f"{given:.6g}"):
+            interval = max(value - half, float(low)), min(value + half, float(high))
+            found.append(Correction(name, float(given), Estimate(value, *interval, units[name])))
+    return tuple(found)
+
+
+def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:
+    """Return the bounds that the file gives a wrong parameter, infinite where it has but one."""
+    for one in base.parameters if candidate.verdict == "wrong_parameter" else ():
+        if one.name == candidate.place and (one.low is not None or one.high is not None):
+            return (-np.inf if one.low is None else one.low, np.inf if one.high is None else one.high)
+    return ()
+
+
+def corrected(base: Simulation, corrections: tuple[Correction, ...]) -> Simulation:
+    """Return a simulation with corrected numbers."""
+    return base.with_values({one.parameter: one.found.value for one in corrections})

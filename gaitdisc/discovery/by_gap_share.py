@@ -7,21 +7,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaitdisc.discovery.beam import Beam, errs_more
-from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
 from gaitdisc.discovery.forward_selection import leaves
-from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
-from gaitdisc.discovery.held_out import proof_of
+from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapScale, cross_validated
+from gaitdisc.discovery.noise import sensor_noise, white_noise
 from gaitdisc.discovery.paired_test import PairedTest
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.sensor_noise import sensor_noise
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.discovery.unnamed_terms import unnamed_terms
-from gaitdisc.discovery.windows import as_read_on, near_runs, on_longer_runs
 
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 INEXACT_LEAVES = 0.05  # of a channel's spread, which a simulation that itself errs may leave beside the noise
-LOST = 4.0  # squared spreads, which a run that has left the data errs by
+LISTED = 6  # sets beside the answer
 TIED = 0.02  # of the gap, by which another set may cost more
+NEAR = 0.25  # of a channel's spread
+WORTH_HALVING = 0.7  # of the error, which shorter runs must leave at most
+HALF_PERIOD = 0.5
+FEWEST = 12  # samples
+MOST_ERROR = 2.0  # of the squared spread, which a run that has left the data counts as
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +39,8 @@ class Outcome:
     # (Bonferroni), for the same runs chose among these
     test: PairedTest
     small: tuple[Part, ...]  # explanations that close too little to be named, or not beyond chance
-    near: tuple[ScoredModel, ...]
+    near: tuple[ScoredModel, ...]  # sets that cost hardly more
+    others: tuple[ScoredModel, ...]  # the cheapest sets of all, whatever they cost
 
 
 def scale_of(problem: Problem) -> GapScale:
@@ -85,24 +90,67 @@ def closing_most(problem: Problem, scale: GapScale, also: tuple[tuple[Part, ...]
         best = beam.select_forward(longer)
     now, small = beam.material(best)
     now = beam.plainest(now)
-    if not now.model.explanations or not whole_runs_err_less(problem, scale, beam.as_read, now):
+    if not now.model.explanations:
         return None
-    near = tuple(one.scored for one in beam.near(now, TIED))
+    near, others = (tuple(one.scored for one in beam.near(now, within)) for within in (TIED, np.inf))
     closed = 1 - now.gap / beam.as_read.gap
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
     test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()))
-    return Outcome(beam.as_read.scored, now.scored, closed, test, tuple(small), near)
+    return Outcome(beam.as_read.scored, now.scored, closed, test, tuple(small), near, others[:LISTED])
 
 
-def whole_runs_err_less(problem: Problem, scale: GapScale, as_read: CrossValidated, now: CrossValidated) -> bool:
-    """Whether held-out trials, run as a whole from the best start, err less with a set than without.
+def near_runs(problem: Problem, scale: GapScale) -> CrossValidated:
+    """Fit the simulation as read to runs that are halved until it stays near the data.
 
-    A delay of what was measured observes the state and closes any gap of a short run.
+    Of runs on which it never does, the longest are taken that halving makes hardly better.
     """
-    whole = problem.learned_runs(problem.longest).segments
-    like = ScoredModel(now.model, replace(now.shooting, segments=whole))
-    proof = proof_of(problem, as_read.scored, now.scored, like)
-    before, after = (
-        np.fmin((one.fit.residual / scale.spread) ** 2, LOST).mean() for one in (proof.before, proof.after)
-    )
-    return bool(after < before)
+    period = min(problem.rhythm.period, problem.rhythm.duration / 2) * problem.rhythm.rate
+    samples, tried = problem.longest, []
+    while True:
+        shooting = problem.learned_runs(samples)
+        now = cross_validated(scale, shooting, problem.search.base, (), _as_read(problem, scale, shooting))
+        tried.append((scale.relative(now.model.fit), now))
+        if tried[-1][0] < NEAR or samples / 2 < max(FEWEST, HALF_PERIOD * period):
+            break
+        samples //= 2
+    least = min(error for error, _ in tried)
+    return next(now for error, now in tried if error * WORTH_HALVING <= least)
+
+
+def _as_read(problem: Problem, scale: GapScale, shooting: Shooting) -> CandidateModel:
+    """Fit from the guessed start states, as if the simulation erred by the whole spread of the channels."""
+    enough = CONVERGED * shooting.seen.size
+    base, plain = problem.search.base, shooting.with_noise(white_noise(scale.spread))
+    return fit_model(plain, base, (), problem.guess.starts(shooting.segments), TURNS, enough)
+
+
+def on_longer_runs(problem: Problem, scale: GapScale, now: CrossValidated) -> CrossValidated | None:
+    """Fit what was found to runs ever twice as long, while it stays near the data; None if none is longer."""
+    longest, guess, found = problem.longest, problem.guess, None
+    samples = now.shooting.segments.span
+    while samples < longest:
+        before, samples = found or now, min(2 * samples, longest)
+        guess = guess.with_run(before.shooting.segments, before.model.fit.states)
+        shooting = replace(problem.learned_runs(samples), past=guess.states)
+        shooting = shooting.with_noise(scale.error_of(before.model.fit))
+        starts = guess.starts(shooting.segments)
+        begun = fit_model(shooting, problem.search.base, before.model.parts, starts, TURNS, like=before.model)
+        longer = cross_validated(scale, shooting, problem.search.base, begun.parts, begun)
+        if not scale.relative(longer.model.fit) < NEAR:
+            break
+        found = longer
+    return found
+
+
+def as_read_on(problem: Problem, scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
+    """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread.
+
+    as_read, longer: the simulation as read on shorter runs, and what was found on longer ones
+    """
+    shooting = longer.shooting.with_noise(scale.error_of(as_read.model.fit))
+    starts = longer.model.fit.starts
+    model = fit_model(shooting, problem.search.base, (), starts, TURNS, like=as_read.model)
+    most = MOST_ERROR * (scale.spread / scale.size) ** 2
+    square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
+    mean = float(square[shooting.known].mean())
+    return CrossValidated(model, shooting, np.full(len(longer.errors), mean), scale.gap_above(mean))

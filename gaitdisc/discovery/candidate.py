@@ -261,7 +261,7 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
     roles = set(shape.roles)
     if "u" in roles:
         (x, v), *_ = place.motions
-        moving = {"x": x} | ({"v": v} if v else {})
+        moving = ({"x": x} if x != v else {}) | ({"v": v} if v else {})
         return [(each, moving | {"u": each}) for each in driving if roles <= {"u", *moving}]
     if roles <= {"x", "v"}:
         castings = []
@@ -269,6 +269,8 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
             late = any("delay(" in piece for piece in shape.pieces)
             if ("v" in roles and not v) or (late and " " in x):
                 continue
+            if x == v and "x" in roles:
+                continue  # of a speed, what acts on a position is not known
             if x in place.others and shape.pieces in (("x",), ("v",)):
                 continue  # that is a coupling
             castings.append((x, {"x": x} | ({"v": v} if v else {})))

@@ -11,14 +11,14 @@ from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
-from gaitdisc.discovery.gap_share import GapScale
-from gaitdisc.discovery.held_out import Proof, proof_of
+from gaitdisc.discovery.gap_share import GapScale, cross_validated
+from gaitdisc.discovery.held_out import Proof, by_size, proof_of
+from gaitdisc.discovery.paired_test import LEVEL
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.unnamed_terms import NAME as UNNAMED
 from gaitdisc.discovery.wrong_start import wrong_starts
 from gaitdisc.results.discovery import Estimate
 
@@ -46,6 +46,8 @@ class Verdict:
     # of a shape without a name: whether it was read as an expression of few pieces, which stands in its place
     read: bool = False
     reads_as: str = ""  # the catalogue's effect that this expression is; empty where it is none
+    # of explanations that a person gave, and none was searched: whether held-out data do without each beside the others
+    given: tuple[bool, ...] = ()
 
 
 def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
@@ -78,34 +80,10 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
     elif kept is not longer:
         longer = scored(kept.shooting, problem.search.base, kept.model)
     proof = held_out_proof(problem, as_read, longer)
+    proof = proof if proof.bears_out else by_size(proof, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < HALF):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
-    return Verdict(longer.model.parts[0].candidate.verdict, longer, tuple(rivals), proof=proof)
-
-
-def within_record(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
-    """Return a verdict without constants that are beyond the record's length or range.
-
-    What relaxes or yields only there is a linear spring, which is named where it fits as well; else nothing is.
-    """
-    search = problem.search
-    rivals = tuple(one for one in verdict.rivals if search.shows(one.model))
-    if search.shows(verdict.found.model):
-        return replace(verdict, rivals=rivals)
-    found = verdict.found
-    springs = {one.place: one for one in search.candidates if one.name == "linear_stiffness"}
-    parts = tuple(
-        replace(part, candidate=springs[part.candidate.place], values={"factor": part.values["factor"]})
-        if "factor" in part.values and part.candidate.states and part.candidate.place in springs else part
-        for part in found.model.parts
-    )  # fmt: skip
-    starts = found.model.fit.starts[:, : len(search.base.states)]
-    model = fit_model(found.shooting, search.base, parts, starts, like=found.model)
-    spring = scored(found.shooting, search.base, model)
-    proof, closed = held_out_proof(problem, as_read, spring), held_out_proof(problem, as_read, found).closed
-    if search.shows(model) and proof.bears_out and proof.closed >= closed - WORTH:
-        return replace(verdict, word=parts[0].candidate.verdict, found=spring, rivals=rivals, proof=proof)
-    return Verdict("no_gap", as_read, rivals, proof=verdict.proof)
+    return Verdict(longer.word, longer, tuple(rivals), proof=proof)
 
 
 def shape_that_leaves_noise(problem: Problem, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
@@ -154,6 +132,7 @@ def plainest(problem: Problem, scale: GapScale, named: ScoredModel) -> Verdict |
     found = closing_most(problem, scale, (named.model.parts,) if named.model.parts else ())
     if found is None or found.closed < HALF:
         return None
+    found = replace(found, now=prefer_on_held_out(problem, found.now, found.near))
     plain, likelier = compared([found.as_read, found.now], problem.search.base)
     if plain.bic - likelier.bic < MARGIN:
         return None
@@ -163,10 +142,24 @@ def plainest(problem: Problem, scale: GapScale, named: ScoredModel) -> Verdict |
         proof = replace(proof, test=found.test)
     if not proof.bears_out:
         return None
-    names = {part.candidate.name for part in now.model.parts}
-    word = UNNAMED if UNNAMED in names else now.model.parts[0].candidate.verdict
     likeliest = (named,) if problem.search.base.inexact else ()  # what it errs by may choose between two like names
-    return Verdict(word, now, (found.now, *likeliest, *found.near), proof=proof, small=found.small)
+    return Verdict(now.word, now, (found.now, *likeliest, *found.others), proof=proof, small=found.small)
+
+
+def prefer_on_held_out(problem: Problem, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
+    """Return what held-out data prefer beyond chance among explanations that cost as much; what there was if nothing.
+
+    near: what costs hardly more; of these, what has as many explanations and no more numbers
+    """
+    parts, size = len(now.model.parts), now.model.size
+    equal = [one for one in near if len(one.model.parts) == parts and one.model.size <= size]
+    proofs = [by_size(proof_of(problem, now, one, one), one) for one in equal]
+    better = [
+        (proof.test.fall, one)
+        for proof, one in zip(proofs, equal, strict=True)
+        if proof.bears_out and proof.test.p < LEVEL / len(equal)
+    ]
+    return max(better, key=lambda one: one[0])[1] if better else now
 
 
 def searched(
@@ -215,11 +208,52 @@ def with_autocorrelation(
     process_noise = random_push(problem, as_read)
     ordered = [one for one in found if explains(problem, plain, one, process_noise)]
     if process_noise and not ordered:
-        return Verdict("process_noise", as_read, tuple(rivals), process_noise)
+        term = None
+        if not scale_of(problem).agrees(as_read.model.fit):
+            term = find_term_before(problem, as_read, named, rivals, process_noise)
+        return term or Verdict("process_noise", as_read, tuple(rivals), process_noise)
     worth = WORTH * (plain.bic - found[0].bic) + MARGIN
     if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(problem, plain, found[1]))
     return None
+
+
+def find_term_before(
+    problem: Problem, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel], pushes: ProcessNoise
+) -> Verdict | None:
+    """Return the verdict on the term that goes before random pushes; None where none does.
+
+    Random pushes explain anything, so that a term that is likelier than these goes before them: with noise of the
+    sensors, or with pushes beside it, over the same numbers by the same criterion, and over what is held out. All is
+    weighed by its size, with its autocorrelation, and one term was picked among all that were open.
+
+    as_read, named: the simulation as read and with what the search selected
+    pushes: beside the simulation as read
+    """
+    among = len(problem.search.candidates)
+    others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + NEAR]
+    borne: list[tuple[float, ScoredModel, Proof]] = []
+    for one in (named, *others[:MOST_NEAR]):
+        before, now = compared([as_read, one], problem.search.base)
+        beside = rank_process_noise(now.shooting, now.model, problem.search.places)[0]
+        likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
+        proof = by_size(held_out_proof(problem, before, now), now)
+        likelier += proof.gained - 2 * float(np.log(among))
+        if one.model.parts and likelier > MARGIN and left_out_errors_fall(problem, before, now):
+            borne.append((likelier, now, proof))
+    if not borne:
+        return None
+    likelier, now, proof = max(borne, key=lambda one: one[0])
+    if not proof.bears_out:  # what is held out hardly shows it: all data together
+        proof = replace(proof, test=replace(proof.test, p=float(np.exp(-likelier / 2))))
+    return Verdict(now.word, now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
+
+
+def left_out_errors_fall(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
+    """Whether pieces of what was learned from err less with what was found when they are left out of the fit."""
+    scale, base = scale_of(problem), problem.search.base
+    before, after = (cross_validated(scale, now.shooting, base, one.model.parts, now.model) for one in (as_read, now))
+    return float(before.errors.sum()) > float(after.errors.sum())
 
 
 def says_more(problem: Problem, shape: ScoredModel, named: ScoredModel) -> bool:

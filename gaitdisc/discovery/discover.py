@@ -11,15 +11,16 @@ from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.catalogue import Shape
-from gaitdisc.discovery.decision import decide, within_record
+from gaitdisc.discovery.catalogue import ALL, Asked
+from gaitdisc.discovery.decision import Verdict, decide
+from gaitdisc.discovery.given_effects import fit_given, refuse_unknown
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
-from gaitdisc.discovery.odd_trials import agreeing_trials
-from gaitdisc.discovery.problem import FEWEST_SAMPLES, set_up_problem, split_in_time
+from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
+from gaitdisc.discovery.problem import FEWEST_SAMPLES, Problem, set_up_problem, split_in_time
 from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
-from gaitdisc.discovery.trial_apart import without_trial_apart
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
@@ -34,7 +35,7 @@ CLOSE = 0.3  # of its range, moved from one sample to the next: ten samples in a
 def discover(
     simulation: Simulation,
     measured: Measured,
-    shapes: tuple[Shape, ...] = (),
+    asked: Asked = ALL,
     progress: Callable[[str], None] = lambda _: None,
     possible: Callable[[Candidate], bool] = lambda _: True,
     refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
@@ -44,13 +45,32 @@ def discover(
     refitted: fits the numbers of what was found once more, where its runs stand for those of another program
     """
     measured = without_spikes(measured)
-    begun = partial(set_up_problem, simulation, shapes=shapes, progress=progress, possible=possible)
+    begun = partial(set_up_problem, simulation, shapes=asked.shapes, progress=progress, possible=possible)
     problem = begun(measured)
+    refuse_unknown(problem.search, asked.effects)
     agreeing = agreeing_trials(problem, measured)
     if agreeing is not measured:
         measured, problem = agreeing, begun(agreeing)
     progress("fitting the simulation as it was read")
     as_read = problem.as_read()
+    if asked.effects:
+        progress(f"fitting {' and '.join(asked.effects)}")
+        verdict = fit_given(problem, as_read, asked.effects)
+    else:
+        problem, as_read, verdict = weigh_explanations(problem, as_read, measured, begun)
+    progress("showing it on what was held out")
+    return answer(problem, as_read, verdict, refitted)
+
+
+def weigh_explanations(
+    problem: Problem, as_read: ScoredModel, measured: Measured, begun: Callable[[Measured], Problem]
+) -> tuple[Problem, ScoredModel, Verdict]:
+    """Search and decide; again without a trial that goes with no other, or with other data held out where need be.
+
+    measured: what the problem was set up with
+    begun: sets a problem up with other data
+    """
+    progress = problem.search.progress
     progress(f"weighing {len(problem.search.candidates)} explanations")
     verdict = decide(problem, as_read)
     if not leaves_noise(problem, verdict.found):
@@ -69,9 +89,9 @@ def discover(
         progress("what is held out never goes where it would act: other data are held out")
         problem, as_read = noted(problem, other), other.as_read()
         verdict = decide(problem, as_read)
-    verdict = within_record(problem, as_read, read_instead(problem, as_read, read_shape(problem, as_read, verdict)))
-    progress("showing it on what was held out")
-    return answer(problem, as_read, verdict, refitted)
+    verdict = prefer_delay(problem, as_read, prefer_relatives(problem, as_read, verdict))
+    verdict = read_instead(problem, as_read, read_shape(problem, as_read, verdict))
+    return problem, *look_at_whole_runs(problem, as_read, verdict)
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:

@@ -49,6 +49,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
 def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search: Search) -> list[Candidate]:
     """Shapes over a position and its rate; where it has none, over it and another state."""
     x, v = motion
+    v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: _visited(axis, now, search) for axis in axes}
     shapes = [_bumps(ranges, dict.fromkeys([one], FLAT_BUMPS)) for one in axes]

@@ -12,11 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_toeplitz
 
-from gaitdisc.discovery.whitening import whiten
+from gaitdisc.compiled import compiled
+from gaitdisc.signals.derivatives import savgol_filter
 
 MOST_LAGS = 16
 AUTOCORRELATED = 1.03  # in standard deviations before and after the past is taken off
 WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right to the last decimal at high frequency
+WINDOW, ORDER = 7, 3  # samples, and the order of the polynomial through them
+FEWEST = 12  # samples of a trial
+MAD_OF_NORMAL = 1.4826  # standard deviation over the median absolute deviation
+LEAST = 1e-6  # of a channel's spread: what rounding leaves
 
 
 @dataclass(frozen=True)
@@ -140,3 +145,76 @@ def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64
         orders.append(np.asarray(solve_toeplitz(covariance[:order], covariance[1 : order + 1]), np.float64))
     left = np.array([float(covariance[0] - order @ covariance[1 : len(order) + 1]) for order in orders])
     return orders, np.maximum(left, 1e-12 * covariance[0])
+
+
+@compiled(nogil=True)
+def whiten(
+    residual: NDArray[np.float64],
+    channel: int,
+    known: NDArray[np.bool_],
+    predictors: NDArray[np.float64],
+    spread: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """Write one channel's innovations, in units of their spread.
+
+    residual (segment, sample, channel, column): what is left; each segment begins afresh, and so does what follows a
+        gap
+    known (segment, sample, channel): where there is a residual; nothing is left elsewhere
+    predictors (order + 1, order): row p predicts from the p samples before
+    spread (order + 1,): what each leaves
+    out (segment, sample, channel, column): written in place
+    """
+    segments, samples, _, columns = residual.shape
+    last = len(spread) - 1
+    for segment in range(segments):
+        run = 0
+        for sample in range(samples):
+            if not known[segment, sample, channel]:
+                run = 0
+                out[segment, sample, channel, :] = 0.0
+                continue
+            order = min(run, last)
+            run += 1
+            for column in range(columns):
+                out[segment, sample, channel, column] = residual[segment, sample, channel, column]
+            for lag in range(order):
+                weight = predictors[order, lag]
+                before = residual[segment, sample - 1 - lag, channel]
+                for column in range(columns):
+                    out[segment, sample, channel, column] -= weight * before[column]
+            for column in range(columns):
+                out[segment, sample, channel, column] /= spread[order]
+
+
+def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Estimate the standard deviation of each channel's white noise: what a local cubic over 7 samples leaves.
+
+    Noise that a filter has made smooth is not seen: of such a record the estimate is too small.
+
+    observed (trial, sample, channel): measured, NaN where nothing was
+    returns (channel,): [the channel's unit]; the median over the trials
+
+    >>> t = np.arange(2000) / 100
+    >>> noise = np.random.default_rng(0).normal(0, 0.02, t.size)
+    >>> bool(abs(sensor_noise((np.sin(6 * t) + noise)[None, :, None])[0] - 0.02) < 0.002)
+    True
+    """
+    powers = np.vander(np.arange(WINDOW) - WINDOW // 2, ORDER + 1).astype(float)
+    kept = 1 - (powers @ np.linalg.pinv(powers))[WINDOW // 2, WINDOW // 2]
+    spread = np.nanstd(observed, axis=(0, 1))
+    found = LEAST * spread
+    for channel in range(observed.shape[2]):
+        sizes = [_rough(record[np.isfinite(record)]) for record in observed[:, :, channel]]
+        sizes = [one for one in sizes if np.isfinite(one)]
+        if sizes:
+            found[channel] = max(MAD_OF_NORMAL * float(np.median(sizes)) / np.sqrt(kept), found[channel])
+    return found
+
+
+def _rough(record: NDArray[np.float64]) -> float:
+    """Median absolute deviation of a record from its local cubic; NaN for one that is too short."""
+    if len(record) < FEWEST:
+        return float("nan")
+    left = record - savgol_filter(record, WINDOW, ORDER)
+    return float(np.median(np.abs(left[WINDOW // 2 : -(WINDOW // 2)])))

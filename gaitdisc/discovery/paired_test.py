@@ -54,6 +54,43 @@ def paired_test(
     return PairedTest(signed_rank_p(gains), len(gains), float(gains.sum()))
 
 
+def projected_test(before: NDArray[np.float64], after: NDArray[np.float64], floor: NDArray[np.float64]) -> PairedTest:
+    """Test whether what one model errs by goes along with what another changes, each sample by its size.
+
+    If the first model lacks nothing, its errors are noise, and their product with a change that was found on other data
+    is 0 within the spread that the noise's autocovariance makes. The noise is what the second model leaves: no less
+    than the truth where its change is spurious. An effect that acts in a part of the data is weighed by that part.
+
+    before, after (run, sample, channel): measured minus each model [the channel's unit]; NaN where nothing was
+        measured
+    floor (channel,): standard deviation of the noise [the channel's unit]
+    Source: Bartlett 1946, J. R. Stat. Soc. Suppl. 8, 27 (how many independent samples an autocorrelated record has).
+
+    >>> rng = np.random.default_rng(0)
+    >>> noise, change = rng.normal(size=(2, 200, 1)), np.sin(np.arange(200) / 9)[None, :, None]
+    >>> one = np.ones(1)
+    >>> projected_test(noise + change, noise, one).bears_out, projected_test(noise, noise + change, one).bears_out
+    (True, False)
+    """
+    from scipy.stats import t as student
+
+    if np.isinf(after).any() or (np.isnan(after) & ~np.isnan(before)).any() or np.isinf(before).any():
+        return PairedTest(float("nan"), 0, float("nan"))
+    first, second = (np.nan_to_num(one / floor) for one in (before, after))
+    fall, change = float((first**2 - second**2).sum()), first - second
+    samples = 2 * first.shape[1]
+    noise, moved = (np.abs(np.fft.rfft(one, samples, axis=1)) ** 2 for one in (second, change))
+    covariance = np.fft.irfft(noise.sum(axis=0), samples, axis=0) / max(np.isfinite(before[..., 0]).sum(), 1)
+    together = np.fft.irfft(moved.sum(axis=0), samples, axis=0)
+    spread = np.sqrt(max(float((covariance * together).sum()), 0.0))
+    if not spread > 0:
+        return PairedTest(1.0, 0, fall)
+    known = np.isfinite(before).sum(axis=(0, 1))
+    independent = float((known / (covariance**2 / covariance[0] ** 2).sum(axis=0)).sum())
+    p = float(student.sf(float((first * change).sum()) / spread, max(independent - 1, 1.0)))
+    return PairedTest(p, max(int(independent), 1), fall)
+
+
 def differing(gains: NDArray[np.float64]) -> NDArray[np.float64]:
     """Leave out the pieces on which two models hardly differ, but for a few (piece,).
 

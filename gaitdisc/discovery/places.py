@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -14,6 +15,9 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 ANGLES = ("rad", "deg")
+SPEEDS = re.compile(r"(m|cm|mm|km|rad|deg|rev)/(s|h|min)|rpm")
+FORCES = re.compile(r"[kmM]?N( ?c?m)?")
+INERTIAS = re.compile(r"k?g( ?c?m(2|\^2|\*\*2))?")
 
 
 @dataclass(frozen=True)
@@ -23,7 +27,8 @@ class Place:
     kind: str
     name: str
     # tuple of (str, str), Position-like state and its rate, the place's own first, then its differences with others,
-    # then (at a port) the others; the rate is empty for a state that has none (first-order systems)
+    # then (at a port) the others; the rate is empty for a state that has none (first-order systems), and a speed whose
+    # position is no state is its own rate and nothing else
     motions: tuple[tuple[str, str], ...]
     others: tuple[str, ...]  # states that would act here as a coupling
     products: tuple[tuple[str, str], ...]  # tuple of (str, str), pairs of states whose product may act here
@@ -83,11 +88,25 @@ def _rates(machine: Compiled, x: NDArray[np.float64], u: NDArray[np.float64]) ->
     return machine.rates(np.zeros(len(x)), x, u, machine.defaults, late)
 
 
+def is_speed(simulation: Simulation, kind: str, name: str, state: str) -> bool:
+    """Whether a state that no other has as its rate is a speed: by its unit, or for it is pushed against an inertia.
+
+    kind, name: of the place where something may act on it
+    """
+    unit = next(each.unit for each in simulation.states if each.name == state)
+    if unit and unit != "1":
+        return SPEEDS.fullmatch(unit) is not None
+    inertias = [each.name for each in simulation.parameters if INERTIAS.fullmatch(each.unit or "")]
+    equation = dict(simulation.equations).get(state, "")
+    forces = [each.name for each in simulation.ports if FORCES.fullmatch(each.unit or "")]
+    return kind == "port" and name in forces and any(re.search(rf"/ *\(?{one}\b", equation) for one in inertias)
+
+
 def _place(simulation: Simulation, kind: str, name: str, driven: str, rate_of: dict[str, str]) -> Place:
     position_of = {rate: position for position, rate in rate_of.items()}
     units = {state.name: state.unit for state in simulation.states}
     own = position_of.get(driven, driven)
-    motions = [(own, rate_of.get(own, ""))]
+    motions = [(own, rate_of.get(own, own if is_speed(simulation, kind, name, own) else ""))]
     if own in rate_of:
         motions += [
             (f"{own} - {other}", f"{rate_of[own]} - {rate_of[other]}")

@@ -18,13 +18,12 @@ from gaitdisc.discovery.grids import Rhythm, rhythm_of
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.linearised import linearise, linearise_along
 from gaitdisc.discovery.matched import matched
-from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.noise import sensor_noise, white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
-from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured

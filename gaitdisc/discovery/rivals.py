@@ -36,25 +36,28 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
 
     now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
         with
-    returns: best first; none of them explains by the same effect at the same place as the answer
+    returns: best first; none of them is of the same effects at the same places as the answer
     """
-    own = set(now.labels)
-    others: dict[str, ScoredModel] = {}
+    own = sorted(now.labels)
+    others: dict[tuple[str, ...], ScoredModel] = {}
     for one in found:
-        if one.model.parts and not own & set(one.labels):
-            others.setdefault(one.labels[-1], one)
+        if one.model.parts and sorted(one.labels) != own:
+            others.setdefault(tuple(sorted(one.labels)), one)
     listed = list(others.values())[:MOST]
     if not own:
         return tuple(Rival(one, one.gained, False) for one in listed)
-    fitted = [_best(search, now, one) for one in listed]
-    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < TIE) for one in fitted]
+    fitted: dict[tuple[str, ...], ScoredModel] = {}
+    for one in listed:
+        best = _fitted(search, now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
+        fitted.setdefault(tuple(sorted(best.labels)), best)
+    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < TIE) for one in fitted.values()]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 
 def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
-    """Return the best model with another's last explanation in it: alone, or beside all but one of the answer's."""
+    """Return the best model with another's last explanation in it: alone, as it was, or beside the answer's but one."""
     part, parts = other.model.parts[-1], now.model.parts
-    sets = [(part,)]
+    sets = [(part,), *([other.model.parts] if len(other.model.parts) > 1 else [])]
     if len(parts) > 1:
         sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
     return min((_fitted(search, now, one) for one in sets), key=lambda one: one.bic)

@@ -13,6 +13,7 @@ import numpy as np
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.discovery.unnamed_terms import NAME as UNNAMED
 from gaitdisc.simulation.simulation import Simulation
 
 TURNS = 4
@@ -44,6 +45,12 @@ class ScoredModel:
     def labels(self) -> tuple[str, ...]:
         """Name and place of each explanation."""
         return tuple(part.candidate.label for part in self.model.parts)
+
+    @property
+    def word(self) -> str:
+        """The verdict that it is: of what is missing without a name, that; else what kind its first explanation is."""
+        candidates = [part.candidate for part in self.model.parts]
+        return UNNAMED if any(one.name == UNNAMED for one in candidates) else candidates[0].verdict
 
     @property
     def verdicts(self) -> tuple[str, ...]:

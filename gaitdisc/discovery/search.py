@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel, Explanations, Part, fit_model
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Score, Scorer
@@ -25,9 +26,12 @@ LIMITS = {
     "phases": (-np.inf, np.inf),
     "phase widths": (0.0, 1.0),
 }
+VANISHING = ("half widths of x", "delays")  # constants at whose zero a shape is a simpler one
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 WIDEST = 2.0  # times how far a state goes, beyond which no half width shows
 TURNS = 15
+FEW_TURNS = 4
+DECADES = (0.1, 0.3, 3.0, 10.0)  # of the file's value, where a number without bounds is sought as well
 NEARLY = 0.5  # off the misfit: too little to distinguish explanations by
 CERTAIN = 2.5  # standard errors
 EVERY = 5.0  # seconds between two lines about a round that lasts
@@ -71,13 +75,36 @@ class Search:
             )
             for one in self._reported(worth)
         ]
-        tried = sorted((one for one in tried if self.sensible(one) and is_certain(one, -1)), key=lambda one: one.bic)[
-            :most
-        ]
+        far = [] if model.parts else self._far_off(now)
+        tried = [*(one for one in tried if self.sensible(one) and is_certain(one, -1)), *far]
+        tried = sorted(best_of_each(tried), key=lambda one: one.bic)[:most]
         if not tried:
             return []
         before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)], self.base)
         return [before, *(replace(one, gained=before.bic - one.bic) for one in more)]
+
+    def _far_off(self, now: ScoredModel) -> list[CandidateModel]:
+        """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
+        found = []
+        for one in self.open_beside(now.model):
+            if one.verdict != "wrong_parameter" or one.bounds or not one.value:
+                continue
+            begun = [
+                fit_model(
+                    now.shooting,
+                    self.base,
+                    (Part(one, {"value": one.value * factor}),),
+                    now.model.fit.starts,
+                    FEW_TURNS,
+                    NEARLY,
+                    now.model,
+                )
+                for factor in DECADES
+            ]
+            best = min(begun, key=lambda each: each.fit.misfit if np.isfinite(each.fit.misfit) else np.inf)
+            if best.fit.misfit < now.model.fit.misfit:
+                found.append(fit_model(now.shooting, self.base, best.parts, best.fit.starts, TURNS, NEARLY, now.model))
+        return found
 
     def _reported(self, worth: list[Score]) -> Iterator[Score]:
         """Yield each in turn, and say now and then how many are fitted and how long the others will take."""
@@ -121,9 +148,10 @@ class Search:
                 if kind == "quantiles of x":
                     yield part.values[slot], self._visited(model, part.candidate.role)
                 elif kind == "half widths of x":
-                    yield part.values[slot], (0.0, self._widest(model, part.candidate.role))
+                    least = self._step(model, part.candidate.role) if part.candidate.states else 0.0
+                    yield part.values[slot], (least, self._widest(model, part.candidate.role))
                 elif kind == "delays":
-                    yield part.values[slot], (0.0, self.rhythm.period)
+                    yield part.values[slot], (1 / self.rhythm.rate, self.rhythm.period)
                 else:
                     yield part.values[slot], LIMITS[kind]
             if part.candidate.bounds:
@@ -134,12 +162,20 @@ class Search:
 
     def _visited(self, model: CandidateModel, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
+        low, high = np.quantile(self._along(model, role), VISITED)
+        return float(low), float(high)
+
+    def _step(self, model: CandidateModel, role: str) -> float:
+        """Return how far a run goes from sample to sample: a spring that yields within is dry friction."""
+        along = self._along(model, role).reshape(model.fit.states.shape[:2])
+        return float(np.sqrt(np.nanmean(np.diff(along, axis=1) ** 2)))
+
+    def _along(self, model: CandidateModel, role: str) -> NDArray[np.float64]:
+        """Return what stands for x in an explanation, along the runs."""
         known = len(self.base.states)
         states = model.fit.states[..., :known].reshape(-1, known)
         nothing = np.zeros((len(states), len(self.base.inputs)))
-        along = evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing))
-        low, high = np.quantile(along, VISITED)
-        return float(low), float(high)
+        return np.asarray(evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing)))
 
     def _widest(self, model: CandidateModel, role: str) -> float:
         """Return the half width that a run can show; of an input, one that it never reaches does nothing anyway."""
@@ -153,16 +189,36 @@ class Search:
         return ScoredModel(fewer, now.shooting)
 
 
-def is_certain(model: CandidateModel, first: int = 0) -> bool:
-    """Whether no explanation from `first` on could as well be idle, its number lost in its error."""
+def best_of_each(models: list[CandidateModel]) -> list[CandidateModel]:
+    """Return the likeliest of the models with the same explanations."""
+    best: dict[Explanations, CandidateModel] = {}
+    for one in models:
+        if one.explanations not in best or one.bic < best[one.explanations].bic:
+            best[one.explanations] = one
+    return list(best.values())
+
+
+def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:
+    """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error."""
     variance = np.diag(model.fit.covariance)
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
     errors = dict(zip(model.fit.free, error, strict=True))
     return all(
         _off(part, slot, none) > CERTAIN * errors[names[slot]]
-        for part, names in list(zip(model.parts, model.names, strict=True))[first:]
+        for part, names in list(zip(model.parts, model.names, strict=True))[first:end]
         if len(part.candidate.idle) == 1
         for slot, none in part.candidate.idle.items()
+    )
+
+
+def may_vanish(model: CandidateModel, number: int) -> bool:
+    """Whether a constant of an explanation could as well be 0, where the shape is a simpler one."""
+    part, names = model.parts[number], model.names[number]
+    variance = dict(zip(model.fit.free, np.diag(model.fit.covariance), strict=True))
+    return any(
+        not part.values[slot] ** 2 > CERTAIN**2 * variance[names[slot]]
+        for slot, kind in (part.candidate.constants or {}).items()
+        if kind in VANISHING
     )
 
 

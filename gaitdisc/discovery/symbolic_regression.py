@@ -210,7 +210,7 @@ class _Curve:
             one for one in known_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
         ]
         known = [one for one in known if angle or one.needs != "angle"]
-        still = [one for one in (*known, BUMP) if one.roles == ("x",)]
+        still = [one for one in (*known, BUMP) if one.roles == ("x",) and self.motion[0] != rate]
         moving = [one for one in known if one.roles == ("v",)] if rate else []
         load = Shape("constant_load", ("1",))
         both = [one for one in known if set(one.roles) == {"x", "v"}] if rate else []

@@ -45,12 +45,12 @@ def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...])
 
     parts: the explanations behind the effects, in their order; none for verdicts without a term, number or signal
     """
-    said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery), _moved(discovery)]
+    said = [_said(discovery, base, parts), _given(discovery), _tied(discovery), _shown(discovery), _moved(discovery)]
     return replace(discovery, sentence=" ".join(one for one in said if one))
 
 
 def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:
-    if discovery.verdict == "no_gap":
+    if discovery.verdict in ("no_gap", "unexplained"):
         return _nothing(discovery)
     effects = discovery.effects
     if discovery.verdict == "process_noise":
@@ -70,12 +70,28 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
     return f"{whole[:1].upper()}{whole[1:]}."
 
 
+def _given(discovery: Discovery) -> str:
+    """Say that nothing was searched, and whether held-out data bear out what was given."""
+    if not discovery.given:
+        return ""
+    size = discovery.held_out
+    bear = "bear it out" if discovery.given == "proven" else "do not bear it out"
+    said = f"It was given, not searched: the held-out data {bear} (p = {_chance(size.p)} over {size.pieces} pieces)."
+    idle = [f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in discovery.effects if one.small]
+    return f"{said} They do without {' and without '.join(idle)} beside the others." if idle else said
+
+
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
     first = discovery.rivals[0] if discovery.rivals else None
     if first is None or not first.bic >= STRONG_SUPPORT:
-        if _may_be_left(discovery.held_out.before, discovery.held_out):
+        if may_be_left(discovery.held_out.before, discovery.held_out):
             return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+        if discovery.verdict == "no_gap":
+            return (
+                "Nothing is missing that these data could show: what is left is more than the sensors' white noise, "
+                "and does not grow along a run."
+            )
         return (
             "Nothing is named: simulation and data differ by more than the sensors' noise, and nothing weighed here "
             "explains it beyond chance."
@@ -94,7 +110,7 @@ def _nothing(discovery: Discovery) -> str:
     )
 
 
-def _may_be_left(error: float, size: GapSize) -> bool:
+def may_be_left(error: float, size: GapSize) -> bool:
     """Whether an error is no more than the sensors' noise and a hundredth of the measurement's spread explain."""
     return error < AGREES * math.hypot(size.noise_floor, MODEL_ERROR)
 
@@ -202,12 +218,12 @@ def _shown(discovery: Discovery) -> str:
     if not sizes:
         return ""
     units = dict(zip(discovery.channels, discovery.units, strict=True))
-    channel = max(sizes, key=lambda name: sizes[name][0] / (sizes[name][2] or 1.0))
+    channel = discovery.held_out.ranked[0]
     unit, factor = shown_unit(units[channel])
     floor = factor * sizes[channel][2]
     of = f" of {channel}" if len(sizes) > 1 else ""
     noise = f"noise floor {amount(floor, floor / 10)}"
-    if discovery.verdict in ("no_gap", "process_noise", "wrong_initial_condition"):
+    if discovery.verdict in ("no_gap", "unexplained", "process_noise", "wrong_initial_condition"):
         before = with_unit(amount(factor * sizes[channel][0], floor / 10), unit)
         return f"Held-out error{of}: {before} ({noise})."
     worse = [name for name in sizes if name != channel and _goes(sizes[name], units[name]).startswith("rises")]
@@ -221,7 +237,7 @@ def _shown(discovery: Discovery) -> str:
 def _unexplained(size: GapSize) -> str:
     """Say what share of the gap is left, where it is more than a few percent and more than a simulation may err by."""
     left = size.unexplained
-    if left < SMALL or _may_be_left(size.after, size):
+    if left < SMALL or size.after > size.before or may_be_left(size.after, size):
         return ""
     return f" {100 * left:.0f} % of the squared error above the noise stays unexplained."
 

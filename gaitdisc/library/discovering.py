@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaitdisc.batch.discover_files import discovered
+from gaitdisc.discovery.catalogue import Asked
 from gaitdisc.engines.mapping import names_engine
 from gaitdisc.errors import SchemaError
 from gaitdisc.library.models import ModelLike, model_of
@@ -29,6 +30,7 @@ def discover(
     data: Path | str | pd.DataFrame | Recording | Sequence[Recording] | Sequence[pd.DataFrame],
     catalogue: Path | str | None = None,
     progress: Callable[[str], None] | None = None,
+    effects: Sequence[str] = (),
 ) -> tuple[Discovery, Simulation]:
     """Find where a model and measured trials disagree, name what is missing with its numbers, and add it.
 
@@ -49,6 +51,9 @@ def discover(
     progress : callable, optional
         Called with one line about each step; `print`, say. Of a model of an engine, and of a function whose
         equations could not be written down, which take their time, they go to the standard error stream by default.
+    effects : sequence of str, optional
+        Search nothing, and fit exactly these, each ``"effect@place"`` (``"viscous_damping@air"``): data that were held
+        out prove or refute them together.
 
     Returns
     -------
@@ -60,8 +65,8 @@ def discover(
     Raises
     ------
     GaitdiscError
-        If a file cannot be read, a column is missing, trials are too short or uneven, or the model as given leaves all
-        bounds.
+        If a file cannot be read, a column is missing, trials are too short or uneven, the model as given leaves all
+        bounds, or an effect or place of `effects` does not exist: the nearest are said.
 
     References
     ----------
@@ -73,9 +78,9 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
-    chosen = None if catalogue is None else Path(catalogue)
+    asked = Asked.read(None if catalogue is None else Path(catalogue), tuple(effects))
     if isinstance(model, Path | str) and names_engine(model):
-        return _of_engine(Path(model), data, chosen, progress or _to_the_terminal)
+        return _of_engine(Path(model), data, asked, progress or _to_the_terminal)
     simulation = model_of(model)
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
@@ -84,16 +89,14 @@ def discover(
     report = progress or (_to_the_terminal if slow else lambda _: None)
     if slow:
         report(slow)
-    return discovered(simulation, measured, chosen, files, report)
+    return discovered(simulation, measured, asked, files, report)
 
 
 def _to_the_terminal(step: str) -> None:
     print(step, file=sys.stderr, flush=True)
 
 
-def _of_engine(
-    model: Path, data: Any, catalogue: Path | None, report: Callable[[str], None]
-) -> tuple[Discovery, Simulation]:
+def _of_engine(model: Path, data: Any, asked: Asked, report: Callable[[str], None]) -> tuple[Discovery, Simulation]:
     from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
     from gaitdisc.engines.tracked_mapping import read_tracked
 
@@ -107,7 +110,7 @@ def _of_engine(
             )
         from gaitdisc.batch.discover_tracked import discover_tracked
 
-        answered = discover_tracked(walk, Path(data), catalogue, report)
+        answered = discover_tracked(walk, Path(data), asked, report)
         return answered.found, answered.augmented
 
     files: dict[Path, str] = {}
@@ -118,7 +121,7 @@ def _of_engine(
             return measured_of_file(Path(data), mapping)
         return _measured(data, mapping)[0]
 
-    answer = discover_engine(model, read, catalogue, files, report)
+    answer = discover_engine(model, read, asked, files, report)
     return answer.found, answer.augmented
 
 

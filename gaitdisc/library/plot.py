@@ -220,13 +220,12 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
         draw_left,
         draw_runs,
         noise_floor,
-        ranked_channels,
         shown_runs,
         stretch_of,
     )
 
     _refuse_other(found, "Discovery", "gaitdisc.discover")
-    name = _known(channel, found.channels) if channel else ranked_channels(found)[0]
+    name = _known(channel, found.channels) if channel else found.held_out.ranked[0]
     unit, floor = noise_floor(found, name)
     numbers, axes = stretch_of(shown_runs(found), name), axes_or_new(ax)
     if left:

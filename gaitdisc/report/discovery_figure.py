@@ -36,6 +36,33 @@ def discovery_figures(discovery: Discovery) -> list[Figure]:
     return figures
 
 
+@in_style
+def accounts_figure(discovery: Discovery) -> list[Figure]:
+    """Draw what each explanation leaves of one held-out run, side by side; nothing where there is but one."""
+    accounts = [one for one in discovery.accounts if one.time]
+    if len(accounts) < 2:
+        return []
+    channel = discovery.held_out.ranked[0]
+    unit, floor = noise_floor(discovery, channel)
+    factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])[1]
+    drawn, (cells,) = panels(1, len(accounts), 1.1, Room(left=0.6, top=0.3, across=0.12))
+    for number, (axes, one) in enumerate(zip(cells, accounts, strict=True), 1):
+        axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
+        axes.plot(one.time, factor * np.array(one.left), color=MODELS["augmented"].colour, linewidth=0.9)
+        axes.set_title(str(number))
+        axes.sharey(cells[0])
+        axes.tick_params(labelleft=number == 1)
+        axes.set_xlabel("time [s]", labelpad=1)
+    cells[0].set_ylabel(f"[{unit}]", labelpad=1)
+    columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(accounts, 1)}
+    caption = (
+        f"What each explanation of the table leaves of {channel}: measured minus its run, over the first held-out run. "
+        "Grey band: two standard deviations of the noise."
+    )
+    table = pd.DataFrame({"time": accounts[0].time} | columns)
+    return [Figure("accounts", caption, caption, table, drawn)]
+
+
 def shown_runs(discovery: Discovery) -> pd.DataFrame:
     """Held-out runs in the units that are drawn, degrees in place of radians."""
     table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
@@ -112,12 +139,6 @@ def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArr
     return table[table["n"] >= FEWEST].reset_index(drop=True)
 
 
-def ranked_channels(discovery: Discovery) -> list[str]:
-    """Channels, that with the largest gap against its noise first."""
-    sizes = discovery.held_out.channels
-    return sorted(discovery.channels, key=lambda name: -sizes[name][0] / (sizes[name][2] or 1.0))
-
-
 def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
     """Unit in which a channel is drawn, and the standard deviation of its noise in it."""
     text, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
@@ -126,7 +147,7 @@ def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
 
 def _drawn_channels(discovery: Discovery) -> list[tuple[str, str, float]]:
     """Name, unit shown, noise floor in that unit."""
-    return [(name, *noise_floor(discovery, name)) for name in ranked_channels(discovery)[:MOST_CHANNELS]]
+    return [(name, *noise_floor(discovery, name)) for name in discovery.held_out.ranked[:MOST_CHANNELS]]
 
 
 def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.discovery_figure import discovery_figures
+from gaitdisc.report.discovery_figure import accounts_figure, discovery_figures
 from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
+from gaitdisc.results.discovery import Account, Discovery, Estimate, FoundEffect
 from gaitdisc.results.effect_words import (
     amount,
     at_place,
@@ -36,6 +36,7 @@ VERDICTS = {
     "wrong_initial_condition": "wrong initial condition: only the start is wrong",
     "process_noise": "process noise: something random pushes the system",
     "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
+    "unexplained": "unexplained: more than noise is left, and neither a known effect nor a fitted shape closes it",
 }
 
 
@@ -162,31 +163,29 @@ def corrections_table(discovery: Discovery) -> Table:
     return Table("corrections", caption, headings, tuple(rows), _frame(records, columns))
 
 
-def rivals_table(discovery: Discovery) -> Table:
-    """What else was weighed, best first, and what would distinguish it from what was named."""
+def accounts_table(discovery: Discovery) -> Table:
+    """What explains the gap, what was named first, and what would distinguish the others from it."""
+    named = discovery.effects[:1]
+    weighed = discovery.accounts or tuple(Account((one,)) for one in discovery.rivals)
+    small = [Account((one,)) for one in discovery.rivals if one.small and discovery.accounts]
     rows, records = [], []
-    named = discovery.effects[0].name if discovery.effects else ""
-    for one in discovery.rivals:
-        apart = would_distinguish(named, one.name) if named else NONE
-        rows.append(
-            (
-                spoken(one.name),
-                at_place(one.kind, one.place),
-                _numbers(one),
-                _bic(one.bic),
-                "small" if one.small else "yes" if one.tied else "no",
-                apart,
-            )
-        )
-        records.append((one.name, one.kind, one.place, one.bic, one.tied, one.small, apart))
-    own = ", ".join(_bic(one.bic) for one in discovery.effects[:1])
+    for number, one in enumerate((*weighed, *small), 1):
+        first, size = one.effects[0], one.held_out
+        own = number == 1 and one.effects == discovery.effects
+        apart = NONE if own or not named else would_distinguish(named[0].name, one.effects[-1].name)
+        closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
+        tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
+        numbers = "; ".join(_numbers(each) for each in one.effects)
+        rows.append((str(number), one.asked_as, numbers, _percent(closed), _bic(first.bic), tied, apart))
+        records.append((number, one.asked_as, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
-        f"What else was weighed, {counted(len(rows), 'rival')}, best first. Evidence: fall of the Bayesian criterion "
-        f"from the simulation as read{f' (what was named: {own})' if own else ''}; the larger the better. "
-        "Tied: these data cannot distinguish it from what was named; small: it closes too little to be named."
+        f"What explains the gap, {counted(len(rows), 'explanation')}. Closed: of the squared gap above the noise, on "
+        "held-out data. Evidence: fall of the Bayesian criterion from the simulation as read; the larger the better. "
+        "Tied: these data cannot distinguish it from what was named; small: it closes too little to be named. To take "
+        'another one, search nothing and give it: gaitdisc discover ... --effects "effect@place, effect@place".'
     )
-    headings = ("rival", "place", "its numbers", "evidence", "tied", "what would distinguish them")
-    columns = ("rival", "kind", "place", "evidence", "tied", "small", "what_would_distinguish_them")
+    headings = ("", "effect@place", "its numbers", "closed", "evidence", "tied", "what would distinguish them")
+    columns = ("number", "effects", "closed", "p", "evidence", "tied", "what_would_distinguish_them")
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
 
 
@@ -237,7 +236,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "trials": trials_table(discovery),
         "corrections": corrections_table(discovery),
         "where": where_table(discovery),
-        "rivals": rivals_table(discovery),
+        "accounts": accounts_table(discovery),
         "findings": data_findings(discovery),
     }
     if made:
@@ -249,6 +248,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "verdict": VERDICTS[discovery.verdict],
         "terms": [effect for effect in discovery.effects if effect.term],
         "figures": save_figures(discovery_figures(discovery), folder),
+        "left": save_figures(accounts_figure(discovery), folder),
         "tables": tables,
         "method": how.sentences,
         "added_to": how.added_to,

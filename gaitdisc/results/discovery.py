@@ -26,6 +26,7 @@ VERDICTS = (
     "wrong_initial_condition",
     "process_noise",
     "unnamed",
+    "unexplained",
 )
 
 # What an answer follows, as its provenance has it
@@ -59,7 +60,8 @@ class FoundEffect:
     # with it in the place of what it rivals
     bic: float = float("nan")
     tied: bool = False  # for a rival: these data cannot separate it from what was named
-    small: bool = False  # for a rival: it closes too little of the gap to be named, or not beyond chance
+    # for a rival, and beside others that were given: it closes too little of the gap to be named, or not beyond chance
+    small: bool = False
     # of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither
     bounds: tuple[float, ...] = ()
     # states that the effect brings along, and the time derivative of each
@@ -102,16 +104,44 @@ class GapSize:
     # for each channel: before, after, noise floor [the channel's unit]
     channels: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     pieces: int = 0
+    # which data these are: `trial 4`, `trial 1, last quarter`; empty where all that was fitted is meant
+    of: str = ""
+
+    @property
+    def ranked(self) -> list[str]:
+        """Channels, that with the largest gap against its noise first."""
+        return sorted(self.channels, key=lambda name: -self.channels[name][0] / (self.channels[name][2] or 1.0))
 
     @property
     def unexplained(self) -> float:
-        """Share of the variance above the noise floor that is left; 0 where nothing is.
+        """Share of the variance above the noise floor that is left; 0 where nothing is, 1 where no less is.
 
         >>> GapSize(before=3.0, after=1.0, noise_floor=1.0).unexplained
         0.0
         """
         floor = self.noise_floor**2
-        return max(self.after**2 - floor, 0.0) / max(self.before**2 - floor, 1e-12)
+        return min(max(self.after**2 - floor, 0.0) / max(self.before**2 - floor, 1e-12), 1.0)
+
+
+@dataclass(frozen=True)
+class Account:
+    """An explanation of the whole gap, one effect or several together, and what it leaves of held-out data."""
+
+    effects: tuple[FoundEffect, ...]
+    held_out: GapSize | None = None  # None where it was not computed: folders of earlier releases
+    # of the first held-out run, for the channel with the largest gap: times [s], and measured minus its run
+    time: tuple[float, ...] = ()
+    left: tuple[float, ...] = ()
+
+    @property
+    def asked_as(self) -> str:
+        """What `--effects` takes to fit exactly this."""
+        return ", ".join(f"{one.name}@{one.place}" for one in self.effects)
+
+    @property
+    def tied(self) -> bool:
+        """Whether these data cannot distinguish it from what was named."""
+        return any(one.tied for one in self.effects)
 
 
 @dataclass(frozen=True)
@@ -150,7 +180,7 @@ class Discovery(Saved, file="discovery.json"):
     Parameters
     ----------
     verdict : str
-        One of eight.
+        One of nine.
     sentence : str
         The answer, for a person.
     where : tuple of Whereabouts
@@ -173,6 +203,11 @@ class Discovery(Saved, file="discovery.json"):
         Numbers that moved within their own bounds.
     beside : mapping of str to float
         Of a device walk: model -> its held-out error [unit of the last channel].
+    accounts : tuple of Account
+        The first five explanations of the whole gap, sets among them: what was named, then what closes most on held-out
+        data.
+    given : str
+        Whether held-out data made effects that a person gave ``proven`` or ``refuted``; empty after a search.
     """
 
     verdict: str
@@ -189,6 +224,8 @@ class Discovery(Saved, file="discovery.json"):
     provenance: Provenance | None = None
     corrections: tuple[Correction, ...] = ()
     beside: Mapping[str, float] = field(default_factory=dict)
+    accounts: tuple[Account, ...] = ()
+    given: str = ""
 
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
@@ -222,10 +259,19 @@ class Discovery(Saved, file="discovery.json"):
         return {
             "verdict": self.verdict,
             "where": [_where(one) for one in self.where],
-            "effects": [_effect(one) for one in self.effects],
+            "effects": [_effect(one) | ({"small": True} if one.small else {}) for one in self.effects],
             "corrections": [_correction(one) for one in self.corrections],
             "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
+            "accounts": [
+                {
+                    "effects": [_effect(each) | {"tied": each.tied} for each in one.effects],
+                    "held_out": _gap(one.held_out) if one.held_out else None,
+                    "left": {"time": [*map(_number, one.time)], "measured_minus_run": [*map(_number, one.left)]},
+                }
+                for one in self.accounts
+            ],
+            **({"given": self.given} if self.given else {}),
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
             **({"beside": {name: _number(one) for name, one in self.beside.items()}} if self.beside else {}),
@@ -276,6 +322,7 @@ def _gap(one: GapSize) -> dict[str, Any]:
         "unexplained": _number(one.unexplained),
         "p": _number(one.p),
         "pieces": one.pieces,
+        **({"of": one.of} if one.of else {}),
         "channels": {name: named(sizes) for name, sizes in one.channels.items()},
     }
 

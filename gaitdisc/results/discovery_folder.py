@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaitdisc.results.discovery import (
+    Account,
     Correction,
     Discovery,
     Estimate,
@@ -70,6 +71,8 @@ def load_discovery(folder: Path) -> Discovery:
             corrections=tuple(
                 Correction(one["parameter"], _number(one["from"]), _estimate(one, "to")) for one in data["corrections"]
             ),
+            accounts=tuple(map(_account, data.get("accounts", ()))),
+            given=data.get("given", ""),
             beside={name: _number(one) for name, one in data.get("beside", {}).items()},
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -113,9 +116,14 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
     )
 
 
+def _account(row: Mapping[str, Any]) -> Account:
+    time, left = (tuple(map(_number, row["left"][name])) for name in ("time", "measured_minus_run"))
+    return Account(tuple(map(_effect, row["effects"])), _gap(row["held_out"]) if row["held_out"] else None, time, left)
+
+
 def _gap(row: Mapping[str, Any]) -> GapSize:
     channels = {name: _sizes(size) for name, size in row["channels"].items()}
-    return GapSize(*_sizes(row), p=_number(row["p"]), channels=channels, pieces=row["pieces"])
+    return GapSize(*_sizes(row), p=_number(row["p"]), channels=channels, pieces=row["pieces"], of=row.get("of", ""))
 
 
 def _sizes(row: Mapping[str, Any]) -> tuple[float, float, float]:

@@ -128,8 +128,8 @@ def stride_period(
 
 def _correlation(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     both = np.isfinite(a) & np.isfinite(b)
-    if both.sum() < 10:
+    if (count := np.count_nonzero(both)) < 10:
         return 0.0
-    a, b = a[both] - a[both].mean(), b[both] - b[both].mean()
+    a, b = (part - part.mean() for part in ((a, b) if count == len(both) else (a[both], b[both])))
     size = float(np.sqrt((a @ a) * (b @ b)))
     return float(a @ b) / size if size > 0 else 0.0

@@ -217,16 +217,22 @@ def _refuse_timeless(time: NDArray[np.float64], trial: NDArray[np.object_], file
 
 
 def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str) -> list[Finding]:
-    """Report states that are not measured, and columns that nothing uses."""
+    """Report states that are not measured, and columns that nothing uses; of both at once, one may be the other."""
     found = []
     absent = [name for name, _ in simulation.observations if name not in channels]
+    wanted = {"trial", "time", *channels, *(each.name for each in simulation.inputs)}
+    unused = [column for column in columns if column not in wanted]
+    if absent and unused:
+        raise ChannelError(
+            "each column is an input or is observed, where a state has no column",
+            f"{file}: no column is named after {', '.join(absent)}, and nothing uses {', '.join(unused[:10])}",
+            "Rename the column, take it away, or list what is measured under [observations].",
+        )
     if absent:
         what = f"not measured: {', '.join(absent)}"
         found.append(
             Finding("note", "not measured", file, what, "nothing; it follows from the others by the equations")
         )
-    wanted = {"trial", "time", *channels, *(each.name for each in simulation.inputs)}
-    unused = [column for column in columns if column not in wanted]
     if unused:
         listed = ", ".join(unused[:10]) + (", ..." if len(unused) > 10 else "")
         found.append(Finding("note", "unused columns", file, listed, ""))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,14 +18,12 @@ from .dmd import Dmd
 from .gaussian_process import KERNELS as KERNEL_KINDS
 from .gaussian_process import GaussianProcess
 from .methods import ByOutput
+from .record import LONGEST_STEP_S, KnownRates, Rates, System, rk4_step
 from .sindy import Sindy
-from .system import LONGEST_STEP_S, KnownRates, Rates, System, rk4_step
 
 BOUND = 1e6  # a state beyond has diverged
 PRODUCTS, KERNELS, LAYERS, TIMES = 0, 1, 2, 3  # what `tables` holds
-Tables = tuple[NDArray[np.float64], ...]
 TABLES = 6
-LAYER_NAMES = ("sigmoid", "radial")
 LEARNED_STEP_S = 2.5e-3  # of Runge-Kutta order 4 with a learned term: its error is below that of any fit
 
 
@@ -147,7 +146,7 @@ class LearnedTerm:
     """Features and weights."""
 
     kind: int
-    tables: Tables  # each ndarray, six matrices
+    tables: tuple[NDArray[np.float64], ...]  # each ndarray, six matrices
 
 
 def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
@@ -163,7 +162,7 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
     return LearnedTerm(LAYERS, _six(*_layer_tables(model)))
 
 
-def _layer_tables(model: Model) -> Tables:
+def _layer_tables(model: Model) -> tuple[NDArray[np.float64], ...]:
     """Weights with offsets in a last column, network under network; the scale of the outputs goes into the readout."""
     from gaitdisc.networks.trained_network import TrainedNetwork
 
@@ -177,7 +176,7 @@ def _layer_tables(model: Model) -> Tables:
                 "Fit one of these.",
             )
         weights = {name: np.asarray(values, float) for name, values in network.weights().items()}
-        for rows, each in zip((first, second), LAYER_NAMES, strict=True):
+        for rows, each in ((first, "sigmoid"), (second, "radial")):
             rows.append(np.column_stack([weights[f"{each}.weight"], weights[f"{each}.bias"]]))
         size = np.where(network.y_scale.constant, 0.0, network.y_scale.sd)
         third.append(weights["readout.weight"] * size[:, None])
@@ -186,7 +185,7 @@ def _layer_tables(model: Model) -> Tables:
     return np.vstack(first), np.vstack(second), np.vstack(third), scale, np.concatenate(offset)
 
 
-def _six(*tables: NDArray) -> Tables:
+def _six(*tables: NDArray) -> tuple[NDArray[np.float64], ...]:
     full = [np.ascontiguousarray(np.atleast_2d(np.array(table, float))) for table in tables]
     return tuple(full + [np.zeros((1, 1))] * (TABLES - len(full)))
 
@@ -214,7 +213,12 @@ def with_learned_rates(
         plan = (len(time) - 1, substeps, h)
         integrate_augmented(_program(known), (term.kind, term.tables), np.array(start, float), plan, found)
     else:
-        _in_python((known, learned), np.asarray(start, float), halves, substeps, found)
+        table = learned(halves[:, None]) if learned.inputs == ("t",) else None  # a model of time, evaluated at once
+
+        def rates(state: NDArray[np.float64], place: int) -> NDArray[np.float64]:
+            return known(state) + (learned(state) if table is None else table[place])
+
+        _in_python(rates, np.asarray(start, float), h, substeps, found)
     finite = np.isfinite(found).all(axis=1)
     return AugmentedRun(found, None if finite.all() else float(time[max(int(np.argmin(finite)) - 1, 0)]))
 
@@ -249,25 +253,11 @@ def _program(known: KnownRates) -> tuple[NDArray[np.uint64], NDArray[np.float64]
     return np.ascontiguousarray(code[program.setup :]), registers
 
 
-def _in_python(
-    models: tuple[Rates, Model],
-    start: NDArray[np.float64],
-    halves: NDArray[np.float64],
-    substeps: int,
-    found: NDArray[np.float64],
-) -> None:
-    """Runge-Kutta of order 4 for rates that are not of a simulation file; a model of time is evaluated at once."""
-    known, learned = models
-    of_time = learned.inputs == ("t",)
-    table = learned(halves[:, None]) if of_time else None
-    h, x = 2 * (halves[1] - halves[0]), start[None].copy()
-
-    def rates(state: NDArray[np.float64], place: int) -> NDArray[np.float64]:
-        return known(state) + (table[place] if table is not None else learned(state))
-
-    found[0] = start
+def _in_python(rates: Callable, start: NDArray[np.float64], h: float, substeps: int, found: NDArray) -> None:
+    """Runge-Kutta of order 4 for rates that are not of a simulation file."""
+    x = found[0] = start[None]
     with np.errstate(all="ignore"):
-        for step in range((len(halves) - 1) // 2):
+        for step in range(substeps * (len(found) - 1)):
             one = rates(x, 2 * step)
             two = rates(x + 0.5 * h * one, 2 * step + 1)
             three = rates(x + 0.5 * h * two, 2 * step + 1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,7 @@ SETTLED = 1e-6  # of the objective, in one step
 NOTHING = 1e-2  # weights that the samples determine: below, there is nothing but noise
 
 
-@dataclass(frozen=True)
-class _Weighing:
+class _Weighing(NamedTuple):
     """Precision of the weights and of the noise (MacKay's alpha and beta)."""
 
     weights: float
@@ -114,11 +113,8 @@ def _outputs(weights: NDArray[np.float64], x: NDArray[np.float64]) -> tuple[NDAr
     second = np.exp(-n * n)
     of_radial = -2 * n * second * readout
     of_sigmoid = (of_radial @ radial) * first * (1 - first)
-    count = len(x)
-    slopes = (
-        (of_sigmoid[:, :, None] * x[:, None]).reshape(count, -1), of_sigmoid,
-        (of_radial[:, :, None] * first[:, None]).reshape(count, -1), of_radial, second, np.ones((count, 1)),
-    )  # fmt: skip
+    each = [(of_sigmoid[:, :, None] * x[:, None]), of_sigmoid, of_radial[:, :, None] * first[:, None], of_radial]
+    slopes = [part.reshape(len(x), -1) for part in (*each, second, np.ones(len(x)))]
     return second @ readout + offset, np.concatenate(slopes, axis=1)
 
 

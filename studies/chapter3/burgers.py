@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import time as clock
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.compiled import compiled
-from gaitdisc.errors import GaitdiscError
 from gaitdisc.recording import Samples
 
-from .augmented_run import LearnedTerm, learned_rate, learned_term
-from .cell import part, terms_of
-from .discrepancy_cell import PARTS, DiscrepancyCell
-from .error_signal import error_samples
+from .augmented_run import BOUND, LearnedTerm, learned_rate, learned_term
+from .cell import DiscrepancyCell, cell_by, terms_of
 from .methods import Method, MethodSettings, fitted
-from .record import Conditions, Record, recorded
-from .system import LONGEST_STEP_S, System, rk4_step
+from .record import LONGEST_STEP_S, Conditions, Record, System, error_samples, recorded, rk4_step
 
 POINTS, LENGTH = 256, 16.0  # of the text, and of the published code
-BOUND = 1e6
 HIGH_WAVES, ABOVE, MARGIN = 0.75, 5.0, 1.5  # as `smoothing`, over space: share of the waves that is noise alone
 LOCAL = ("u", "slope", "bend")  # of the field at a point
 MOST_SAMPLES = 3000  # of all points at all times
@@ -55,8 +49,7 @@ class BurgersRates:
 
 def slope_and_bend(x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """First and second derivative in space of fields, by Fourier, (point, state) each."""
-    waves = 2j * np.pi / LENGTH * np.arange(POINTS // 2 + 1)
-    spectrum = np.fft.rfft(x, axis=1)
+    waves, spectrum = 2j * np.pi / LENGTH * np.arange(POINTS // 2 + 1), np.fft.rfft(x, axis=1)
     return np.fft.irfft(waves * spectrum, POINTS, axis=1), np.fft.irfft(waves**2 * spectrum, POINTS, axis=1)
 
 
@@ -93,7 +86,7 @@ class LocalField:
     inputs: tuple[str, ...]  # values of the field; what is learned of each
     outputs: tuple[str, ...]  # values of the field; what is learned of each
     term: LearnedTerm
-    said: str = ""  # terms of the learned function, where the method says any
+    said: str  # terms of the learned function, where the method says any
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, place) for fields (sample, place)."""
@@ -124,22 +117,16 @@ def recorded_field(system: System, conditions: Conditions) -> Record:
 
 def local_cell(record: Record, method: Method, settings: MethodSettings | None = None) -> DiscrepancyCell:
     """Learn the missing rate of a field as a function of the field at a point, and test the augmented model."""
-    made, begun = record.conditions, clock.process_time()
-    head = (record.system.name, method, "dynamics", "at each point", made.noise, made.seed, record.system.channels)
-    try:
-        samples = error_samples(record, "dynamics")
-        learned = fit_local_field(samples, method, settings or MethodSettings(), made.seed)
-    except GaitdiscError as error:
-        return DiscrepancyCell(*head, {}, clock.process_time() - begun, 0.0, refused=str(error))
-    fit_s, begun = clock.process_time() - begun, clock.process_time()
-    with np.errstate(all="ignore"):
-        parts = {name: part(record, learned, "dynamics", name) for name in PARTS}
-    return DiscrepancyCell(*head, parts, fit_s, clock.process_time() - begun, learned.said)
+
+    def fit() -> LocalField:
+        seed = record.conditions.seed
+        return fit_local_field(error_samples(record, "dynamics"), method, settings or MethodSettings(), seed)
+
+    return cell_by(record, method, "dynamics", "at each point", fit)
 
 
 def _points(fields: NDArray[np.float64]) -> NDArray[np.float64]:
-    slope, bend = slope_and_bend(fields)
-    return np.column_stack([each.ravel() for each in (fields, slope, bend)])
+    return np.column_stack([each.ravel() for each in (fields, *slope_and_bend(fields))])
 
 
 @compiled

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import warnings
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -84,7 +87,7 @@ def delayed(samples: Samples, delays: int, rank: int) -> Hankel:
         )
     still, moving = scale_of(samples.y).constant, samples
     if still.any() and not still.all():  # a field may have many outputs that stand still
-        names = tuple(name for name, rests in zip(samples.outputs, still, strict=True) if not rests)
+        names = tuple(np.array(samples.outputs)[~still])
         moving = replace(samples, y=samples.y[:, ~still], outputs=names)
     moving.trainable(least)
     steps = np.diff(samples.time)
@@ -106,31 +109,21 @@ def delayed(samples: Samples, delays: int, rank: int) -> Hankel:
 
 
 def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[int, int, int]):
-    import contextlib
-    import io
-    import warnings
-
     rank, bags, seed = plan
     state = np.random.get_state()  # noqa: NPY002 PyDMD draws from numpy's global state
     np.random.seed(seed)  # noqa: NPY002
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")  # of iterations that reached their number, which is a setting here
+            options = {"verbose": False, "maxiter": MOST_ITERATIONS}
+            bagged = {"num_trials": bags, "trial_size": 0.6, "eig_constraints": {"stable"}, "varpro_opts_dict": options}
             fit = chapter3_library("pydmd").BOPDMD(
-                svd_rank=rank,
-                use_proj=False,  # the columns are projected already
-                num_trials=bags,
-                trial_size=0.6,
-                eig_constraints={"stable"},
-                varpro_opts_dict={"verbose": False, "maxiter": MOST_ITERATIONS},
-            )
+                svd_rank=rank, use_proj=False, **bagged
+            )  # they are projected already
             return fit.fit(stacked.astype(complex), time)
     except (np.linalg.LinAlgError, ValueError) as error:
-        raise TrainingError(
-            "variable projection finds the modes of a record",
-            f"PyDMD gave up: {error}",
-            "Take fewer modes, or filter the record.",
-        ) from error
+        sought, remedy = "variable projection finds the modes of a record", "Take fewer modes, or filter the record."
+        raise TrainingError(sought, f"PyDMD gave up: {error}", remedy) from error
     finally:
         np.random.set_state(state)  # noqa: NPY002
 

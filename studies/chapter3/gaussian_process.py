@@ -67,10 +67,8 @@ class GaussianProcess:
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input)."""
         scaled = self.scale.scaled(np.asarray(x, float))
-        columns = [
-            kernel(self.kind, scaled, self.centres, self.lengths[k]) @ self.weights[:, k]
-            for k in range(len(self.outputs))
-        ]
+        pairs = zip(self.lengths, self.weights.T, strict=True)
+        columns = [kernel(self.kind, scaled, self.centres, lengths) @ weights for lengths, weights in pairs]
         return np.column_stack(columns) + self.offset
 
     def sd(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -107,8 +105,7 @@ def fit_gaussian_process(
         own.
     """
     samples.trainable(LEAST_SAMPLES)
-    scale, offset = scale_of(samples.x), samples.y.mean(axis=0)
-    size = samples.y.std(axis=0)
+    scale, offset, size = scale_of(samples.x), samples.y.mean(axis=0), samples.y.std(axis=0)
     x, y = scale.scaled(samples.x), (samples.y - offset) / size
     some = np.unique(np.linspace(0, len(x) - 1, min(MOST_FOR_LENGTHS, len(x))).astype(int))
     exact = len(x) <= most_exact
@@ -116,9 +113,7 @@ def fit_gaussian_process(
     found = [_likeliest(x[some], y[some, k], kind) for k in range(y.shape[1])]
     solve = _exact_weights if exact else _projected_weights
     weights = np.column_stack([solve(x, y[:, k], centres, each) for k, each in enumerate(found)]) * size
-    lengths, noise, own = (
-        np.array(column) for column in zip(*((f.lengths, f.noise, f.size) for f in found), strict=True)
-    )
+    lengths, noise, own = (np.array([getattr(f, name) for f in found]) for name in ("lengths", "noise", "size"))
     process = GaussianProcess(
         samples.inputs, samples.outputs, scale, centres, lengths, weights, offset, np.sqrt(noise) * size, exact,
         np.sqrt(own) * size, NOTHING_KNOWN, kind,

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from markdown_table import markdown_table
 
-from .discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
+from .cell import FORECAST, ORACLE, RECONSTRUCTION
 from .pages import METHOD_WORDS, spread_words
 from .recommend import FOUND, STARTS, WANTS, recommend
 
@@ -65,17 +65,15 @@ def said_of(found: pd.DataFrame, column: str, factor: float = 1.0) -> str:
 
 def sets_tables(table: pd.DataFrame) -> str:
     """Every number of every set of a table of cells, under its name."""
-    said = []
-    for name in dict.fromkeys(table["set"]):
-        chaotic = str(name).startswith("lorenz")
-        for number in ("forecast", "valid", "jump") if chaotic else ("forecast",):
-            unit = {"forecast": "less RMSE than the known model [%]", "valid": "valid [Lyapunov times]"}
-            said.append(f"## {name}: {unit.get(number, 'the same until the first jump [%]')}\n")
-            said.append(set_table(table, str(name), number))
+    said, units = [], {"forecast": "less RMSE than the known model [%]", "valid": "valid [Lyapunov times]"}
+    units["jump"] = "the same until the first jump [%]"
+    for name in dict.fromkeys(map(str, table["set"])):
+        for number in units if name.startswith("lorenz") else ("forecast",):
+            said += [f"## {name}: {units[number]}\n", set_table(table, name, number)]
     return "\n".join(said)
 
 
-def recommended_table() -> str:
+def recommended_table(_: pd.DataFrame) -> str:
     """What `recommend` answers: forecast and valid time from the estimated start, then from the true state."""
     rows = []
     for chaotic, noise, step, samples in RECORDS:
@@ -87,8 +85,8 @@ def recommended_table() -> str:
             if not len(worst):
                 said.append("none")
                 continue
-            same = some[(some["system"] == worst["system"].iloc[0]) & (some["start"] == STARTS[ORACLE])].iloc[0]
             one = worst.iloc[0]
+            same = some[(some["system"] == one["system"]) & (some["start"] == STARTS[ORACLE])].iloc[0]
             said.append(
                 f"{METHOD_WORDS[found.method]} ({one['accuracy']:.1f} %, {one['valid_s']:.1f} s; "
                 f"oracle {same['accuracy']:.1f} %, {same['valid_s']:.1f} s; n = {one['seeds']:.0f})"
@@ -98,7 +96,7 @@ def recommended_table() -> str:
     return markdown_table(" | ".join(("record", "noise", "step", "samples", *WANTS)), rows)
 
 
-def evidence_table() -> str:
+def evidence_table(_: pd.DataFrame) -> str:
     """What `recommend` answers from."""
     rows = []
     for one in pd.read_csv(FOUND).itertuples(index=False):

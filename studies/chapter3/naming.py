@@ -13,22 +13,20 @@ from threadpoolctl import threadpool_limits
 from gaitdisc.discovery.discover import discover
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.model import Model
-from gaitdisc.results.discovery import Discovery, FoundEffect
+from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-from .cell import learned_model, part, terms_of
-from .discrepancy_cell import ORACLE
-from .error_signal import Approach, error_samples
+from .cell import ORACLE, learned_model, part, terms_of
 from .methods import Method, MethodSettings
-from .record import Record, recorded
+from .record import Approach, KnownRates, Record, System, error_samples, recorded
 from .sindy import Sindy
-from .system import KnownRates, System
 
 ANSWERS = ("named", "tied", "among others", "wrong name", "curve", "nothing", "refused")
 TOOLS = ("discover", "sindy", "dmd", "gp", "nn")
+NAN = float("nan")
 NOTHING = 1e-6  # of the known model's own rates or states: an error signal below it is rounding
 
 
@@ -45,12 +43,12 @@ class Naming:
     # stands first), more than it, something else, a curve without a name, that nothing is missing, or a refusal
     answer: str
     said: str
-    amount: float = float("nan")  # the effect's number over its true one; NaN where the hidden effect was not named
+    amount: float = NAN  # the effect's number over its true one; NaN where the hidden effect was not named
     # median over channels of how much less RMSE the forecast has than that of the known model, both from the noise-free
     # true state, an oracle [%]; NaN where it diverged or was not run
-    accuracy: float = float("nan")
+    accuracy: float = NAN
     diverged_s: float | None = None  # when the forecast left every bound [s since its start]
-    seconds: float = float("nan")
+    seconds: float = NAN
 
     def __post_init__(self) -> None:
         """Refuse an answer that the table does not know."""
@@ -76,7 +74,7 @@ class HiddenEffect:
     words: str  # what is hidden, in words; empty for nothing
     system: System
     effect: tuple[str, ...] = ()  # place and name by which `gaitdisc discover` would name it; empty for nothing
-    amount: float = float("nan")  # its number, in the convention of `gaitdisc discover`
+    amount: float = NAN  # its number, in the convention of `gaitdisc discover`
     # output to terms with their coefficients, by which SINDy would name it; empty where it has no such name
     terms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     approach: Approach = "dynamics"
@@ -90,21 +88,18 @@ def method_answer(
 
     SINDy answers with terms, the others with a curve: of time (DMD) or of the states (Gaussian process, network).
     """
-    begun, settings = clock.process_time(), settings or MethodSettings()
-    made = record.conditions
-    refused = Naming(hidden.case, hidden.words, method, made.noise, made.seed, "refused", "")
+    begun, made = clock.process_time(), record.conditions
+    head = (hidden.case, hidden.words, method, made.noise, made.seed)
     try:
         with threadpool_limits(1):
-            learned = learned_model(record, method, hidden.approach, settings)
+            learned = learned_model(record, method, hidden.approach, settings or MethodSettings())
     except GaitdiscError as error:
-        return replace(refused, said=str(error), seconds=clock.process_time() - begun)
-    seconds = clock.process_time() - begun
-    forecast = part(record, learned, hidden.approach, ORACLE)
-    accuracy = float(np.median(forecast.accuracy()))
-    answer, amount = _named(hidden, learned) if isinstance(learned, Sindy) else ("curve", float("nan"))
+        return Naming(*head, "refused", str(error), seconds=clock.process_time() - begun)
+    seconds, forecast = clock.process_time() - begun, part(record, learned, hidden.approach, ORACLE)
+    answer, amount = _named(hidden, learned) if isinstance(learned, Sindy) else ("curve", NAN)
     said = terms_of(learned) or curve_words(hidden, record, learned)
-    answered = replace(refused, answer=answer, said=said, amount=amount)
-    return replace(answered, accuracy=accuracy, diverged_s=forecast.diverged_s, seconds=seconds)
+    accuracy = float(np.median(forecast.accuracy()))
+    return Naming(*head, answer, said, amount, accuracy, forecast.diverged_s, seconds)
 
 
 def curve_words(hidden: HiddenEffect, record: Record, learned: Model) -> str:
@@ -126,9 +121,9 @@ def _named(hidden: HiddenEffect, learned: Sindy) -> tuple[str, float]:
     sought = {(output, term) for output, terms in hidden.terms.items() for term in terms}
     there = {(output, term) for output, terms in found.items() for term in terms}
     if not there:
-        return "nothing", float("nan")
+        return "nothing", NAN
     if not sought or not sought <= there:
-        return "wrong name", float("nan")
+        return "wrong name", NAN
     output, term = next(iter(sorted(sought)))
     return "named" if there == sought else "among others", found[output][term] / hidden.terms[output][term]
 
@@ -148,24 +143,24 @@ def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
     found, augmented = discover(simulation, Measured(drive, shown[None], ("1",), system.channels))
     seconds = clock.process_time() - begun
     answer, amount = answer_of(hidden, found)
-    accuracy = forecast_accuracy(record, augmented)
-    case = (hidden.case, hidden.words, "discover", made.noise, made.seed, answer, found.sentence)
-    return Naming(*case, amount, accuracy, None, seconds)
+    head = (hidden.case, hidden.words, "discover", made.noise, made.seed)
+    return Naming(*head, answer, found.sentence, amount, forecast_accuracy(record, augmented), None, seconds)
 
 
 def answer_of(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
     """Answer of a discovery in the words of `Naming`, and its number over the true one."""
-    named: dict[tuple[str, ...], FoundEffect] = {(one.place, one.name): one for one in found.effects}
+    named = {(one.place, one.name): one for one in found.effects}
     if not named:
-        return "nothing", float("nan")
+        return "nothing", NAN
     tied = {(one.place, one.name) for one in found.rivals if one.tied}
-    if hidden.effect in named:
-        number = next(iter(named[hidden.effect].estimates.values())).value
+    effect = next((one for place, one in named.items() if place == hidden.effect), None)
+    if effect:
+        number = next(iter(effect.estimates.values())).value
         alone = len(named) == 1 or found.verdict == "wrong_initial_condition"
         return ("among others" if not alone else "tied" if tied else "named"), number / hidden.amount
     if hidden.effect in tied:
-        return "tied", float("nan")
-    return ("curve" if found.verdict == "unnamed" else "wrong name"), float("nan")
+        return "tied", NAN
+    return ("curve" if found.verdict == "unnamed" else "wrong name"), NAN
 
 
 def forecast_accuracy(record: Record, augmented: Simulation) -> float:

@@ -12,7 +12,7 @@ import pandas as pd
 
 from gaitdisc.errors import SchemaError
 
-from .discrepancy_cell import FORECAST, ORACLE, DiscrepancyCell, cells_table
+from .cell import FORECAST, ORACLE, DiscrepancyCell, cells_table
 from .dmd import DELAYS, RANK
 from .methods import OF_TIME
 
@@ -75,11 +75,8 @@ def recommend(
     table = pd.read_csv(FOUND) if evidence is None else evidence
     missing = [name for name in COLUMNS if name not in table]
     if missing:
-        raise SchemaError(
-            "evidence has the columns of measured_cells",
-            f"{', '.join(missing)} missing",
-            "Make it with measured_cells.",
-        )
+        absent = f"{', '.join(missing)} missing"
+        raise SchemaError("evidence has the columns of measured_cells", absent, "Make it with measured_cells.")
     table = _nearest(table[table["system"].str.contains("Lorenz") == chaotic], noise, samples, dt_s)
     near, step, length = float(table["noise"].iloc[0]), float(table["dt_s"].iloc[0]), int(table["samples"].iloc[0])
     by = "valid_s" if chaotic else "accuracy"
@@ -90,35 +87,31 @@ def recommend(
     shown = pd.concat([rows, oracle.sort_values(order, ascending=False)], ignore_index=True)
     better = _allowed(rows, want, samples)
     if not len(better):
-        return Recommendation(
-            "",
+        why = (
             f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods {READER[want]}forecast "
             f"better than the known model from a start estimated from the data: the known model alone is best there, "
-            f"valid for {table['valid_known_s'].median():.2f} s.",
-            shown,
+            f"valid for {table['valid_known_s'].median():.2f} s."
         )
+        return Recommendation("", why, shown)
     best = better.iloc[0]
     if want == "speed":
         close = better[better[by] >= best[by] - (NEAR if by == "accuracy" else NEAR / 100 * best[by])]
         best = close.sort_values("seconds", kind="stable").iloc[0]
+    same, also = oracle[(oracle["method"] == best["method"]) & (oracle["system"] == best["system"])], ""
+    if len(same):
+        accuracy, valid_s = same[["accuracy", "valid_s"]].iloc[0]
+        also = f" (from the true state, an oracle: {accuracy:.1f} %, {valid_s:.1f} s)"
     why = (
         f"Measured at {near:.1%} noise and {length:,} samples, {step:g} s apart, on {best['system']}: forecast error "
         f"{best['accuracy']:.1f} % smaller than the known model's ({best['least']:.1f} to {best['greatest']:.1f} %, "
         f"n = {best['seeds']:.0f} seeds), valid for {best['valid_s']:.1f} s, from a start estimated from the data"
-        f"{_oracle_words(oracle, best)}; {best['seconds']:.1f} s of processor time."
+        f"{also}; {best['seconds']:.1f} s of processor time."
     )
     if not 1 / BEYOND <= samples / length <= BEYOND:
         why += f" This record has {samples:,} samples: there it was not measured."
     if dt_s is not None and not 1 / BEYOND <= dt_s / step <= BEYOND:
         why += f" This record has a sample every {dt_s:g} s: at this noise nothing was measured there."
     return Recommendation(str(best["method"]), why, shown)
-
-
-def _oracle_words(oracle: pd.DataFrame, best: pd.Series) -> str:
-    same = oracle[(oracle["method"] == best["method"]) & (oracle["system"] == best["system"])]
-    if not len(same):
-        return ""
-    return f" (from the true state, an oracle: {same['accuracy'].iloc[0]:.1f} %, {same['valid_s'].iloc[0]:.1f} s)"
 
 
 def _nearest(table: pd.DataFrame, noise: float, samples: int, dt_s: float | None) -> pd.DataFrame:
@@ -143,8 +136,7 @@ def _allowed(rows: pd.DataFrame, want: Want, samples: int) -> pd.DataFrame:
 
 def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     """Evidence of a study: forecasts with learned rates, medians over channels, then over seeds with their range."""
-    kept = [cell for cell in cells if cell.approach == "dynamics" and cell.variant == "right" and cell.parts]
-    table = cells_table(kept)
+    table = cells_table([c for c in cells if (c.approach, c.variant) == ("dynamics", "right") and c.parts])
     table["seconds"] = table["fit_s"] + table["run_s"]
     keys = ["system", "method", "noise", "dt_s", "samples", "part", "seed"]
     seeds = table.groupby(keys, sort=False)[["accuracy", "valid_s", "seconds", "diverged_s", "valid_known_s"]].median()

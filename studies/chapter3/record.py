@@ -1,17 +1,133 @@
-"""What chapter 3 learns from: a true trajectory, measured with noise and smoothed, in two parts."""
+"""What chapter 3 learns from: a system, a true run measured with noise and smoothed, and its two error signals."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter, sosfiltfilt, welch
 
-from gaitdisc.errors import SamplingError
+from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.model import Model
+from gaitdisc.recording import Samples
+from gaitdisc.simulation.compiled_simulation import Compiled
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
 
-from .system import System
+LONGEST_STEP_S = 5e-3  # of Runge-Kutta order 4 on a field: the fastest wave decays with 253 /s at a viscosity of 0.1
+STEP_S = 5e-4  # of Runge-Kutta order 4: the Lorenz system loses 1e-12 a second to it
+
+
+@dataclass(frozen=True)
+class KnownRates:
+    """Rates of a simulation without inputs; `chapter3.record.Rates`."""
+
+    simulation: Simulation
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be run from a state alone."""
+        if self.simulation.inputs or self.compiled.right_hand_side.delays:
+            raise SimulationError(
+                "the two approaches of chapter 3 are for systems whose rates follow from the state",
+                f"{self.simulation.title!r} has inputs or delays",
+                "Use `gaitdisc discover`, which takes measured inputs and delays.",
+            )
+
+    @property
+    def compiled(self) -> Compiled:
+        """The simulation, ready to run."""
+        return compile_simulation(self.simulation)
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates (point, state) at states (point, state)."""
+        return self.compiled.rates(np.zeros(len(x)), np.asarray(x, float), np.empty((len(x), 0)))
+
+    def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
+        """States (start, steps + 1, state) from many starts; NaN from where one diverged."""
+        drive, none = Drive.of([np.empty((steps + 1, 0))], 1.0 / dt_s), np.zeros(len(starts), int)
+        rows = Rows(none, none, np.asarray(starts, float))
+        return self.compiled.run(drive, rows, steps, substeps=max(1, round(dt_s / STEP_S)))[0]
+
+
+def rk4_step(rates: Callable, x: NDArray[np.float64], h: float) -> NDArray[np.float64]:
+    """States (point, state) one step on, or back, by Runge-Kutta of order 4."""
+    one = rates(x)
+    two = rates(x + 0.5 * h * one)
+    three = rates(x + 0.5 * h * two)
+    return x + h / 6 * (one + 2 * two + 2 * three + rates(x + h * three))
+
+
+class Rates(Protocol):
+    """Right-hand side of a system without inputs."""
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates (point, state) at states (point, state)."""
+        ...
+
+    def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
+        """States (start, steps + 1, state) from many starts; NaN from where one diverged."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Known dynamics f, true dynamics F = f + g, and the measured channels (Eqs. 3.1-3.3, 3.15)."""
+
+    name: str
+    states: tuple[str, ...]
+    known: Rates
+    true: Rates
+    start: NDArray[np.float64]  # (state,), where both begin
+    observation: NDArray[np.float64]  # (channel, state), c of Eq. 3.15; the channels are the first states
+    assumed: NDArray[np.float64] | None = None  # (state,), where the known model is thought to begin, if that is wrong
+    units: tuple[str, ...] = ()  # of the states; empty where they have none
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of what is measured."""
+        return self.states[: len(self.observation)]
+
+
+def system_of(
+    known: Simulation, hidden: Term | None = None, start: tuple[float, ...] = (), gain: tuple[float, ...] = ()
+) -> System:
+    """System of a simulation file and the effect that is hidden from it."""
+    states, units = zip(*((state.name, state.unit) for state in known.states), strict=True)
+    true = KnownRates(known.with_effect(hidden) if hidden else known)
+    first = np.array(start or [float(state.initial or 0.0) for state in known.states])
+    observation = np.eye(len(states))[: len(gain) or None] * (np.array(gain)[:, None] if gain else 1.0)
+    return System(known.title, states, KnownRates(known), true, first, observation, None, units)
+
+
+@dataclass(frozen=True)
+class StochasticRates:
+    """Rates with a random push of every state between any two samples; a `system.Rates`."""
+
+    rates: Rates
+    # of each state: standard deviation of the pushes of a second [unit of the state/sqrt(s)]
+    strength: tuple[float, ...]
+    seed: int = 0
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates (point, state) at states (point, state), without the pushes."""
+        return self.rates(x)
+
+    def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
+        """States (start, steps + 1, state), all starts under the same pushes."""
+        sizes = np.asarray(self.strength) * np.sqrt(dt_s)
+        pushes = sizes * np.random.default_rng(self.seed).standard_normal((steps, len(sizes)))
+        found = np.empty((len(starts), steps + 1, len(sizes)))
+        found[:, 0] = starts
+        for step, push in enumerate(pushes):
+            found[:, step + 1] = self.rates.run(found[:, step], dt_s, 1)[:, 1] + push
+        return found
+
 
 NoiseKind = Literal["normal", "student_t", "outliers", "coloured", "multiplicative"]
 NOISE_KINDS: tuple[NoiseKind, ...] = ("normal", "student_t", "outliers", "coloured", "multiplicative")
@@ -87,8 +203,8 @@ class Conditions:
     noise: float = 0.0  # standard deviation of the noise, as a share of each channel's own, or in its unit
     seed: int = 0
     absolute: bool = False  # the noise is in each channel's unit, as in the published code
-    dt_s: float = 0.01  # between samples, and of the record [s]
-    duration_s: float = 50.0  # between samples, and of the record [s]
+    dt_s: float = 0.01  # between samples [s]
+    duration_s: float = 50.0  # of the record [s]
     train_share: float = 0.6  # share of the record that is learned from
     # as the published code: 4 Hz filter where there is noise, central differences, each forecast starts from the last
     # measured sample, and the truth that it is compared with is run again from there. Otherwise: a cut-off where the
@@ -140,11 +256,9 @@ class Record:
                 "Change sacrificed_s.",
             )
         part = slice(self.split - 1, last)
-        measured = self.measured[part]
+        measured, time = self.measured[part], self.time[part] - self.time[self.split - 1]
         filtered = smoothed(measured, 1.0 / made.dt_s) if made.noise else measured
-        system = replace(self.system, assumed=start)
-        time = self.time[part] - self.time[self.split - 1]
-        return Record(system, made, time, self.truth[part], measured, filtered, count)
+        return Record(replace(self.system, assumed=start), made, time, self.truth[part], measured, filtered, count)
 
 
 def recorded(system: System, conditions: Conditions) -> Record:
@@ -160,9 +274,8 @@ def recorded(system: System, conditions: Conditions) -> Record:
     truth = system.true.run(system.start[None], conditions.dt_s, steps)[0]
     if not np.isfinite(truth).all():
         when = conditions.dt_s * int(np.argmin(np.isfinite(truth).all(axis=1)))
-        raise SamplingError(
-            "a true trajectory stays finite", f"{system.name!r} leaves every bound at {when:g} s", "Change its start."
-        )
+        left = f"{system.name!r} leaves every bound at {when:g} s"
+        raise SamplingError("a true trajectory stays finite", left, "Change its start.")
     clean = truth @ system.observation.T
     size = conditions.noise * (np.ones(clean.shape[1]) if conditions.absolute else clean.std(axis=0))
     rng = np.random.default_rng(conditions.seed)
@@ -171,16 +284,106 @@ def recorded(system: System, conditions: Conditions) -> Record:
     training = measured[:split]
     if conditions.noise:
         training = smoothed(training, 1.0 / conditions.dt_s, 4.0 if conditions.published else None)
-    others = _from_other_starts(system, conditions, truth)
-    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split, others)
-
-
-def _from_other_starts(system: System, conditions: Conditions, truth: NDArray[np.float64]) -> tuple[Record, ...]:
-    """Further records, their starts drawn evenly from where the first one went, one after the other."""
-    low, high = truth.min(axis=0), truth.max(axis=0)
-    found = []
-    for number in range(1, conditions.trajectories):
-        start = np.random.default_rng([STARTS_SEED, number]).uniform(low, high)
+    others = []
+    for number in range(1, conditions.trajectories):  # from starts drawn evenly from where this one went
+        start = np.random.default_rng([STARTS_SEED, number]).uniform(truth.min(axis=0), truth.max(axis=0))
         seed = conditions.seed + OTHER_NOISE * number
-        found.append(recorded(replace(system, start=start), replace(conditions, seed=seed, trajectories=1)))
-    return tuple(found)
+        others.append(recorded(replace(system, start=start), replace(conditions, seed=seed, trajectories=1)))
+    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split, tuple(others))
+
+
+Approach = Literal["dynamics", "state"]
+APPROACHES: tuple[Approach, ...] = ("dynamics", "state")
+TIME = "t"
+SEAM_S = 1.0  # between two records that are learned from as one
+FLOW_STEPS = 8  # of Runge-Kutta, between two samples
+
+
+def error_samples(record: Record, approach: Approach, of_time: bool = False) -> Samples:
+    """Samples of an error signal, that any method is fitted to."""
+    x, y, first = _dynamics(record) if approach == "dynamics" else _state(record)
+    time = record.time[first : first + len(y)]
+    inputs = (TIME,) if of_time else record.system.states
+    outputs = record.system.states if approach == "dynamics" else record.system.channels
+    return Samples(time[:, None] if of_time else x, y, inputs, outputs, time, np.full(len(time), np.nan))
+
+
+def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """Return states, error, and the first sample."""
+    system, made = record.system, record.conditions
+    if len(system.channels) < len(system.states):
+        raise ShapeError(
+            f"the dynamical error needs all {len(system.states)} states measured",
+            f"{len(system.channels)} are: {', '.join(system.channels)}",
+            "Learn the residual of what is measured, or use `gaitdisc discover`, which needs no rates.",
+        )
+    y = np.asarray(record.filtered)
+    if made.published:
+        return y, np.gradient(y, made.dt_s, axis=0) - system.known(y), 0
+    edge = edge_samples(1.0 / made.dt_s) if made.noise else 0
+    inner = slice(edge + 1, len(y) - edge - 1)
+    error = flow_error(system.known, y, made.dt_s)[inner.start - 1 : inner.stop - 1]
+    return y[inner], error, inner.start
+
+
+def one_after_another(parts: Sequence[Samples]) -> Samples:
+    """Samples of several records as of one, each record's time going on where the last one's ended."""
+    first, *others = parts
+    if not others:
+        return first
+    time = [first.time]
+    for part in others:
+        time.append(time[-1][-1] + SEAM_S + part.time - part.time[0])
+    whole = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("x", "y", "phi")}
+    return replace(first, time=np.concatenate(time), **whole)
+
+
+def known_rates_samples(record: Record) -> Samples:
+    """Samples of the known model's rates at the measured states, with the time that they belong to.
+
+    The weak form of SINDy compares them with the states themselves. States are those that noise was filtered from: what
+    noise squares and cubes of the states would add is no longer in the terms.
+    """
+    states, _, first = _dynamics(record)
+    time, names = record.time[first : first + len(states)], record.system.states
+    return Samples(states, record.system.known(states), names, names, time, np.full(len(time), np.nan))
+
+
+def refined_samples(record: Record, samples: Samples, learned: Model) -> Samples:
+    """Samples of the dynamical error, measured again from the model that was augmented once.
+
+    What the flow misses is then small, and so is the error of order dt^2 that stood in the first samples.
+    """
+    first = round((samples.time[0] - record.time[0]) / record.conditions.dt_s)
+    y = np.asarray(record.filtered)[first - 1 : first + len(samples) + 1]
+    error = flow_error(lambda x: record.system.known(x) + learned(x), y, record.conditions.dt_s)
+    return samples.with_outputs(error + learned(samples.x))
+
+
+def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
+    """Rate that the known model lacks, from how far it misses the neighbours of each sample, (sample - 2, state).
+
+    The known model runs from the state at k forwards to k + 1 and backwards to k - 1; half the difference of what it
+    misses there, over the step, is what was missing in its rates at k. Error: of order dt^2 in the *missing* rate,
+    while a central difference has it in the *whole* rate, which for the Lorenz system at 0.01 s is larger than what is
+    to be found.
+    """
+    ahead, behind = y[2:] - flow(known, y[1:-1], dt_s), y[:-2] - flow(known, y[1:-1], -dt_s)
+    return (ahead - behind) / (2 * dt_s)
+
+
+def flow(rates: Callable, x: NDArray[np.float64], dt_s: float, steps: int = FLOW_STEPS) -> NDArray[np.float64]:
+    """Run all states (point, state) one sample on, or back, by Runge-Kutta of order 4."""
+    h = dt_s / steps
+    for _ in range(steps):
+        x = rk4_step(rates, x, h)
+    return x
+
+
+def _state(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    system, made = record.system, record.conditions
+    run = system.known.run(record.start(forecast=False)[None], made.dt_s, record.split - 1)[0]
+    seen = run[:, : len(system.channels)]
+    # no derivative is taken, so no low-pass is needed: it would colour the noise, which every method takes for white
+    y = record.filtered if made.published else record.measured[: record.split]
+    return run, y - seen, 0

@@ -58,10 +58,8 @@ def library(inputs: int, degree: int) -> NDArray[np.int64]:
 def products(x: NDArray[np.float64], powers: NDArray[np.int64]) -> NDArray[np.float64]:
     """Columns of the library, (sample, term)."""
     columns = np.ones((len(x), len(powers)))
-    for k, row in enumerate(powers):
-        for name, power in enumerate(row):
-            if power:
-                columns[:, k] *= x[:, name] ** int(power)
+    for k, name in np.argwhere(powers):
+        columns[:, k] *= x[:, name] ** int(powers[k, name])
     return columns
 
 
@@ -105,8 +103,6 @@ def in_axes(rows: Rows, powers: NDArray[np.int64], samples: Samples) -> Rows:
 
 def thresholded(triangle: Rows, sizes: Sizes, threshold: float) -> NDArray[np.float64]:
     """Coefficients (term, output) of columns and outputs divided by their sizes, PySINDy's STLSQ."""
-    import warnings
-
     accurate = {"solver": "svd"}  # the normal equations would lose twice as many digits
     optimizer = chapter3_library("pysindy").STLSQ(threshold=threshold, alpha=0.0, max_iter=PASSES, ridge_kw=accurate)
     with warnings.catch_warnings():
@@ -155,33 +151,20 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
         )
     powers = library(len(samples.inputs), degree)
     samples.trainable(len(powers))
+    triangle = _triangle(samples, powers)  # what all samples cannot distinguish is refused before a part of them is
+    sizes = np.ones(len(powers)), np.ones(len(samples.outputs))
     if threshold is None:
-        return _of_chosen_threshold(samples, powers, bags, seed)
-    found = _thresholded(samples, powers, (1.0, 1.0), threshold, (bags, seed))
-    return Sindy(samples.inputs, samples.outputs, powers, found, threshold)
-
-
-def _of_chosen_threshold(samples: Samples, powers: NDArray[np.int64], bags: int, seed: int) -> Sindy:
-    _triangle(samples, powers)  # what all samples cannot distinguish is refused before a part of them is
-    before, inner = samples.last_block(0.15, SEAM_S)
-    before.trainable(max(LEAST_BEFORE_INNER, len(powers)))
-    sizes = sizes_of(products(samples.x, powers), samples.y)
-    threshold = chosen_threshold(_triangle(before, powers), (products(inner.x, powers), inner.y), sizes)
-    found = _thresholded(samples, powers, sizes, threshold, (bags, seed))
+        before, inner = samples.last_block(0.15, SEAM_S)
+        before.trainable(max(LEAST_BEFORE_INNER, len(powers)))
+        sizes = sizes_of(products(samples.x, powers), samples.y)
+        threshold = chosen_threshold(_triangle(before, powers), (products(inner.x, powers), inner.y), sizes)
+    found = thresholded(triangle, sizes, threshold)
+    if bags:
+        rng = np.random.default_rng(seed)
+        bagged = [samples.rows(rng.integers(len(samples), size=len(samples))) for _ in range(bags)]
+        found = np.median([thresholded(_triangle(each, powers), sizes, threshold) for each in bagged], axis=0)
+        found[np.abs(found) < threshold] = 0.0
     return Sindy(samples.inputs, samples.outputs, powers, found * sizes[1] / sizes[0][:, None], threshold)
-
-
-def _thresholded(
-    samples: Samples, powers: NDArray[np.int64], sizes: Sizes, threshold: float, draws: tuple[int, int]
-) -> NDArray[np.float64]:
-    """Coefficients (term, output) of terms and outputs divided by their sizes."""
-    triangle, (bags, seed) = _triangle(samples, powers), draws
-    if not bags:
-        return thresholded(triangle, sizes, threshold)
-    rng = np.random.default_rng(seed)
-    bagged = [samples.rows(rng.integers(len(samples), size=len(samples))) for _ in range(bags)]
-    middle = np.median([thresholded(_triangle(each, powers), sizes, threshold) for each in bagged], axis=0)
-    return np.where(np.abs(middle) < threshold, 0.0, middle)
 
 
 def _triangle(samples: Samples, powers: NDArray[np.int64]) -> Rows:
@@ -203,14 +186,12 @@ def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S
     tests, slopes = _test_functions(samples.time, window_s, len(powers))
     columns = tests @ products(samples.x, powers)
     y = -slopes @ samples.x - tests @ samples.y
-    in_axes((columns, y), powers, samples)
+    triangle, sizes = in_axes((columns, y), powers, samples), sizes_of(columns, y)
     last = len(y) - round(0.15 * len(y))
     before = last - OVERLAP  # windows that share no sample with the inner ones
-    sizes = sizes_of(columns, y)
-    threshold = chosen_threshold(
-        in_axes((columns[:before], y[:before]), powers, samples), (columns[last:], y[last:]), sizes
-    )
-    found = thresholded(in_axes((columns, y), powers, samples), sizes, threshold)
+    first = in_axes((columns[:before], y[:before]), powers, samples)
+    threshold = chosen_threshold(first, (columns[last:], y[last:]), sizes)
+    found = thresholded(triangle, sizes, threshold)
     return Sindy(samples.inputs, samples.outputs, powers, found * sizes[1] / sizes[0][:, None], threshold)
 
 

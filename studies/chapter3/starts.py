@@ -13,8 +13,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.model import Model
 
 from .augmented_run import on_states, with_learned_rates
-from .error_signal import Approach, flow
-from .record import Record
+from .record import Approach, Record, flow
 
 SPREAD = 1e-1  # alpha of the sigma points
 MEMBERS, INFLATION = 60, 1.02  # of an ensemble
@@ -24,7 +23,7 @@ AGREEMENT = 2.5  # standard errors to either side; with the windows chosen on se
 MOST_STEPS = 5  # of Levenberg and Marquardt
 LEAST_GAIN = 1e-6  # of a step, as a share of the sum of squares
 NOISE_FLOOR = 1e-9  # of a channel's standard deviation: rounding
-Run = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+Run = Callable[..., tuple[NDArray[np.float64], NDArray[np.float64]]]
 MOST_STATES = 12  # of a fit by differences; a field begins at its last smoothed sample
 Filter = Literal["unscented", "ensemble"]
 LAST = 600  # samples that are filtered
@@ -60,10 +59,8 @@ def unscented_kalman(
     """
     n = len(start)
     scale = SPREAD**2 * n
-    mean = np.full(2 * n + 1, 0.5 / scale)
-    mean[0] = 1 - n / scale
-    spread = mean.copy()
-    spread[0] += 1 - SPREAD**2 + 2
+    mean = np.r_[1 - n / scale, np.full(2 * n, 0.5 / scale)]
+    spread = np.r_[mean[0] + 1 - SPREAD**2 + 2, mean[1:]]
     x, p = np.array(start, float), np.diag(noise.first**2)
     values = np.reshape(np.asarray(y, float), (len(y), -1))
     states, sd, likelihood = np.empty((len(y), n)), np.empty((len(y), n)), 0.0
@@ -75,9 +72,8 @@ def unscented_kalman(
         points = _sigma_points(x, p, scale)
         found = np.reshape(seen(points), (len(points), -1))
         guess = mean @ found
-        variance = (found - guess).T * spread @ (found - guess) + np.diag(
-            np.broadcast_to(noise.measured, value.shape) ** 2
-        )
+        size = np.broadcast_to(noise.measured, value.shape)
+        variance = (found - guess).T * spread @ (found - guess) + np.diag(size**2)
         across = (points - x).T * spread @ (found - guess)
         gain = np.linalg.solve(variance, across.T).T
         likelihood += _log_density(value - guess, variance)
@@ -95,14 +91,13 @@ def ensemble_kalman(
     start: NDArray[np.float64],
     noise: Uncertainty,
     members: int = MEMBERS,
-    seed: int = 0,
 ) -> Filtered:
     """Ensemble Kalman filter, every member moved towards a measurement with noise of its own.
 
     Source: Evensen 1994, J. Geophys. Res. 99:10143; Burgers, van Leeuwen, Evensen 1998, Mon. Weather Rev. 126:1719.
         The spread is multiplied by 1.02 at each sample (Anderson and Anderson 1999, Mon. Weather Rev. 127:2741).
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     crowd = start + noise.first * rng.standard_normal((members, len(start)))
     values = np.reshape(np.asarray(y, float), (len(y), -1))
     states, sd, likelihood = np.empty((len(y), len(start))), np.empty((len(y), len(start))), 0.0
@@ -162,8 +157,13 @@ def estimated_start(
         first = len(time) - 1 - samples
         if first < 0:
             break
+
+        def missed(state: NDArray[np.float64], first: int = first) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+            states, channels = run(state, time[first:])
+            return states[-1], ((channels - measured[first:]) / noise).ravel()
+
         with np.errstate(all="ignore"):
-            state, sd = _fitted_end(run, time[first:], (measured[first:], noise), guess[first])
+            state, sd = _fitted_end(missed, guess[first])
         low, high = np.maximum(low, state - AGREEMENT * sd), np.minimum(high, state + AGREEMENT * sd)
         if not np.all(low <= high):  # not so either where the run diverged
             break
@@ -171,27 +171,24 @@ def estimated_start(
     return best
 
 
-def _fitted_end(
-    run: Run,
-    time: NDArray[np.float64],
-    seen: tuple[NDArray[np.float64], NDArray[np.float64]],
-    guess: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Last state of the run that fits a window best, and its standard error; NaN where the run diverged."""
+def _fitted_end(missed: Run, guess: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Last state of the run that fits a window best, and its standard error; NaN where the run diverged.
+
+    missed: last state of the run from a first state, and its errors over the noise
+    """
     lost = np.full(len(guess), np.nan), np.full(len(guess), np.nan)
-    measured, noise = seen
-
-    def missed(first: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        states, channels = run(first, time)
-        return states[-1], ((channels - measured) / noise).ravel()
-
     first, damping = np.array(guess, float), 1e-3
     end, error = missed(first)
     normal = end_slopes = np.eye(len(first))
     for _ in range(MOST_STEPS):
         if not np.isfinite(error).all():
             return lost
-        slopes, end_slopes = _slopes(missed, first, end, error)
+        steps = [1e-5 * max(1.0, abs(value)) for value in first]
+        moved = [missed(first + step * axis) for step, axis in zip(steps, np.eye(len(first)), strict=True)]
+        slopes, end_slopes = (
+            np.column_stack([(there[part] - here) / step for there, step in zip(moved, steps, strict=True)])
+            for part, here in ((1, error), (0, end))
+        )
         if not np.isfinite(slopes).all():
             return lost
         normal, gradient, cost = slopes.T @ slopes, slopes.T @ error, float(error @ error)
@@ -211,25 +208,14 @@ def _fitted_end(
     return end, np.sqrt(np.diag(covariance))
 
 
-def _slopes(
-    missed: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]],
-    first: NDArray[np.float64],
-    end: NDArray[np.float64],
-    error: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Derivatives of the errors and of the last state with respect to the first, by differences."""
-    slopes, end_slopes = np.empty((len(error), len(first))), np.empty((len(end), len(first)))
-    for k in range(len(first)):
-        step = 1e-5 * max(1.0, abs(first[k]))
-        end_there, error_there = missed(first + step * np.eye(len(first))[k])
-        slopes[:, k], end_slopes[:, k] = (error_there - error) / step, (end_there - end) / step
-    return slopes, end_slopes
-
-
 def forecast_start(record: Record, learned: Model | None, approach: Approach) -> NDArray[np.float64]:
     """State at the end of the training part, estimated under the model that forecasts, (state,)."""
     system, time = record.system, record.time[: record.split]
-    guess, measured = _smoothed_states(record), record.measured[: record.split]
+    guess, measured = np.asarray(record.filtered), record.measured[: record.split]
+    if len(system.channels) < len(system.states):  # those that are not measured, as the known model runs them
+        first = system.start if system.assumed is None else system.assumed
+        states = system.known.run(first[None], record.conditions.dt_s, record.split - 1)[0]
+        guess = np.column_stack([guess, states[:, len(system.channels) :]])
     if record.conditions.published or len(system.states) > MOST_STATES:
         return guess[-1]
     dt_s, channels = record.conditions.dt_s, len(system.channels)
@@ -243,16 +229,6 @@ def forecast_start(record: Record, learned: Model | None, approach: Approach) ->
         return states, seen
 
     return estimated_start(run, time, measured, guess).state
-
-
-def _smoothed_states(record: Record) -> NDArray[np.float64]:
-    """Smoothed measurement of the training part; states that are not measured, as the known model runs them."""
-    system = record.system
-    if len(system.channels) == len(system.states):
-        return np.asarray(record.filtered)
-    first = system.start if system.assumed is None else system.assumed
-    run = system.known.run(first[None], record.conditions.dt_s, record.split - 1)[0]
-    return np.column_stack([record.filtered, run[:, len(system.channels) :]])
 
 
 def filtered_start(record: Record, learned: Model, by: Filter) -> NDArray[np.float64]:

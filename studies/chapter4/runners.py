@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, partial
@@ -84,11 +85,10 @@ def people(quick: bool) -> Iterator[Number]:
     """Share of the held-out samples inside the bands of `gaitdisc run`; people on whom nothing was set."""
     emg = tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES)
     both = Conditions(nominal="nominal", device="exo")
+    models = Models(emg=emg, outputs=OUTPUTS)
     for seed in FRESH[: 2 if quick else None]:
         person = drawn(f"P{seed}", seed, "fm"[seed % 2])
-        study = Study(
-            conditions=both, models=Models(emg=emg, outputs=OUTPUTS), participants=(Participant(id=person.name),)
-        )
+        study = Study(conditions=both, models=models, participants=(Participant(id=person.name),))
         walks = walks_of(person, 20.0 if quick else 60.0).trials
         nominal, exo = (processed(walks[word], study).trajectory for word in both.both)
         held = fit_response(nominal, exo, response_settings(study), banded=True).held_out
@@ -152,8 +152,7 @@ class Layers(nn.Module):
 
     def __init__(self, inputs: int, outputs: int, layers: int, nodes: int, activation: type[nn.Module]) -> None:
         super().__init__()
-        sizes = [inputs, *[nodes] * layers]
-        pairs = [(nn.Linear(a, b), activation()) for a, b in pairwise(sizes)]
+        pairs = [(nn.Linear(a, b), activation()) for a, b in pairwise([inputs, *[nodes] * layers])]
         self.hidden = nn.Sequential(*(each for pair in pairs for each in pair))
         self.readout = nn.Linear(nodes, outputs)
 
@@ -195,15 +194,12 @@ def search(quick: bool) -> Iterator[Number]:
             share_left = np.mean(each**2, axis=0) / held.y.var(axis=0)
             yield Number(f"1 - R2, {name}", column, "", float(np.median(share_left)))
         strides = np.cumsum(np.diff(held.phi, prepend=0.0) < 0)
-        gains = np.array([1 - np.sum(missed["winner"][strides == k] ** 2 / held.y.var(axis=0))
-                          / np.sum(missed["text, 64 nodes"][strides == k] ** 2 / held.y.var(axis=0))
-                          for k in np.unique(strides)[1:-1]])  # fmt: skip
+        text, winner = (np.sum(missed[name] ** 2 / held.y.var(axis=0), axis=1) for name in found)
+        inner = [strides == k for k in np.unique(strides)[1:-1]]
+        gains = np.array([1 - winner[stride].sum() / text[stride].sum() for stride in inner])
         drawn = np.random.default_rng(0).choice(gains, (2000, len(gains))).mean(axis=1)
-        for word, value in zip(
-            ("low", "mean", "high"),
-            (*np.quantile(drawn, [0.025]), gains.mean(), *np.quantile(drawn, [0.975])),
-            strict=True,
-        ):
+        low, high = np.quantile(drawn, [0.025, 0.975])
+        for word, value in (("low", low), ("mean", gains.mean()), ("high", high)):
             yield Number(f"error taken off by the winner, 95 % {word} [%]", column, "", 100 * float(value))
         yield Number(f"winner: {left[0]}", column, "", 1.0)
 
@@ -227,32 +223,30 @@ def terms(quick: bool) -> Iterator[Number]:
     (nominal, _), (exo, held) = run("welk007", "natural"), run("welk007", "exotendon")
     half = len(nominal) // 2
     first, second = nominal.rows(slice(0, half)), nominal.rows(slice(half, None))
-    for column, before, after, later in (
-        ("device", nominal, exo, held),
-        ("control", first, second, run("welk007", "natural")[1]),
-    ):
+    pairs = (("device", nominal, exo, held), ("control", first, second, run("welk007", "natural")[1]))
+    refits = 5 if quick else REFITS
+    for column, before, after, later in pairs:
         samples, test = discrepancy(before, after), discrepancy(before, later)
-        rng = np.random.default_rng(0)
-        counts: dict[tuple[str, str], list[float]] = {}
+        rng, counts = np.random.default_rng(0), {name: Counter() for name in RIGHT_LEG}
         blocks = np.array_split(np.arange(len(samples)), BLOCKS)
-        for _ in range(5 if quick else REFITS):
+        for _ in range(refits):
             some = np.sort(rng.permutation(BLOCKS)[: BLOCKS // 2])
             model = fit_sindy(samples.rows(np.concatenate([blocks[k] for k in some])), 1)
             for name in RIGHT_LEG:
-                for term, value in model.terms(name).items():
-                    counts.setdefault((name, term), []).append(value)
+                counts[name].update(model.terms(name).keys())
         whole = fit_sindy(samples, 1)
-        error = 1 - np.mean((whole(test.x) - test.y) ** 2, axis=0) / np.mean(test.y**2, axis=0)
-        for name, held_r2 in zip(RIGHT_LEG, error, strict=True):
-            often = [v for (which, _), v in counts.items() if which == name]
-            share = np.array([len(v) for v in often]) / (5 if quick else REFITS)
-            size = float(np.sqrt(np.mean(test.y[:, RIGHT_LEG.index(name)] ** 2)))
-            yield Number(f"{name}: size of the discrepancy [deg/s2]", column, "", size)
-            yield Number(f"{name}: terms of the fit to all", column, "", float(len(whole.terms(name))))
-            yield Number(f"{name}: share of it explained, held out [1]", column, "", float(held_r2))
-            yield Number(f"{name}: terms selected in 9 of 10 refits", column, "", float((share >= 0.9).sum()))
-            yield Number(f"{name}: terms selected at least once", column, "", float(len(share)))
-            if column == "device":
-                own = sorted(((len(v), t) for (which, t), v in counts.items() if which == name), reverse=True)
-                for count, term in own[:4]:
-                    yield Number(f"{name}: {term} selected [%]", column, "", 100 * count / (5 if quick else REFITS))
+        explained = 1 - np.mean((whole(test.x) - test.y) ** 2, axis=0) / np.mean(test.y**2, axis=0)
+        sizes = np.sqrt(np.mean(test.y**2, axis=0))
+        for name, size, held_r2 in zip(RIGHT_LEG, sizes, explained, strict=True):
+            often = sum(count >= 0.9 * refits for count in counts[name].values())
+            for words, value in (
+                ("size of the discrepancy [deg/s2]", size),
+                ("terms of the fit to all", len(whole.terms(name))),
+                ("share of it explained, held out [1]", held_r2),
+                ("terms selected in 9 of 10 refits", often),
+                ("terms selected at least once", len(counts[name])),
+            ):
+                yield Number(f"{name}: {words}", column, "", float(value))
+            own = sorted(((count, term) for term, count in counts[name].items()), reverse=True)
+            for count, term in own[: 4 if column == "device" else 0]:
+                yield Number(f"{name}: {term} selected [%]", column, "", 100 * count / refits)

@@ -19,7 +19,7 @@ from gaitdisc.recording import Axis, Field, Source
 from gaitdisc.regular_file import check_regular
 
 ATTRIBUTES = ("units", "scale_factor", "add_offset", "missing_value", "_FillValue")
-WEEK_DAYS = 7.0
+WEEK_DAYS, DAYS = 7.0, {"days": 1.0, "day": 1.0, "hours": 1 / 24, "hour": 1 / 24}
 CELSIUS = ("degc", "c", "celsius", "degree_c", "degrees_c", "deg c", "degrees celsius")
 MAT_GRID = (180, 360)  # one degree, first row the northernmost, from the meridian of Greenwich eastwards
 NAMES = {"velocity": ("u", "v", "w"), "pressure": ("p",)}
@@ -45,9 +45,11 @@ class Variable:
         for mark in ("missing_value", "_FillValue"):
             if mark in self.attributes:
                 values[self.stored == np.ravel(self.attributes[mark])[0]] = np.nan
-        values *= np.float32(_number(self.attributes, "scale_factor", 1.0))
-        values += np.float32(_number(self.attributes, "add_offset", 0.0))
-        return values
+        scale, offset = (
+            np.float32(np.ravel(self.attributes.get(name, without))[0])
+            for name, without in (("scale_factor", 1.0), ("add_offset", 0.0))
+        )
+        return values * scale + offset
 
 
 def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
@@ -55,9 +57,8 @@ def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     if is_hdf5(path):
         with hdf5_file(path) as file:
             _refuse_absent(path, names, member_names(file, path))
-            return {
-                name: Variable(data_set(file, name, path), attributes(file, name, path, ATTRIBUTES)) for name in names
-            }
+            held = ((name, data_set(file, name, path)) for name in names)
+            return {name: Variable(values, attributes(file, name, path, ATTRIBUTES)) for name, values in held}
     from scipy.io import netcdf_file
 
     try:
@@ -69,23 +70,15 @@ def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     except (TypeError, ValueError, IndexError, KeyError) as error:
         if isinstance(error, ReadError):
             raise
-        raise ReadError(
-            f"{path.name} is to be read as netCDF", f"it cannot be: {error}", "Fetch the file again, whole."
-        ) from error
-
-
-def _number(attributes: Mapping[str, Any], name: str, without: float) -> float:
-    return float(np.ravel(attributes.get(name, without))[0])
+        needed = f"{path.name} is to be read as netCDF"
+        raise ReadError(needed, f"it cannot be: {error}", "Fetch the file again, whole.") from error
 
 
 def _refuse_absent(path: Path, names: tuple[str, ...], there: tuple[str, ...]) -> None:
     absent = [name for name in names if name not in there]
     if absent:
-        raise ReadError(
-            f"{path.name} needs the variables {', '.join(names)}",
-            f"it lacks {', '.join(absent)}; it has {', '.join(there) or 'none'}",
-            "Name the file that holds them.",
-        )
+        lacks = f"it lacks {', '.join(absent)}; it has {', '.join(there) or 'none'}"
+        raise ReadError(f"{path.name} needs the variables {', '.join(names)}", lacks, "Name the file that holds them.")
 
 
 def read_oisst(path: Path, mask: Path | None = None) -> Field:
@@ -103,16 +96,21 @@ def read_oisst(path: Path, mask: Path | None = None) -> Field:
                         "Convert the file, or correct its attribute `units`.")  # fmt: skip
     sst = found["sst"].unpacked()
     lat, lon = (np.asarray(found[name].stored, np.float64) for name in ("lat", "lon"))
-    days = np.asarray(found["time"].stored, float) * _days(found["time"].units, path)
+    of_time = found["time"].units
+    days = np.asarray(found["time"].stored, float) * DAYS.get(of_time.split(" ", maxsplit=1)[0].lower(), np.nan)
+    if np.isnan(days).any():
+        raise UnitError("time is needed in days or hours", f"{path.name} states {of_time!r}", "Correct the attribute.")
     if sst.shape != (len(days), len(lat), len(lon)):
         raise ShapeError("`sst` is needed as (time, lat, lon)", f"{path.name} has {sst.shape}", "Reorder the file.")
     sea = np.asarray(np.isfinite(sst).all(axis=0))
     if mask is not None:
-        sea &= _sea(mask, sea.shape)
-    axes = (Axis("lat", lat, "deg"), Axis("lon", lon, "deg"))
-    source = Source(path.name, file_sha256(path), "netCDF")
-    weeks = (days - days[0]) / WEEK_DAYS if len(days) else days
-    return Field(weeks, sst[:, sea][:, :, None], axes, sea, ("sst",), ("degC",), "week", source)
+        marks = np.squeeze(read_variables(mask, ("mask",))["mask"].stored)
+        if marks.shape != sea.shape:
+            needed = f"a land mask of the grid of the temperature is needed, {sea.shape}"
+            raise ShapeError(needed, f"{mask.name} has {marks.shape}", "Name the mask that belongs to the file.")
+        sea &= marks == 1
+    weeks, source = (days - days[0]) / WEEK_DAYS if len(days) else days, Source(path.name, file_sha256(path), "netCDF")
+    return Field(weeks, sst[:, sea][:, :, None], _globe(lat, lon), sea, ("sst",), ("degC",), "week", source)
 
 
 def read_sst_mat(path: Path) -> Field:
@@ -145,28 +143,13 @@ def read_sst_mat(path: Path) -> Field:
     values = np.asarray(z.T, np.float32)
     sea = (values != 0).any(axis=0)
     lat, lon = np.linspace(89.5, -89.5, MAT_GRID[0]), np.linspace(0.5, 359.5, MAT_GRID[1])
-    axes = (Axis("lat", lat, "deg"), Axis("lon", lon, "deg"))
-    source = Source(path.name, file_sha256(path), "mat")
-    weeks = np.arange(len(values), dtype=float)
-    return Field(weeks, values[:, sea, None], axes, np.reshape(sea, MAT_GRID), ("sst",), ("degC",), "week", source)
+    weeks, source = np.arange(len(values), dtype=float), Source(path.name, file_sha256(path), "mat")
+    mask = np.reshape(sea, MAT_GRID)
+    return Field(weeks, values[:, sea, None], _globe(lat, lon), mask, ("sst",), ("degC",), "week", source)
 
 
-def _days(unit: str, path: Path) -> float:
-    word = unit.split(" ", maxsplit=1)[0].lower()
-    if word not in ("days", "day", "hours", "hour"):
-        raise UnitError("time is needed in days or hours", f"{path.name} states {unit!r}", "Correct the attribute.")
-    return 1.0 if word.startswith("day") else 1 / 24
-
-
-def _sea(path: Path, grid: tuple[int, ...]) -> NDArray[np.bool_]:
-    found = np.squeeze(read_variables(path, ("mask",))["mask"].stored)
-    if found.shape != grid:
-        raise ShapeError(
-            f"a land mask of the grid of the temperature is needed, {grid}",
-            f"{path.name} has {found.shape}",
-            "Name the mask that belongs to the file.",
-        )
-    return found == 1
+def _globe(lat: NDArray[Any], lon: NDArray[Any]) -> tuple[Axis, Axis]:
+    return Axis("lat", lat, "deg"), Axis("lon", lon, "deg")
 
 
 def read_sst_pacific(path: Path) -> Field:
@@ -181,10 +164,9 @@ def read_sst_pacific(path: Path) -> Field:
             f"{path.name} has {len(sea)} cells, {len(lat)} latitudes and {len(lon)} longitudes",
             "Name the file as it was published.",
         )
-    axes = (Axis("lat", lat, "deg"), Axis("lon", lon, "deg"))
-    months = np.arange(len(held["sst"]), dtype=float)
-    mask = sea.reshape(len(lat), len(lon))
-    return Field(months, held["sst"][:, sea, None], axes, mask, ("sst",), ("degC",), "month", _source(path))
+    months, mask = np.arange(len(held["sst"]), dtype=float), sea.reshape(len(lat), len(lon))
+    values, source = held["sst"][:, sea, None], Source(path.name, file_sha256(path), "npz")
+    return Field(months, values, _globe(lat, lon), mask, ("sst",), ("degC",), "month", source)
 
 
 def read_navy_winds(path: Path) -> Field:
@@ -199,13 +181,8 @@ def read_navy_winds(path: Path) -> Field:
         )
     months = np.arange(len(held["u"]), dtype=float)
     values = np.stack([held[name].reshape(len(months), -1) for name in ("u", "v")], axis=-1)
-    axes = (Axis("lat", lat, "deg"), Axis("lon", lon, "deg"))
-    everywhere = np.ones((len(lat), len(lon)), bool)
-    return Field(months, values, axes, everywhere, ("u", "v"), ("m/s", "m/s"), "month", _source(path))
-
-
-def _source(path: Path) -> Source:
-    return Source(path.name, file_sha256(path), "npz")
+    everywhere, source = np.ones((len(lat), len(lon)), bool), Source(path.name, file_sha256(path), "npz")
+    return Field(months, values, _globe(lat, lon), everywhere, ("u", "v"), ("m/s", "m/s"), "month", source)
 
 
 def _arrays(path: Path, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
@@ -214,11 +191,8 @@ def _arrays(path: Path, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         with np.load(path, allow_pickle=False) as file:
             return {name: file[name] for name in names}
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise ReadError(
-            f"{path.name} is to be read as an npz file with {', '.join(names)}",
-            f"it cannot be: {error}",
-            "Fetch the file again, whole.",
-        ) from error
+        needed = f"{path.name} is to be read as an npz file with {', '.join(names)}"
+        raise ReadError(needed, f"it cannot be: {error}", "Fetch the file again, whole.") from error
 
 
 def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity") -> Field:
@@ -230,12 +204,12 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
     """
     if quantity not in NAMES:
         raise ReadError(f"a cut-out holds {' or '.join(NAMES)}", f"requested: {quantity!r}", "Name one of them.")
+    names = NAMES[quantity]
     snapshots: dict[int, NDArray[Any]] = {}
     grid: list[NDArray[Any]] = []
     for path in paths:
         with hdf5_file(path) as file:
-            numbers = _numbers(file, path, quantity)
-            coordinates = _coordinates(file, path)
+            numbers, coordinates = _cutout_of(file, path, quantity)
             grid = grid or coordinates
             if any(not np.array_equal(a, b) for a, b in zip(grid, coordinates, strict=True)):
                 raise ShapeError("cut-outs are needed of one volume", f"{path.name} has other coordinates than "
@@ -243,7 +217,11 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
             for number, name in numbers.items():
                 if number in snapshots:
                     raise ReadError("each snapshot is needed once", f"{path.name} holds {name} again", "Leave one out.")
-                snapshots[number] = _values(data_set(file, name, path), path, coordinates, quantity)
+                held, wanted = data_set(file, name, path), (*map(len, coordinates), len(names))
+                if held.shape != wanted:
+                    needed = f"{quantity} is needed as (z, y, x, component), here {wanted}"
+                    raise ShapeError(needed, f"{path.name} has {held.shape}", "Fetch it anew from the cut-out service.")
+                snapshots[number] = held.reshape(-1, len(names)).astype(np.float32)
     if not snapshots:
         raise ReadError("a cut-out is needed", "no file was named", "Name at least one file.")
     order = sorted(snapshots)
@@ -253,13 +231,12 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
     time = np.array(order) * step_s
     digest = file_sha256(paths[0]) if len(paths) == 1 else ""
     source = Source(paths[0].name if len(paths) == 1 else f"{len(paths)} cut-outs", digest, "JHTDB cut-out")
-    names = NAMES[quantity]
     return Field(time - time[0], values, axes, mask, names, ("1",) * len(names), "s", source)
 
 
-def _numbers(file: Any, path: Path, quantity: str) -> dict[int, str]:
-    pattern = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE)
-    there = member_names(file, path)
+def _cutout_of(file: Any, path: Path, quantity: str) -> tuple[dict[int, str], list[NDArray[Any]]]:
+    """Names of the snapshots by their number, and coordinates along each axis."""
+    pattern, there = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE), member_names(file, path)
     found = {int(match.group(1)): name for name in there if (match := pattern.fullmatch(name))}
     if not found:
         raise ReadError(
@@ -267,27 +244,8 @@ def _numbers(file: Any, path: Path, quantity: str) -> dict[int, str]:
             f"{path.name} has {', '.join(there) or 'none'}",
             f"Request from the service {quantity}, or name the quantity that the file has.",
         )
-    return found
-
-
-def _coordinates(file: Any, path: Path) -> list[NDArray[Any]]:
-    there = member_names(file, path)
     absent = [name for name in COORDINATES if name not in there]
     if absent:
-        raise ReadError(
-            f"a cut-out needs its coordinates {', '.join(COORDINATES)}",
-            f"{path.name} lacks {', '.join(absent)}",
-            "Fetch it anew from the cut-out service.",
-        )
-    return [np.ravel(data_set(file, name, path)).astype(float) for name in COORDINATES]
-
-
-def _values(held: NDArray[Any], path: Path, grid: list[NDArray[Any]], quantity: str) -> NDArray[np.float32]:
-    wanted = (*(len(each) for each in grid), len(NAMES[quantity]))
-    if held.shape != wanted:
-        raise ShapeError(
-            f"{quantity} is needed as (z, y, x, component), here {wanted}",
-            f"{path.name} has {held.shape}",
-            "Fetch it anew from the cut-out service.",
-        )
-    return held.reshape(-1, wanted[-1]).astype(np.float32)
+        needed = f"a cut-out needs its coordinates {', '.join(COORDINATES)}"
+        raise ReadError(needed, f"{path.name} lacks {', '.join(absent)}", "Fetch it anew from the cut-out service.")
+    return found, [np.ravel(data_set(file, name, path)).astype(float) for name in COORDINATES]

@@ -26,13 +26,13 @@ from gaitdisc.report.reconstruction_page import NOT_MSE, write_reconstruction_re
 from gaitdisc.report.table import Table
 from gaitdisc.results.reconstruction import mean_over_people
 from gaitdisc.sensing.missing import filled, with_missing
-from gaitdisc.sensing.reconstructor import KINDS, MASKED, Reconstructor, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.state_errors import angle_columns
 from gaitdisc.sensing.windows import Parts, split_within
 from gaitdisc.words import counted, listed, number, unit_text
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    pass
 
 SENSORS = {
     "3 random": ("pelvis_rotation", "pelvis_tz", "hip_adduction_r"),
@@ -56,7 +56,7 @@ RUNS = {
 NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 DISTURBED = ("disturbance", "level", "model", "rmse_deg")
-Walks = Sequence[tuple[Recording, NDArray[np.float64]]]
+Walks = Sequence[tuple[Recording, NDArray[np.float64]]]  # of one person, with the place in the stride (time,) [%]
 MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
 LESS_THAN_NOTHING = (
     "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
@@ -64,10 +64,7 @@ LESS_THAN_NOTHING = (
     "does not say how time was split or how long the history was: no claim of better or worse is made."
 )
 STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
-AXES = {
-    "noise": "noise of the sensors [% of their standard deviation]",
-    "missing": "missing readings [%]",
-}
+AXES = {"noise": "noise of the sensors [% of their standard deviation]", "missing": "missing readings [%]"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +106,12 @@ def cohort(folder: Path, people: int = PEOPLE, walk_s: float = WALK_S) -> Study:
 
 def treadmill(data: Path, folder: Path) -> Study:
     """One person of treadmill_walk_ik, twelve walks of 21 s, all 18 states."""
+    folder.mkdir(parents=True, exist_ok=True)
     with np.load(data / "treadmill_walk_ik" / "addbio_expert3_ik.npz") as packed:
         named = [vocabulary().named(str(name)) for name in packed["columns"]]
-        kept = [k for k, channel in enumerate(named) if channel is not None]
+        kept, channels = zip(*((k, channel) for k, channel in enumerate(named) if channel), strict=True)
         for number in TREADMILL:
             values = np.asarray(packed[f"S01DE{number}"], float)[:, kept]
-            channels = tuple(channel for channel in named if channel is not None)
-            folder.mkdir(parents=True, exist_ok=True)
             gd.write(gd.Recording(np.arange(len(values)) / 100.0, values, channels), folder / f"{number}.mot")
     trials = tuple(PlannedTrial(condition="walk", files=(f"{number}.mot",)) for number in TREADMILL)
     return _study("treadmill_walk_ik", ("walk", "none"), (Participant(id="S01", trials=trials),)).placed(folder)
@@ -126,14 +122,11 @@ def exotendon(data: Path) -> Study:
     folder = data / "exotendon_run"
     found = {path.name: path.relative_to(folder) for path in sorted(folder.rglob("*.mot"))}
     found["welk002"] = next(path for path in found.values() if path.parts[0] == "welk002")
-    people = tuple(
-        Participant(
-            id=who,
-            trials=tuple(PlannedTrial(condition=word, files=(str(found[name]),)) for word, name in runs.items()),
-        )
-        for who, runs in RUNS.items()
-    )
-    return _study("exotendon_run", ("natural", "exotendon"), people).placed(folder)
+    people = []
+    for who, runs in RUNS.items():
+        trials = tuple(PlannedTrial(condition=word, files=(str(found[name]),)) for word, name in runs.items())
+        people.append(Participant(id=who, trials=trials))
+    return _study("exotendon_run", ("natural", "exotendon"), tuple(people)).placed(folder)
 
 
 def _study(title: str, words: tuple[str, str], people: tuple[Participant, ...]) -> Study:
@@ -141,7 +134,7 @@ def _study(title: str, words: tuple[str, str], people: tuple[Participant, ...]) 
     return Study(title=title, conditions=both, participants=people, quality=Quality(late_change="report"))
 
 
-def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int = 0) -> Recording:
+def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int) -> Recording:
     """Add white noise to the readings of the sensors, and to nothing else.
 
     share: standard deviation of the noise, by that of the sensor in this trial
@@ -154,46 +147,36 @@ def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int 
     return recording.with_values(values)
 
 
-def against_noise(
-    walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str] = tuple(KINDS), seed: int = 0
-) -> pd.DataFrame:
+def against_noise(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> pd.DataFrame:
     """RMSE of every kind of model against noise, temporal split; fitted to and tested on the same noise.
 
-    walks sequence of (Recording, (time,) [% stride]): of one person
     returns: disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles)
     """
     rows = []
     for level in NOISES:
-        parts = _disturbed_parts(walks, what, lambda walk, k, level=level: noisy(walk, what.sensors, level, seed + k))
+        parts = _disturbed_parts(walks, what, lambda walk, k, level=level: noisy(walk, what.sensors, level, k))
         for kind in kinds:
-            done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), seed)
+            done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0)
             rows.append(("noise", level, kind, _rmse(done, parts.tested(), channels)))
     return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
 
 
-def against_missing(
-    walks: Walks,
-    what: Sensing,
-    channels: Sequence[Channel],
-    kinds: Sequence[str] = (*KINDS, MASKED),
-    seed: int = 0,
-) -> pd.DataFrame:
+def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> pd.DataFrame:
     """RMSE of every kind of model against missing readings, temporal split; fitted to walks that lack none.
 
     Readings are lost one by one, each sensor by itself. The sensor's last known reading stands in their place; the
     masked SHRED alone is given which are missing.
 
-    walks sequence of (Recording, (time,) [% stride]): of one person
     returns: disturbance (`missing`), level [share of the readings], model, rmse_deg (angles)
     """
     parts = _disturbed_parts(walks, what, lambda walk, _: walk)
-    fitted = {kind: fit_reconstructor(kind, what, parts.fitted(), parts.checked(), seed) for kind in kinds}
+    fitted = {kind: fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0) for kind in kinds}
     rows = []
     for level in SHARES:
         for kind, done in fitted.items():
 
             def lost(walk: Recording, k: int, done: Reconstructor = done, level: float = level) -> Recording:
-                holed = with_missing(walk, what.sensors, level, 0.0, seed + k)
+                holed = with_missing(walk, what.sensors, level, 0.0, k)
                 return holed if done.kind == MASKED else filled(holed, what.sensors, "last", done.sensor_means)
 
             test = _disturbed_parts(walks, what, lost).tested()
@@ -216,12 +199,14 @@ def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, r
     summary: `summary` of reconstructions, with columns `data` and `sensors`
     printed: sensors, model, mean, sd: of the dissertation
     """
-    numbers = pd.DataFrame(
-        [
-            {"data": data, "sensors": sensors, "model": model, "n": len(own), **_over(own)}
-            for (data, sensors, model), own in summary.groupby(["data", "sensors", "model"], sort=False)
-        ]
-    ).merge(printed, "left", ["sensors", "model"])
+    found = []
+    for keys, own in summary.groupby(["data", "sensors", "model"], sort=False):
+        found.append(dict(zip(("data", "sensors", "model"), keys, strict=True)) | {"n": len(own)})
+        for measure in MEASURES:
+            mean, sd, half = mean_over_people(own[measure].to_numpy(float))
+            found[-1] |= {measure: mean, f"{measure}_sd": sd}
+            found[-1] |= {f"{measure}_low": mean - half, f"{measure}_high": mean + half}
+    numbers = pd.DataFrame(found).merge(printed, "left", ["sensors", "model"])
     rows: Any = numbers.itertuples()
     cells = tuple(
         (str(row.data), str(row.sensors), str(row.model), str(row.n), *_measures(row), f"{row.seconds:.2f}")
@@ -238,26 +223,11 @@ def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, r
     return Table(name, caption, columns, cells, numbers)
 
 
-def _over(own: pd.DataFrame) -> dict[str, float]:
-    found: dict[str, float] = {}
-    for measure in MEASURES:
-        mean, sd, half = mean_over_people(own[measure].to_numpy(float))
-        found |= {measure: mean, f"{measure}_sd": sd, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
-    return found
-
-
 def _measures(row: Any) -> tuple[str, ...]:
-    return (
-        _spread(row.rmse_deg, row.rmse_deg_low, row.rmse_deg_high, 2),
-        number(row.relative_l2, 3),
-        number(row.r2, 3),
-        _with_sd(row.relative_l2_whole, row.relative_l2_whole_sd),
-        _with_sd(row.mean, row.sd),
-    )
-
-
-def _spread(mean: float, low: float, high: float, digits: int) -> str:
-    return number(mean, digits) + (f" [{number(low, digits)}, {number(high, digits)}]" if np.isfinite(low) else "")
+    low, high, found = row.rmse_deg_low, row.rmse_deg_high, number(row.rmse_deg, 2)
+    interval = f" [{number(low, 2)}, {number(high, 2)}]" if np.isfinite(low) else ""
+    whole, printed = _with_sd(row.relative_l2_whole, row.relative_l2_whole_sd), _with_sd(row.mean, row.sd)
+    return found + interval, number(row.relative_l2, 3), number(row.r2, 3), whole, printed
 
 
 def _with_sd(mean: float, sd: float) -> str:
@@ -279,7 +249,14 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
     models = [model for model in RECONSTRUCTED if (shown["model"] == model).any()]
     drawn, grid = panels(1, len(units), 2.3, Room(left=0.6, across=0.7, bottom=0.5))
     for axes, unit in zip(grid[0], units, strict=True):
-        _draw_boxes(axes, shown[shown["unit"] == unit], models)
+        rows = shown[(shown["unit"] == unit) & np.isfinite(shown["rmse"])]
+        sets = list(dict.fromkeys(shown.loc[shown["unit"] == unit, "sensors"]))
+        for (sensors, model), own in rows.groupby(["sensors", "model"], sort=False):
+            at = PITCH * sets.index(sensors) + STEP * (models.index(str(model)) - (len(models) - 1) / 2)
+            draw_box(axes, own["rmse"].to_numpy(float), at, RECONSTRUCTED[str(model)].colour)
+        decades(axes)
+        axes.set_xticks([PITCH * place for place in range(len(sets))], sets)
+        axes.set_xlim(-PITCH / 2, PITCH * (len(sets) - 0.5))
         axes.set_ylabel(f"RMSE of a state [{unit_text(unit)}]")
     legend(drawn, [Line2D([], [], color=RECONSTRUCTED[model].colour, label=model) for model in models])
     people = shown["participant"].nunique()
@@ -291,20 +268,6 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
     alt = f"Boxes of the error of {listed(models)} for {counted(shown['sensors'].nunique(), 'sensor set')}."
     kept = ["sensors", "participant", "model", "state", "unit", "rmse"]
     return Figure(name, caption, alt, shown[kept], drawn)
-
-
-def _draw_boxes(axes: Axes, errors: pd.DataFrame, models: list[str]) -> None:
-    sets = list(dict.fromkeys(errors["sensors"]))
-    for place, sensors in enumerate(sets):
-        for order, model in enumerate(models):
-            rows = errors[(errors["sensors"] == sensors) & (errors["model"] == model)]
-            values = rows["rmse"].to_numpy(float)
-            if np.isfinite(values).any():
-                at = PITCH * place + STEP * (order - (len(models) - 1) / 2)
-                draw_box(axes, values[np.isfinite(values)], at, RECONSTRUCTED[model].colour)
-    decades(axes)
-    axes.set_xticks([PITCH * place for place in range(len(sets))], sets)
-    axes.set_xlim(-PITCH / 2, PITCH * (len(sets) - 0.5))
 
 
 @in_style
@@ -321,8 +284,7 @@ def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
     for axes, kind in zip(grid[0], kinds, strict=True):
         for model, rows in found[found["disturbance"] == kind].groupby("model", sort=False):
             axes.plot(100 * rows["level"], rows["rmse_deg"], markersize=3, linewidth=1.1, **_look(str(model)))
-        axes.set_xlabel(AXES[kind])
-        axes.set_ylabel("RMSE [deg]")
+        axes.set(xlabel=AXES[kind], ylabel="RMSE [deg]")
         decades(axes)
     legend(drawn, [Line2D([], [], label=model, markersize=3, **_look(model)) for model in models])
     caption = (

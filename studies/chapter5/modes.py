@@ -74,7 +74,11 @@ def fit_modes(values: NDArray[np.floating], energy: float = ENERGY, most: int | 
             "Leave this quantity away.",
         )
     scaled = (fluctuation / spread).reshape(len(values), -1)
-    found, vectors = np.linalg.eigh(_products(scaled))
+    products = np.zeros((len(scaled), len(scaled)))
+    for first in range(0, scaled.shape[1], COLUMNS_AT_ONCE):  # in double precision, a part at a time
+        part = scaled[:, first : first + COLUMNS_AT_ONCE].astype(float)
+        products += part @ part.T
+    found, vectors = np.linalg.eigh(products)
     found, vectors = found[::-1], vectors[:, ::-1]
     kept = found > LEAST * found[0]
     shares = np.where(kept, found, 0.0) / found[kept].sum()
@@ -101,22 +105,12 @@ def evening_rotation(variances: NDArray[np.float64]) -> NDArray[np.float64]:
             break
         tangent = (-between - np.sqrt(between**2 - above * below)) / below
         cosine = 1 / np.hypot(1.0, tangent)
-        plane = np.array([[cosine, -tangent * cosine], [tangent * cosine, cosine]])
-        pair = [i, j]
+        plane, pair = np.array([[cosine, -tangent * cosine], [tangent * cosine, cosine]]), [i, j]
         covariance[:, pair] = covariance[:, pair] @ plane
         covariance[pair] = plane.T @ covariance[pair]
         turn[:, pair] = turn[:, pair] @ plane
         left.remove(i)
     return turn
-
-
-def _products(scaled: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Products of all snapshots with each other in double precision, (snapshot, snapshot), a part at a time."""
-    total = np.zeros((len(scaled), len(scaled)))
-    for first in range(0, scaled.shape[1], COLUMNS_AT_ONCE):
-        part = scaled[:, first : first + COLUMNS_AT_ONCE].astype(float)
-        total += part @ part.T
-    return total
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from gaitdisc.words import number
 from .reconstruct_field import FieldCell, field_cells_table
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    pass
 
 ROUTE_LOOKS = (
     Look("#111111", "-", "o"),
@@ -47,39 +47,27 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
         for route, look in zip(routes, ROUTE_LOOKS, strict=False):
             some = [cell for cell in cells if (cell.split, cell.route) == (split, route)]
             if some:
-                numbers.append(_histogram(axes, some, look))
-        axes.set_title(split)
-        axes.set_yscale("log")
+                edges, counts = some[0].errors.edges, np.sum([cell.errors.counts for cell in some], axis=0)
+                middles, density = (edges[1:] + edges[:-1]) / 2, counts / counts.sum() / np.diff(edges)
+                inner = np.where(density > 0, density, np.nan)[1:-1]
+                axes.plot(middles[1:-1], inner, color=look.colour, linestyle=look.line, linewidth=1.0)
+                of = {"split": split, "route": route}
+                numbers.append(pd.DataFrame({**of, "error": middles, "count": counts, "density": density}))
+        axes.set(title=split, yscale="log", xlabel=f"reconstructed − measured [{cells[0].unit}]")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.set_xlabel(f"reconstructed − measured [{cells[0].unit}]")
     row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density [1]")
     handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
+    # the two outermost bins are open-ended, so that their heights are no density
+    outside = [float(one["count"].iloc[[0, -1]].sum() / one["count"].sum()) for one in numbers]
+    shares = " to ".join(dict.fromkeys(f"{100 * share:.2g}" for share in (min(outside), max(outside))))
+    low, high = (number(cells[0].errors.edges[k]) for k in (1, -2))
     caption = (
         f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all test "
-        f"snapshots, n = {cells[0].tested} at most. {_beyond(numbers, cells[0])}"
+        f"snapshots, n = {cells[0].tested} at most. "
+        f"Not drawn: errors below {low} or above {high} {cells[0].unit}, {shares} % of a route's."
     )
     return Figure(name, caption, f"Histograms of errors of {len(routes)} routes", pd.concat(numbers), drawn)
-
-
-def _beyond(numbers: Sequence[pd.DataFrame], cell: FieldCell) -> str:
-    """What the axis leaves out: the two outermost bins are open-ended, so their heights are no density."""
-    shares = [float(one["count"].iloc[[0, -1]].sum() / one["count"].sum()) for one in numbers]
-    low, high = cell.errors.edges[1], cell.errors.edges[-2]
-    return (
-        f"Not drawn: errors below {number(low)} or above {number(high)} {cell.unit}, "
-        f"{' to '.join(dict.fromkeys(f'{100 * share:.2g}' for share in (min(shares), max(shares))))} % of a route's."
-    )
-
-
-def _histogram(axes: Axes, some: Sequence[FieldCell], look: Look) -> pd.DataFrame:
-    edges, counts = some[0].errors.edges, np.sum([cell.errors.counts for cell in some], axis=0)
-    density = counts / counts.sum() / np.diff(edges)
-    middles = (edges[1:] + edges[:-1]) / 2
-    inner = np.where(density > 0, density, np.nan)[1:-1]
-    axes.plot(middles[1:-1], inner, color=look.colour, linestyle=look.line, linewidth=1.0)
-    of = {"split": some[0].split, "route": some[0].route}
-    return pd.DataFrame({**of, "error": middles, "count": counts, "density": density})
 
 
 @in_style
@@ -98,13 +86,11 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
         axes.axhline(ceilings[split], color="#00875a", linestyle=(0, (4.0, 1.6)), linewidth=0.9)
         words = [f"{route}\nn = {len(group)}" for route, group in zip(routes, groups, strict=True)]
         axes.set_xticks(range(1, len(routes) + 1), words)
-        axes.set_title(split)
-        axes.set_ylim(bottom=0)
+        axes.set(title=split, ylim=(0, None))
     row[0].set_ylabel("relative L2 error [1]")
-    legend(drawn, lines_of({"the field's own norm": Look("#888888", "-", ""),
-                            "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}))  # fmt: skip
-    numbers = pd.DataFrame([(c.split, c.route, c.run, c.relative_l2, c.r2) for c in cells],
-                           columns=pd.Index(["split", "route", "run", "relative_l2", "r2"]))  # fmt: skip
+    looks = {"the field's own norm": Look("#888888", "-", ""), "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}
+    legend(drawn, lines_of(looks))
+    numbers = field_cells_table(cells)[["split", "route", "run", "relative_l2", "r2"]]
     caption = f"{source}. Each point is one model; box: quartiles, whiskers within 1.5 of their distance."
     return Figure(name, caption, "Boxes of relative errors by split and kind of sensor", numbers, drawn)
 
@@ -116,8 +102,8 @@ def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
     splits = list(dict.fromkeys(found["split"]))
     for split, look in zip(splits, (RECONSTRUCTED["shred"], RECONSTRUCTED["delay ridge"]), strict=False):
         some = found[found["split"] == split]
-        left.plot(some["nodes"], some["relative_l2"], marker=look.mark, color=look.colour, linestyle=look.line,
-                  markersize=4, label=split)  # fmt: skip
+        style = {"marker": look.mark, "color": look.colour, "linestyle": look.line, "markersize": 4, "label": split}
+        left.plot(some["nodes"], some["relative_l2"], **style)
     first = found[found["split"] == splits[0]]
     right.plot(first["nodes"], first["energy_left"], "o-", color="#111111", markersize=4)
     for axes, words in ((left, "relative L2 error of SHRED [1]"), (right, "energy beyond so many modes, share [1]")):
@@ -125,8 +111,7 @@ def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
         axes.set_xticks(list(first["nodes"]), [str(n) for n in first["nodes"]])
         axes.minorticks_off()
         axes.axvline(5, color="#888888", linewidth=0.7, linestyle=(0, (2.0, 2.0)))
-        axes.set_ylabel(words)
-        axes.set_ylim(bottom=0)
+        axes.set(ylabel=words, ylim=(0, None))
     left.set_xlabel("nodes of the recurrent layer")
     right.set_xlabel("proper orthogonal modes")
     left.legend(loc="lower left")
@@ -140,14 +125,18 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
     models = list(dict.fromkeys(cell.model for cell in cells if not _is_bound(cell.model)))
     routes = list(dict.fromkeys(cell.route for cell in cells))
     found = {(cell.route, cell.split, cell.model): cell for cell in cells}
-    extra = ("printed",) if printed else ()
-    rows = []
+    extra, rows, tested = ("printed",) if printed else (), [], []
+    for split in splits:
+        counts = sorted({cell.tested for cell in cells if cell.split == split})
+        tested.append(f"{split} {' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))}")
+    bounds = {(cell.split, cell.model): cell for cell in reversed(cells) if _is_bound(cell.model)}  # of every route
+    words = [f"{split}, {model}: {_cell(cell)}" for (split, model), cell in reversed(bounds.items())]
     for route in routes:
         row = [route]
         for split in splits:
-            here = {model: found.get((route, split, model)) for model in models}
-            least = min((c.relative_l2 for c in here.values() if c is not None), default=0.0)
-            row += [_cell(cell, least) for cell in here.values()]
+            here = [found.get((route, split, model)) for model in models]
+            least = min((cell.relative_l2 for cell in here if cell), default=0.0)
+            row += [_cell(cell, least) for cell in here]
             if printed:
                 row.append(f"{printed[route, split]:.4f}" if (route, split) in printed else "")
         rows.append(tuple(row))
@@ -155,8 +144,7 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
     caption = (
         f"{first.field}, {first.quantity}: relative L2 error, the norm of the error over the norm of the field about "
         f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; star: least of the models. "
-        f"Test snapshots: {', '.join(f'{split} {_tested(cells, split)}' for split in splits)}."
-        f"{_bounds(cells)}"
+        f"Test snapshots: {', '.join(tested)}." + f" Bounds: {'; '.join(words)}." * bool(words)
     )
     columns = ("route", *[word for _ in splits for word in (*models, *extra)])
     groups = (("", 1), *[(split, len(models) + len(extra)) for split in splits])
@@ -167,23 +155,11 @@ def _is_bound(model: str) -> bool:
     return model.endswith("(no sensor)") or model.startswith("POD")
 
 
-def _bounds(cells: Sequence[FieldCell]) -> str:
-    """What needs no sensor, and what no model can beat: the same for every route."""
-    found = {(cell.split, cell.model): cell for cell in reversed(cells) if _is_bound(cell.model)}
-    words = [f"{split}, {model}: {_cell(cell)}" for (split, model), cell in reversed(found.items())]
-    return f" Bounds: {'; '.join(words)}." if words else ""
-
-
 def _cell(cell: FieldCell | None, least: float = 0.0) -> str:
     if cell is None:
         return ""
     star = "*" if cell.relative_l2 == least else ""
     return f"{cell.relative_l2:.3f}{star} ({cell.rmse:.3g}; {cell.r2:.2f})"
-
-
-def _tested(cells: Sequence[FieldCell], split: str) -> str:
-    counts = sorted({cell.tested for cell in cells if cell.split == split})
-    return str(counts[0]) if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
 
 
 def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
@@ -214,25 +190,23 @@ def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
 @in_style
 def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
     """One quantity of a field on its grid, one panel a snapshot, all on one scale of colour."""
-    planes = {title: _plane(field.on_grid(values)) for title, values in snapshots.items()}
+    planes = {}
+    for title, values in snapshots.items():
+        planes[title] = field.on_grid(values)
+        while planes[title].ndim > 2:  # of a field in space the middle plane
+            planes[title] = planes[title][len(planes[title]) // 2]
     middle, reach = _span(np.concatenate([plane.ravel() for plane in planes.values()]))
-    columns = 2
-    rows = -(-len(planes) // columns)
-    vertical, across = field.axes[-2:]
-    width = (8.0 - 1.6 - 0.5) / columns
+    columns, (vertical, across) = 2, field.axes[-2:]
+    rows, width = -(-len(planes) // columns), (8.0 - 1.6 - 0.5) / columns
     height = float(np.clip(width * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 0.9, 2.6))
     drawn, grid = panels(rows, columns, height, Room(right=0.85, across=0.5, down=0.5, top=0.35))
-    panel_list = [axes for row in grid for axes in row]
+    panel_list, meshes = [axes for row in grid for axes in row], []
     for axes in panel_list[len(planes) :]:
         axes.set_visible(False)
-    pairs = zip(panel_list, planes.values(), strict=False)
-    meshes = []
-    for axes, plane in pairs:
-        axes.set_facecolor("#dddddd")
+    for axes, (title, plane) in zip(panel_list, planes.items(), strict=False):
+        axes.set(facecolor="#dddddd", title=title)
         mesh = {"vmin": middle - reach, "vmax": middle + reach, "cmap": "RdBu_r", "rasterized": True}
         meshes.append(axes.pcolormesh(across.coordinates, vertical.coordinates, plane, **mesh))
-    for axes, title in zip(panel_list, planes, strict=False):
-        axes.set_title(title)
     for row in grid:
         row[0].set_ylabel(f"{vertical.name} [{vertical.unit}]")
     for axes in grid[-1]:
@@ -244,8 +218,8 @@ def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], nam
         for title, plane in planes.items()
     ])  # fmt: skip
     plane_words = " Middle plane." if len(field.axes) > 2 else ""
-    return Figure(name, f"{source}. {field.quantities[0]} [{field.units[0]}].{plane_words}",
-                  f"{len(planes)} maps on one scale of colour", table, drawn)  # fmt: skip
+    caption = f"{source}. {field.quantities[0]} [{field.units[0]}].{plane_words}"
+    return Figure(name, caption, f"{len(planes)} maps on one scale of colour", table, drawn)
 
 
 @in_style
@@ -254,25 +228,18 @@ def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name
     vertical, across = field.axes[-2:]
     height = float(np.clip(7.0 * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 1.2, 3.8))
     drawn, ((axes,),) = panels(1, 1, height, Room(top=0.5))
-    axes.pcolormesh(across.coordinates, vertical.coordinates, np.where(field.mask, 0.25, np.nan), vmin=0, vmax=1,
-                    cmap="Greys", rasterized=True)  # fmt: skip
+    grey = {"vmin": 0, "vmax": 1, "cmap": "Greys", "rasterized": True}
+    axes.pcolormesh(across.coordinates, vertical.coordinates, np.where(field.mask, 0.25, np.nan), **grey)
     rows = []
     for k, (title, places) in enumerate(routes.items()):
         colour = ROUTE_COLOURS[k % len(ROUTE_COLOURS)]
         stays = len(np.unique(places, axis=0)) == 1
-        axes.plot(places[:, 1], places[:, 0], "o" if stays else "-", color=colour, markersize=5, linewidth=1.4,
-                  label=title)  # fmt: skip
+        look = {"color": colour, "markersize": 5, "linewidth": 1.4, "label": title}
+        axes.plot(places[:, 1], places[:, 0], "o" if stays else "-", **look)
         rows.append(pd.DataFrame({"route": title, vertical.name: places[:, 0], across.name: places[:, 1]}))
-    axes.set_xlabel(f"{across.name} [{across.unit}]")
-    axes.set_ylabel(f"{vertical.name} [{vertical.unit}]")
+    axes.set(xlabel=f"{across.name} [{across.unit}]", ylabel=f"{vertical.name} [{vertical.unit}]")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(routes), borderaxespad=0.2)
     return Figure(name, f"{source}. Grey: points of the field.", "Routes of sensors on a map", pd.concat(rows), drawn)
-
-
-def _plane(grid: NDArray[np.float64]) -> NDArray[np.float64]:
-    while grid.ndim > 2:
-        grid = grid[len(grid) // 2]
-    return grid
 
 
 def _span(values: NDArray[np.float64]) -> tuple[float, float]:
@@ -297,14 +264,12 @@ def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
     left.minorticks_off()
     left.set_ylim(bottom=mean.min() / 3, top=3 * mean.max())
     left.set_xticks([1, 2, 5, 10, *([20] if k[-1] >= 20 else [])])
-    left.set_xlabel("wavenumber [1]")
-    left.set_ylabel("energy in the shell [1]")
+    left.set(xlabel="wavenumber [1]", ylabel="energy in the shell [1]")
     left.legend(loc="lower left")
     right.plot(numbers["snapshot"], numbers["dissipation"], color="#c8102e", linewidth=1.0, label="dissipation")
     right.axhline(power, color="#888888", linestyle=(0, (4.0, 1.6)), label="power put in")
-    right.set_ylim(0, 1.3 * max(power, float(numbers["dissipation"].max())))
-    right.set_xlabel("snapshot")
-    right.set_ylabel("per mass and time [1]")
+    most = 1.3 * max(power, float(numbers["dissipation"].max()))
+    right.set(ylim=(0, most), xlabel="snapshot", ylabel="per mass and time [1]")
     right.legend(loc="lower right")
     middle = numbers.mean()
     caption = (

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from chapter3.record import rk4_step
 from chapter3.sindy import fit_sindy
-from chapter3.system import rk4_step
 from further import Number
 from numpy.typing import NDArray
 
@@ -69,8 +69,7 @@ def real_people() -> list[Person]:
     """Eight who walk (six children, straight on) and two who run."""
     children = [Person(each.name, "walking, children", each.recordings[:1]) for each in turning()]
     with np.load(DATA / "treadmill_walk_ik" / "addbio_expert3_ik.npz") as packed:
-        names = [str(name) for name in packed["columns"]]
-        kept = [names.index(name) for name in ANGLES]
+        kept = [list(packed["columns"]).index(name) for name in ANGLES]
         channels = tuple(children[0].recordings[0].channels)
         walks = [np.asarray(packed[f"S01DE{number}"], float)[:, kept] for number in TREADMILL]
     belt = tuple(gd.lowpass(gd.Recording(np.arange(len(v)) / RATE_HZ, v, channels), CUTOFF_HZ) for v in walks)
@@ -174,11 +173,10 @@ def speed(quick: bool) -> Iterator[Number]:
     walker = next(person for person in real_people() if person.name == "S01")
     plain = Sensing(SAGITTAL, TOLD, LAGS, 100.0)
     windows = [plain.windows(one, np.zeros(len(one.time))).rows(slice(None, None, 4)) for one in walker.recordings]
-    lasts = [stride_s(one) for one in walker.recordings]
+    given = [with_duration(*each) for each in zip(windows, walker.recordings, strict=True)]
     for kind in ("delay ridge",) if quick else ("delay ridge", "fourier ridge"):
-        for name, each in (("", windows), ("stride's duration given", list(map(given, windows, lasts)))):
-            sensors = (*SAGITTAL, "stride_s") if name else SAGITTAL
-            what = replace(plain, sensors=sensors)
+        for name, each in (("", windows), ("stride's duration given", given)):
+            what = replace(plain, sensors=(*SAGITTAL, "stride_s") if name else SAGITTAL)
             for place in range(len(each)):
                 parts = split_by_trial(each, [place], plain.reach_s)
                 done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
@@ -186,17 +184,11 @@ def speed(quick: bool) -> Iterator[Number]:
                 yield Number(f"{kind}, {name}".strip(", "), "RMSE [deg]", f"walk {place + 1}", missed)
 
 
-def stride_s(walk: gd.Recording) -> float:
-    """Period of the knee: the first peak of its autocorrelation after half a second [s]."""
+def with_duration(windows: gd.Samples, walk: gd.Recording) -> gd.Samples:
+    """Windows whose every reading has the stride's duration beside it: the knee's period, by its autocorrelation."""
     knee = walk["knee_angle_r"] - walk["knee_angle_r"].mean()
-    every = np.correlate(knee, knee, "full")[len(knee) - 1 :]
-    return float(50 + np.argmax(every[50:200])) / 100
-
-
-def given(windows: gd.Samples, lasts: float) -> gd.Samples:
-    """Windows whose every reading has the stride's duration beside it."""
-    count = len(SAGITTAL)
-    x = windows.x.reshape(len(windows), -1, count)
+    lasts = float(50 + np.argmax(np.correlate(knee, knee, "full")[len(knee) - 1 :][50:200])) / 100
+    x = windows.x.reshape(len(windows), -1, len(SAGITTAL))
     x = np.concatenate([x, np.full((*x.shape[:2], 1), lasts)], axis=2).reshape(len(windows), -1)
     names = tuple(f"{k} {name}" for k in range(LAGS.count) for name in (*SAGITTAL, "stride_s"))
     return replace(windows, x=x, inputs=names)
@@ -214,31 +206,23 @@ def simulated(quick: bool, recordings: Path) -> Iterator[Number]:
     test, few_real = parts.tested(), parts.training[0]
     mean, size = few_real.x.mean(axis=0), few_real.x.std(axis=0)
     moved = replace(test, x=(test.x - mean) / size * fitted.x.std(axis=0) + fitted.x.mean(axis=0))
-    offset = few_real.y.mean(axis=0)
     for kind in ("delay ridge",) if quick else ("delay ridge", "fourier ridge", "shred"):
         done = fit_reconstructor(kind, what, fitted, checked)
         found = {"as simulated": done(test), "readings aligned": done(moved)}
         if isinstance(done.model, TrainedNetwork):
-            states = aligned(latent_states(done, test), latent_states(done, few_real), latent_states(done, fitted))
+            # with the simulated mean and covariance in place of the real ones (CORAL)
+            states, own, others = (latent_states(done, each) for each in (test, few_real, fitted))
+            roots = []
+            for one in (own, others):
+                values, vectors = np.linalg.eigh(np.cov(one.T) + 1e-4 * np.eye(one.shape[1]))
+                roots.append((vectors * np.sqrt(values)) @ vectors.T)
+            states = (states - own.mean(axis=0)) @ np.linalg.solve(*roots) + others.mean(axis=0)
             found["latent states aligned"] = done.model.decoded(states)
         found["linear correction by ten strides' states"] = calibrated(done, few_real.rows(slice(1100)))(test)
         if kind in WITHOUT_NETWORK:
             found["fitted to the person"] = fit_reconstructor(kind, what, parts.fitted(), parts.checked())(test)
         for name, values in found.items():
-            yield Number(f"{kind}: {name}", "RMSE [deg]", "", rmse(values - test.y))
-            yield Number(
-                f"{kind}: {name}",
-                "means taken off [deg]",
-                "",
-                rmse((values - test.y) - (values - test.y).mean(axis=0)),
-            )
-    yield Number("the person's own mean (null)", "RMSE [deg]", "", rmse(offset - test.y))
-
-
-def aligned(states: Values, real: Values, simulated_states: Values) -> Values:
-    """Latent states with the simulated mean and covariance in place of the real ones (CORAL)."""
-    roots = []
-    for one in (real, simulated_states):
-        values, vectors = np.linalg.eigh(np.cov(one.T) + 1e-4 * np.eye(one.shape[1]))
-        roots.append((vectors * np.sqrt(values)) @ vectors.T)
-    return (states - real.mean(axis=0)) @ np.linalg.solve(roots[0], roots[1]) + simulated_states.mean(axis=0)
+            missed, row = values - test.y, f"{kind}: {name}"
+            yield Number(row, "RMSE [deg]", "", rmse(missed))
+            yield Number(row, "means taken off [deg]", "", rmse(missed - missed.mean(axis=0)))
+    yield Number("the person's own mean (null)", "RMSE [deg]", "", rmse(few_real.y.mean(axis=0) - test.y))

@@ -89,9 +89,9 @@ class FieldCell:
     # norm of the error over the norm of the field about zero, of all test values at once (Eq. 2.21); 1 for a model
     # that says 0
     relative_l2: float
-    rmse: float  # [unit], root mean square, mean and standard deviation of reconstructed minus measured
-    bias: float  # [unit], root mean square, mean and standard deviation of reconstructed minus measured
-    sd: float  # [unit], root mean square, mean and standard deviation of reconstructed minus measured
+    rmse: float  # [unit], root mean square of reconstructed minus measured; its mean and standard deviation:
+    bias: float
+    sd: float
     # 1 - mean squared error over the mean squared distance from the training part's mean field; 0 for a model that says
     # that mean
     r2: float
@@ -104,9 +104,8 @@ class FieldCell:
 
 def field_cells_table(cells: Sequence[FieldCell]) -> pd.DataFrame:
     """Numbers of all cells, one row each, without the counts of errors."""
-    rows = [{name: value for name, value in vars(cell).items() if name != "errors"} for cell in cells]
-    columns = [name for name in FieldCell.__dataclass_fields__ if name != "errors"]
-    return pd.DataFrame(rows, columns=pd.Index(columns))
+    columns = pd.Index([name for name in FieldCell.__dataclass_fields__ if name != "errors"])
+    return pd.DataFrame([vars(cell) for cell in cells], columns=columns)
 
 
 def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
@@ -118,10 +117,7 @@ def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
 
 def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Path) -> None:
     """Keep cells, so that a study that was stopped goes on."""
-    rows = [
-        {**vars(cell), "errors": {"edges": cell.errors.edges.tolist(), "counts": cell.errors.counts.tolist()}}
-        for cell in cells
-    ]
+    rows = [{**vars(cell), "errors": {k: v.tolist() for k, v in vars(cell.errors).items()}} for cell in cells]
     write_whole(path, sealed_text({"made_by": dict(made_by), "cells": rows}))
 
 
@@ -139,7 +135,7 @@ def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None
 
 def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[str, ...]:
     """Names of what one window holds for each of its times."""
-    given = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
+    given = (*field.quantities, *(axis.name for axis in field.axes if positions))
     return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in given)
 
 
@@ -152,9 +148,7 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
             f"{field.source.file or 'the field'} has {len(field)}",
             "Take fewer lags, or a longer field.",
         )
-    readings = route.readings(field)
-    if positions:
-        readings = np.concatenate([readings, route.places(field)], axis=2)
+    readings = np.concatenate([route.readings(field), *([route.places(field)] if positions else [])], axis=2)
     readings = readings.reshape(len(field), -1)
     last = np.arange(lags.reach, len(field) - lags.ahead)
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
@@ -224,8 +218,7 @@ def targets_of(field: Field, task: FieldTask) -> Targets:
 def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None = None) -> Prepared:
     """Cut windows, part them, and set what they are to reconstruct beside them."""
     targets = targets or targets_of(field, task)
-    parts = _parts(targets.read, route, task)
-    names = reading_names(field, route, task.positions)
+    parts, names = _parts(targets.read, route, task), reading_names(field, route, task.positions)
     windows = parts.fitted(), parts.checked(), parts.tested()
     training, check, test = (with_coefficients(each, targets.coefficients, targets.modes.names) for each in windows)
     return Prepared(training, check, test, targets, Sensing(names, targets.modes.names, task.lags, 1.0))
@@ -247,8 +240,13 @@ def reconstruct_field(
     """Fit every kind of model and test it on the test part, in the field's own unit at every point."""
     ready = prepare(field, route, task, targets)
     cells = []
-    for model, found in (_floors(ready, task) if floors else {}).items():
-        cells += field_cells(field, ready, task.label(route.name, model), found)
+    if floors:
+        rows, there = snapshots_of(ready.test), ready.targets
+        found = {MEAN: np.broadcast_to(there.mean, (len(rows), *there.mean.shape))}
+        found |= {SEASON: there.season.at(rows)} if task.season else {}
+        found[CEILING] = there.fields(ready.test.y, ready.test)
+        for model, values in found.items():
+            cells += field_cells(field, ready, task.label(route.name, model), values)
     for kind in kinds:
         done = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
         label = task.label(route.name, task.named(kind))
@@ -266,36 +264,16 @@ def field_cells(
         error = reconstructed[:, :, k] - y
         square, bias = float(np.mean(error**2)), float(np.mean(error))
         about = float(np.mean((y - ready.targets.mean[:, k]) ** 2))
-        cells.append(
-            FieldCell(
-                field=label.field,
-                quantity=quantity,
-                unit=field.units[k],
-                route=label.route,
-                split=label.split,
-                model=label.model,
-                relative_l2=float(np.sqrt(square / np.mean(y**2))),
-                rmse=float(np.sqrt(square)),
-                bias=bias,
-                sd=float(np.sqrt(max(square - bias**2, 0.0))),
-                r2=1 - square / about,
-                fitted=len(ready.training),
-                tested=len(rows),
-                seconds=seconds,
-                run=label.run,
-                errors=error_counts(error, float(np.std(y))),
-            )
-        )
+        head: dict[str, Any] = label._asdict() | {"quantity": quantity, "unit": field.units[k], "seconds": seconds}
+        head |= {"fitted": len(ready.training), "tested": len(rows)}
+        sizes: dict[str, Any] = {
+            "relative_l2": float(np.sqrt(square / np.mean(y**2))),
+            "rmse": float(np.sqrt(square)),
+            "bias": bias,
+        }
+        sizes |= {"sd": float(np.sqrt(max(square - bias**2, 0.0))), "r2": 1 - square / about}
+        cells.append(FieldCell(**head, **sizes, errors=error_counts(error, float(np.std(y)))))
     return cells
-
-
-def _floors(ready: Prepared, task: FieldTask) -> dict[str, NDArray[np.float32]]:
-    rows, targets = snapshots_of(ready.test), ready.targets
-    found = {MEAN: np.broadcast_to(targets.mean, (len(rows), *targets.mean.shape))}
-    if task.season:
-        found[SEASON] = targets.season.at(rows)
-    found[CEILING] = targets.fields(ready.test.y, ready.test)
-    return found
 
 
 def latent_sizes(
@@ -315,9 +293,8 @@ def latent_sizes(
     for nodes in sizes:
         build = partial(Shred, sensors=len(ready.what.sensors), nodes=nodes)
         model = train(ready.training, build, settings, check=ready.check).network
-        label = task.label(route.name, f"shred {nodes}")
-        left = float(1 - np.sum(ready.targets.modes.energies[:nodes]))
-        for cell in field_cells(field, ready, label, ready.targets.fields(model(ready.test.x), ready.test)):
+        left, label = float(1 - np.sum(ready.targets.modes.energies[:nodes])), task.label(route.name, f"shred {nodes}")
+        for cell in field_cells(field, ready, label, ready.reconstructed(lambda test, model=model: model(test.x))):
             rows.append((nodes, task.rule, cell.quantity, cell.relative_l2, cell.r2, left))
     return pd.DataFrame(rows, columns=pd.Index(list(COLUMNS)))
 
@@ -338,8 +315,7 @@ def unseen_path(
             f"found {len(routes)} paths, with {counts} sensors",
             "Give more paths, alike in their sensors.",
         )
-    cells, targets = [], targets_of(field, task)
-    many = len(routes)
+    cells, targets, many = [], targets_of(field, task), len(routes)
     for fitted, placed in ((ALONE, False), (MANY.format(many), False), (MANY_PLACED.format(many), True)):
         placed_task = replace(task, positions=placed)
         ready = [prepare(field, route, placed_task, targets) for route in (routes[:1] if fitted == ALONE else routes)]

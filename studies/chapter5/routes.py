@@ -91,8 +91,7 @@ def circuit(field: Field, stops: ArrayLike, period: int, name: str) -> Route:
     """One sensor that goes round a closed path at an even pace, again and again."""
     corners = np.asarray(stops, float)
     corners = np.vstack([corners, corners[:1]])
-    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-    gone = np.concatenate([[0.0], np.cumsum(lengths)])
+    gone = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))])
     now = (np.arange(len(field)) % period) / period * gone[-1]
     return along(field, np.column_stack([np.interp(now, gone, column) for column in corners.T]), name)
 
@@ -107,9 +106,10 @@ def random_walk(field: Field, seed: int, start: int | None = None, every: int = 
     """
     rng = np.random.default_rng(seed)
     number_at, shape = field.number_at, field.mask.shape
-    begin = _central(field) if start is None else fixed(field, [start]).points[0, 0]
-    node = field.nodes[begin].copy()
-    points = np.empty(len(field), int)
+    if start is None:  # the centre
+        away = (field.nodes - (np.array(shape) - 1) / 2) / np.array(shape)
+        start = int(np.argmin((away**2).sum(axis=1)))
+    node, points = field.nodes[fixed(field, [start]).points[0, 0]].copy(), np.empty(len(field), int)
     for snapshot in range(len(field)):
         if snapshot and snapshot % every == 0:
             step = np.zeros(len(shape), int)
@@ -125,8 +125,3 @@ def random_walk(field: Field, seed: int, start: int | None = None, every: int = 
 def joined(routes: Sequence[Route]) -> Route:
     """Sensors of several routes side by side."""
     return Route(" + ".join(route.name for route in routes), np.hstack([route.points for route in routes]))
-
-
-def _central(field: Field) -> int:
-    away = (field.nodes - (np.array(field.mask.shape) - 1) / 2) / np.array(field.mask.shape)
-    return int(np.argmin((away**2).sum(axis=1)))

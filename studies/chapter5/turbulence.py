@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.fft import irfftn, rfftn
 
 from gaitdisc.errors import ReadError, SamplingError, SchemaError, ShapeError
 from gaitdisc.recording import Axis, Field, Source
@@ -75,24 +76,20 @@ class Box:
         weight[..., 0] = weight[..., -1] = 1.0
         return weight
 
-    def to_modes(self, velocity: NDArray[np.floating]) -> NDArray[np.complexfloating]:
+    def to_modes(self, velocity: NDArray[np.floating]) -> Modes:
         """Fourier coefficients of a velocity, (3, x, y, z), as amplitudes: not times the number of nodes."""
-        from scipy.fft import rfftn
-
         return np.asarray(rfftn(velocity, axes=(1, 2, 3), norm="forward"))
 
-    def to_nodes(self, modes: NDArray[np.complexfloating]) -> NDArray[np.floating]:
+    def to_nodes(self, modes: Modes) -> NDArray[np.floating]:
         """Values at the nodes, (3, x, y, z)."""
-        from scipy.fft import irfftn
-
         return np.asarray(irfftn(modes, s=(self.nodes,) * 3, axes=(1, 2, 3), norm="forward"))
 
-    def projected(self, modes: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
+    def projected(self, modes: Modes) -> Modes:
         """Take away the part that is a gradient, and modes that are not computed: what is left has no divergence."""
         along = (self.k * modes).sum(axis=0) * self.inverse
         return np.where(self.kept, modes - self.k * along, 0)
 
-    def energy(self, modes: NDArray[np.complexfloating]) -> NDArray[np.float32]:
+    def energy(self, modes: Modes) -> NDArray[np.float32]:
         """Kinetic energy per mass in every mode, (x, y, z), such that the sum is the mean over the box."""
         return 0.5 * self.weight * (modes.real**2 + modes.imag**2).sum(axis=0)
 
@@ -105,17 +102,17 @@ class FlowNumbers:
     dissipation: float
     re_lambda: float
     kmax_eta: float  # largest wavenumber times Kolmogorov's length: 1 or more resolves the dissipation
-    integral_length: float  # Longitudinal integral length, and its time: length over root mean square velocity
-    turnover: float  # Longitudinal integral length, and its time: length over root mean square velocity
+    integral_length: float  # longitudinal
+    turnover: float  # its time: length over root mean square velocity
 
 
-def energy_spectrum(box: Box, u: NDArray[np.complexfloating]) -> NDArray[np.float64]:
+def energy_spectrum(box: Box, u: Modes) -> NDArray[np.float64]:
     """Energy in shells of unit width around each whole wavenumber from 0; the sum is the energy."""
     shell = np.rint(np.sqrt(box.squared)).astype(int).ravel()
     return np.bincount(shell, weights=box.energy(u).astype(float).ravel()).astype(float)
 
 
-def flow_numbers(box: Box, u: NDArray[np.complexfloating], viscosity: float) -> FlowNumbers:
+def flow_numbers(box: Box, u: Modes, viscosity: float) -> FlowNumbers:
     """Energy, dissipation, and what follows from them for isotropic turbulence.
 
     Source: Pope 2000, Turbulent flows, section 6: lambda^2 = 15 viscosity u'^2 / dissipation, eta = (viscosity^3 /
@@ -128,11 +125,9 @@ def flow_numbers(box: Box, u: NDArray[np.complexfloating], viscosity: float) -> 
     taylor = np.sqrt(15 * viscosity / dissipation) * speed
     eta = (viscosity**3 / dissipation) ** 0.25
     spectrum = energy_spectrum(box, u)
-    k = np.arange(1, len(spectrum))
-    length = float(np.pi / (2 * speed**2) * np.sum(spectrum[1:] / k))
-    return FlowNumbers(
-        energy, dissipation, float(speed * taylor / viscosity), float(box.largest * eta), length, length / float(speed)
-    )
+    length = float(np.pi / (2 * speed**2) * np.sum(spectrum[1:] / np.arange(1, len(spectrum))))
+    re_lambda, resolved = float(speed * taylor / viscosity), float(box.largest * eta)
+    return FlowNumbers(energy, dissipation, re_lambda, resolved, length, length / float(speed))
 
 
 @dataclass(frozen=True)
@@ -178,22 +173,16 @@ class Stepper:
     def rates(self, u: Modes) -> Modes:
         """Rate of the velocity without viscosity: advection and force."""
         box = self.box
-        velocity, vorticity = box.to_nodes(u), box.to_nodes(_curl(box, u))
-        product = np.stack([velocity[(i + 1) % 3] * vorticity[(i + 2) % 3]
-                            - velocity[(i + 2) % 3] * vorticity[(i + 1) % 3] for i in range(3)])  # fmt: skip
-        return box.projected(box.to_modes(product)) + self._force(u)
-
-    def _force(self, u: Modes) -> Modes:
+        velocity, vorticity = box.to_nodes(u), box.to_nodes(_crossed(box.k, u) * u.dtype.type(1j))
+        rate = box.projected(box.to_modes(_crossed(velocity, vorticity)))
         if not self.power:
-            return np.zeros((), u.dtype)
-        there = float(self.box.energy(u)[self._forced].sum(dtype=float))
-        return np.where(self._forced, u * (self.power / (2 * there)), 0).astype(u.dtype, copy=False)
+            return rate
+        there = float(box.energy(u)[self._forced].sum(dtype=float))
+        return rate + np.where(self._forced, u * (self.power / (2 * there)), 0).astype(u.dtype, copy=False)
 
 
-def _curl(box: Box, u: Modes) -> Modes:
-    k = box.k
-    curl = [k[(i + 1) % 3] * u[(i + 2) % 3] - k[(i + 2) % 3] * u[(i + 1) % 3] for i in range(3)]
-    return np.stack(curl) * u.dtype.type(1j)
+def _crossed(a: NDArray, b: NDArray) -> NDArray:
+    return np.stack([a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)])
 
 
 @dataclass(frozen=True)
@@ -229,7 +218,7 @@ class FlowSettings:
         return 0.15 / (Box(self.nodes).largest * self.power ** (1 / 3))
 
 
-def first_velocity(box: Box, energy: float, seed: int) -> NDArray[np.complexfloating]:
+def first_velocity(box: Box, energy: float, seed: int) -> Modes:
     """Random velocity without divergence, most of it in the largest scales."""
     noise = np.random.default_rng(seed).normal(size=(3, *(box.nodes,) * 3)).astype(np.float32)
     u = box.projected(box.to_modes(noise) * (box.squared * np.exp(-box.squared / 4)))
@@ -244,7 +233,8 @@ def record_turbulence(
     box = Box(settings.nodes)
     stepper = Stepper(box, settings.viscosity, settings.power, settings.dt)
     u, done, rows = _begun(settings, box, folder)
-    values = _values(settings, folder, done)
+    shape, mode = (settings.snapshots, settings.cut**3), "r+" if done and (folder / VALUES).exists() else "w+"
+    values = np.lib.format.open_memmap(folder / VALUES, mode=mode, dtype=np.float32, shape=shape)
     spin_up = 0 if rows or done else settings.spin_up
     whole = settings.snapshots * settings.every + settings.spin_up
     for step in range(spin_up):
@@ -266,24 +256,24 @@ def record_turbulence(
                 np.savez(file, u=u, done=np.array(snapshot + 1), rows=np.array(json.dumps(rows)))
         if progress:
             progress(1 - (settings.snapshots - snapshot - 1) * settings.every / whole)
-    return _field(settings, folder), pd.DataFrame(rows)
+    cut, kept = settings.cut, np.load(folder / VALUES, mmap_mode="r")
+    axes = tuple(Axis(name, 2 * np.pi / settings.nodes * np.arange(float(cut))) for name in "xyz")
+    time = np.arange(float(settings.snapshots)) * settings.every * settings.dt
+    source = Source("", "", f"gaitdisc turbulence, {settings.nodes} nodes, seed {settings.seed}")
+    field = Field(time, kept[:, :, None], axes, np.ones((cut,) * 3, bool), ("u",), ("1",), "s", source)
+    return field, pd.DataFrame(rows)
 
 
-def _begun(
-    settings: FlowSettings, box: Box, folder: Path
-) -> tuple[NDArray[np.complexfloating], int, list[dict[str, float]]]:
-    path = folder / SETTINGS
+def _begun(settings: FlowSettings, box: Box, folder: Path) -> tuple[Modes, int, list[dict[str, float]]]:
+    path, delete = folder / SETTINGS, "Delete the folder."
     if path.exists():
         try:
             there = dict(json.loads(path.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError) as error:
-            raise ReadError(
-                "a flow is to go on by its settings", f"{SETTINGS} cannot be read: {error}", "Delete the folder."
-            ) from error
+            wrong = f"{SETTINGS} cannot be read: {error}"
+            raise ReadError("a flow is to go on by its settings", wrong, delete) from error
+        other = [f"{name} {there.get(name)}" for name, value in asdict(settings).items() if there.get(name) != value]
         if there != asdict(settings):
-            other = [
-                f"{name} {there.get(name)}" for name, value in asdict(settings).items() if there.get(name) != value
-            ]
             raise SchemaError(
                 "a folder of turbulence needs the settings that its flow was begun with",
                 f"{folder.name} has {', '.join(other)}",
@@ -292,30 +282,10 @@ def _begun(
     else:
         write_whole(path, json.dumps(asdict(settings), indent=1) + "\n")
     if not (folder / STATE).exists():
-        energy = 1.5 * settings.power ** (2 / 3)
-        return first_velocity(box, energy, settings.seed), 0, []
+        return first_velocity(box, 1.5 * settings.power ** (2 / 3), settings.seed), 0, []
     try:
         with np.load(folder / STATE, allow_pickle=False) as state:
             return state["u"], int(state["done"]), json.loads(str(state["rows"]))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise ReadError(
-            "an interrupted flow is to go on from its state", f"{STATE} cannot be read: {error}", "Delete the folder."
-        ) from error
-
-
-def _values(settings: FlowSettings, folder: Path, done: int) -> np.memmap:
-    shape = (settings.snapshots, settings.cut**3)
-    path = folder / VALUES
-    if done and path.exists():
-        return np.lib.format.open_memmap(path, mode="r+")
-    return np.lib.format.open_memmap(path, mode="w+", dtype=np.float32, shape=shape)
-
-
-def _field(settings: FlowSettings, folder: Path) -> Field:
-    values = np.load(folder / VALUES, mmap_mode="r")
-    step = 2 * np.pi / settings.nodes
-    axes = tuple(Axis(name, step * np.arange(float(settings.cut))) for name in "xyz")
-    time = np.arange(float(settings.snapshots)) * settings.every * settings.dt
-    source = Source("", "", f"gaitdisc turbulence, {settings.nodes} nodes, seed {settings.seed}")
-    mask = np.ones((settings.cut,) * 3, bool)
-    return Field(time, values[:, :, None], axes, mask, ("u",), ("1",), "s", source)
+        wrong = f"{STATE} cannot be read: {error}"
+        raise ReadError("an interrupted flow is to go on from its state", wrong, delete) from error

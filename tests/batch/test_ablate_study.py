@@ -25,24 +25,24 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("quantities")
 
 
-def test_it_is_computed_once_and_loaded_afterwards(study, folder):
-    person, shares = study.participants[0], []
-    key = response_key(unit_keys(study, person))
+def test_it_is_computed_once_and_loaded_afterwards(small, folder, trained_briefly):
+    person, shares = small.participants[0], []
+    key = response_key(unit_keys(small, person))
     assert QUANTITY.kept(folder / "quantities" / person.id, key) is None
-    first = computed_quantity(study, person, folder, (5.0,), "first", shares.append)
+    first = computed_quantity(small, person, folder, (5.0,), "first", shares.append)
     assert isinstance(first, DataQuantity)
     assert shares[-1] == 1.0
     work = len(shares)
-    again = computed_quantity(study, person, folder, (5.0,), "first", shares.append)
+    again = computed_quantity(small, person, folder, (5.0,), "first", shares.append)
     assert isinstance(again, DataQuantity)
     kept = QUANTITY.kept(folder / "quantities" / person.id, key)
     assert kept is not None and again.table.equals(kept.table)
     assert len(shares) == work
 
 
-def test_other_settings_are_not_taken_for_these(study, folder):
-    person = study.participants[0]
-    other = study.model_copy(update={"models": study.models.model_copy(update={"seed": 7})})
+def test_other_settings_are_not_taken_for_these(small, folder):
+    person = small.participants[0]
+    other = small.model_copy(update={"models": small.models.model_copy(update={"seed": 7})})
     assert QUANTITY.kept(folder / "quantities" / person.id, response_key(unit_keys(other, person))) is None
 
 

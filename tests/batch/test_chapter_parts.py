@@ -36,7 +36,7 @@ def test_the_parts_of_a_chapter():
 
 
 def test_what_is_no_part_is_refused_with_the_nearest():
-    with pytest.raises(SchemaError, match="'van_der_poll' is none of them, the nearest is 'van_der_pol'"):
+    with pytest.raises(SchemaError, match=r"'van_der_poll'.*'van_der_pol'"):
         parts_of(3, "van_der_poll")
-    with pytest.raises(SchemaError, match="chapters 3, 4, 5 can be computed; 6 is named"):
+    with pytest.raises(SchemaError, match=r"chapters 3, 4, 5.*6"):
         parts_of(6)

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from texts import says
 
 from gaitdisc.batch import chapter_run
 from gaitdisc.batch.chapter_parts import OUT, Part
@@ -38,7 +39,7 @@ def test_a_part_is_computed_once_and_kept(studies, tmp_path):
     out, ticks = tmp_path / "out", []
     made = run_part(ONE, out, True, tmp_path / "lab", ticks.append)
     assert (made, ticks != []) == ((out / "one", False), True)
-    assert (made.folder / "printed.md").read_text() == "| a table | ['--quick'] lab\n"
+    assert says((made.folder / "printed.md").read_text(), "| a table |", "['--quick'] lab\n")
     assert run_part(ONE, out, True, None) == (out / "one", True)
     assert counted(out) == 1
     assert sorted(path.name for path in made.folder.iterdir()) == ["chapter.json", "count.txt", "printed.md"]
@@ -50,7 +51,7 @@ def test_a_part_that_failed_says_why_and_goes_on_in_its_folder(studies, tmp_path
     state = json.loads((out / "one" / "chapter.json").read_text())
     assert state["seconds"] >= 0
     (tmp_path / "two" / "one").mkdir(parents=True)
-    with pytest.raises(TrainingError, match=r"its study ended with ValueError: walk.mot has no strides.*said.txt"):
+    with pytest.raises(TrainingError, match=r"ValueError: walk.mot.*no strides.*said.txt"):
         broken = Part(3, "one", "made", "a table", 0.1, 0.1, quick_words=(OUT, "--quick"))
         (studies / "made.py").write_text(WORKS.replace('(out / "stop.txt").exists()', "True"))
         run_part(broken, tmp_path / "two", True, None)
@@ -63,7 +64,7 @@ def test_a_part_that_failed_says_why_and_goes_on_in_its_folder(studies, tmp_path
 
 def test_quick_and_whole_and_other_code_never_share_a_folder(studies, tmp_path):
     run_part(ONE, tmp_path, True, None)
-    with pytest.raises(SchemaError, match=r"was begun by the quick one\. Choose another folder"):
+    with pytest.raises(SchemaError, match=r"quick.*another folder"):
         run_part(ONE, tmp_path, False, None)
     (studies / "made.py").write_text(WORKS + "\n# another line\n")
     with pytest.raises(SchemaError, match="was begun by other code"):
@@ -80,11 +81,9 @@ def test_a_folder_of_something_else_is_left_alone(studies, tmp_path):
 
 def test_what_a_machine_lacks_is_said_with_what_to_do(studies, tmp_path):
     lack = lack_of(ONE._replace(libraries=("json", "nosuchlibrary")), None)
-    assert str(lack) == (
-        "one of chapter 3 needs nosuchlibrary; not installed here. Run: pip install 'gaitdisc[chapter3]'."
-    )
+    assert says(str(lack), "chapter 3", "nosuchlibrary", "pip install 'gaitdisc[chapter3]'")
     sea = ONE._replace(data="fields/sea")
-    with pytest.raises(SchemaError, match=r"needs the data of fields/sea; .* has no such folder.*--data"):
+    with pytest.raises(SchemaError, match=r"fields/sea.*--data"):
         run_part(sea, tmp_path, True, tmp_path)
     (tmp_path / "fields" / "sea").mkdir(parents=True)
     assert lack_of(sea, tmp_path) is None
@@ -93,5 +92,5 @@ def test_what_a_machine_lacks_is_said_with_what_to_do(studies, tmp_path):
 def test_two_at_once_do_not_write_into_one_folder(studies, tmp_path):
     (tmp_path / "one").mkdir()
     (tmp_path / "one" / ".lock").write_text('{"pid": 1, "host": "elsewhere"}')
-    with pytest.raises(WriteError, match="Process 1 on elsewhere is writing"):
+    with pytest.raises(WriteError, match=r"Process 1 on elsewhere"):
         run_part(ONE, tmp_path, True, None)

@@ -97,5 +97,5 @@ def test_a_part_of_a_chapter_cites_its_methods(tmp_path):
 def test_an_interval_over_people_cites_cv_plus_and_every_reconstruction_its_paper(split, cited):
     errors, curves = pd.DataFrame({"model": ["shred"]}), pd.DataFrame()
     made = Reconstruction("a", (), (), split, "", {"shred": "x"}, errors, errors, curves, (), (), MADE)
-    assert ("intervals from models that left data out" in set(methods_of(made))) == cited
-    assert "ebers2024sensors" in MENTIONED["reconstruction of states from a few sensors"]
+    assert any(one.startswith("intervals from models") for one in methods_of(made)) == cited
+    assert any(one.startswith("reconstruction") and "ebers2024sensors" in keys for one, keys in MENTIONED.items())

@@ -59,13 +59,12 @@ def test_weak_muscles_are_named_with_their_strength(model):
 
 def test_too_few_strides_are_refused_with_their_number(model):
     record = made_joint(strides=9)
-    with pytest.raises(StrideError, match=r"4 times 3 strides.*9 strides, 3 times 3"):
+    with pytest.raises(StrideError, match=r"4 times 3.*9 strides"):
         tracked_trials(record, model, tracked_joint(record, model))
 
 
 def test_a_joint_without_a_muscle_of_its_own_is_refused():
     """Electrodes on the shank alone say nothing of the hip."""
     shank = replace(made_joint(seed=1), joint="hip_flexion")
-    said = r"turns the hip; .* has emg_.*--part"
-    with pytest.raises(ChannelError, match=said):
+    with pytest.raises(ChannelError, match=r"the hip.*emg_.*--part"):
         nominal_moment(shank)

@@ -117,7 +117,7 @@ def test_a_run_killed_at_random_moments_gives_the_same_bytes(word, runs, study, 
         before = units(run)
         ended, _ = runs.done(word, tmp_path / "killed", chance.uniform(0, 0.6 * seconds))
         after = units(run)
-        assert {unit: after.get(unit) for unit in before} == before, "a unit that stood was computed again"
+        assert {unit: after.get(unit) for unit in before} == before  # what stood is not computed again
         if not ended:
             kills += 1
             continue
@@ -129,6 +129,6 @@ def test_a_run_killed_at_random_moments_gives_the_same_bytes(word, runs, study, 
     ended, _ = runs.done(word, tmp_path / "killed")
     assert ended
     assert apart(tables(run), wanted) == []
-    assert not [path for path in run.rglob(".*") if path.is_file()], "parts of files that were never finished"
+    assert not [path for path in run.rglob(".*") if path.is_file()]  # parts of files that were never finished
     assert kills >= KILLS // 2
     print(f"{word}: {kills} kills, {finished} runs finished under them, {seconds:.1f} s unkilled")

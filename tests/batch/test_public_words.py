@@ -11,10 +11,8 @@ from gaitdisc.ingest.study import Kinematics
 def test_a_name_is_hidden_and_a_file_is_called_by_its_participant(study):
     [person, other] = study.participants
     public = words_of(study, person)
-    said = public.said(
-        "P01_exo.mot, line 31: column 'Erika Mustermann' has 'x'; Zq2_exo.mot and knee_angle_r are whole"
-    )
-    assert says(said, "P01", "1, line 31", "'…'", "'x'", "knee_angle_r")
+    assert says(public.said("P01_exo.mot, line 31: 'Erika Mustermann'"), "P01", "1, line 31", "'…'")
+    assert says(public.said("Zq2_exo.mot: knee_angle_r is 'x'"), "knee_angle_r", "'x'")
     assert words_of(study, other).files["P02_nominal.mot"] == "P02 nominal, file 1"
 
 

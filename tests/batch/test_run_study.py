@@ -96,6 +96,7 @@ def killed_for_the_second(study, participant, folder, progress):
     return computed_unit(study, participant, folder, progress)
 
 
+@pytest.mark.slow  # tests/batch/test_workers.py kills a process that computes next to nothing
 def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
     run, study, finished, tmp_path, monkeypatch
 ):

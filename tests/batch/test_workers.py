@@ -151,7 +151,7 @@ def test_a_process_that_is_killed_once_costs_nothing_but_its_own_time(tmp_path):
     assert computed(tmp_path) == dict.fromkeys((1, 2, 3, 4, 5), 1), "somebody else was computed again"
 
 
-@pytest.mark.parametrize("victim", [1, 3, 5])
+@pytest.mark.parametrize("victim", [1, *(pytest.param(one, marks=pytest.mark.slow) for one in (3, 5))])
 def test_a_process_that_is_killed_twice_is_lost_in_words_and_the_others_are_not(tmp_path, victim):
     found = dict(computed_in_processes(2, Squared(tmp_path, victim=victim, kills=9), [1, 2, 3, 4, 5]))
     lost = found.pop(victim)

@@ -1,6 +1,5 @@
 import pytest
-from chapter3.record import Conditions, recorded
-from chapter3.system import system_of
+from chapter3.record import Conditions, recorded, system_of
 
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import bundled

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from chapter3.augmented_run import on_states, with_learned_rates
 from chapter3.burgers import BurgersRates
+from chapter3.record import KnownRates
 from chapter3.sindy import Sindy, library
-from chapter3.system import KnownRates
 
 from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.simulation import Simulation

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from chapter3.error_signal import error_samples
 from chapter3.methods import MethodSettings, fitted, fitted_by_output
+from chapter3.record import error_samples
 from chapter3.sindy import fit_sindy
 
 

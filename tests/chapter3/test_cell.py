@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.cell import cell_of
-from chapter3.discrepancy_cell import FORECAST, ORACLE, PARTS, RECONSTRUCTION
+from chapter3.cell import FORECAST, ORACLE, PARTS, RECONSTRUCTION, cell_of
 from chapter3.methods import MethodSettings
 from chapter3.record import Conditions, recorded
 

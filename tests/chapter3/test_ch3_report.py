@@ -4,8 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from chapter3.cell import cell_of
-from chapter3.record import Conditions, recorded
-from chapter3.system import system_of
+from chapter3.record import Conditions, recorded, system_of
 
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import bundled
@@ -16,7 +15,7 @@ STUDIES = Path(__file__).parents[2] / "studies"
 @pytest.fixture
 def study(monkeypatch):
     monkeypatch.syspath_prepend(STUDIES)
-    return importlib.import_module("chapter3.report")
+    return importlib.import_module("chapter3.pages")
 
 
 def test_the_system_is_drawn_with_the_rate_that_it_lacks(study):

@@ -3,7 +3,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from chapter3.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
+from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy
+from texts import says
 
 STUDIES = Path(__file__).parents[2] / "studies"
 TIME = np.arange(301) / 10
@@ -18,7 +19,7 @@ def cell(augmented, diverged=None, seed=0, method="gp", seconds=1.0):
 @pytest.fixture
 def study(monkeypatch):
     monkeypatch.syspath_prepend(STUDIES)
-    return importlib.import_module("chapter3.report")
+    return importlib.import_module("chapter3.pages")
 
 
 def test_a_statement_without_cells_is_not_answered(study):
@@ -30,13 +31,14 @@ def test_seeds_are_median_and_range_and_one_that_diverged_is_a_time(study):
     assert "62.5 [50.0, 75.0]" in study.answered({"text": tuple(quiet)}, "dynamics", 0.0)
     lost = cell(np.where(TIME[:, None] > 3, np.nan, TRUTH), 3.0, 1)
     said = study.answered({"text": (quiet[0], lost)}, "dynamics", 0.0)
-    assert "diverged at t = 3.00 s (1 of 2 seeds)" in said
+    assert says(said, "diverged", "3.00 s", "1 of 2 seeds")
     assert "50.0" not in said
 
 
 def test_captions_are_answered_with_cost_and_horizon(study):
     cells = {"text": (cell(TRUTH + 0.1, seconds=5.0), cell(TRUTH + 0.05, method="sindy"))}
-    said = study.of_figures(cells, {"cost": "Fig. 3.11", "horizon": "Fig. 3.9", "system": "Fig. 3.2"})
+    figures = {"cost": "Fig. 3.11", "horizon": "Fig. 3.9", "system": "Fig. 3.2", "noise": "Fig. 3.10"}
+    said = study.blocks_of(cells, figures, ())[0].tables[0].rows
     assert [where for where, _, _ in said] == ["Fig. 3.2", "Fig. 3.9", "Fig. 3.11"]
-    assert said[2][2].startswith("dynamics: SINDy 1.0 s, Gaussian process 5.0 s")
+    assert says(said[2][2], "SINDy 1.0 s", "Gaussian process 5.0 s")
     assert "Gaussian process 50/50/50/50" in said[1][2]

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from chapter3.burgers import burgers
 from chapter3.naming import HiddenEffect, answer_of, discover_answer
-from chapter3.record import Conditions, recorded
-from chapter3.system import system_of
+from chapter3.record import Conditions, recorded, system_of
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs

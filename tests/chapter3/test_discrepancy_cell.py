@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.discrepancy_cell import DiscrepancyCell, PartAccuracy, cells_table
+from chapter3.cell import DiscrepancyCell, PartAccuracy, cells_table
 
 TIME = np.arange(101) / 10
 TRUTH = np.column_stack([np.sin(TIME), np.cos(TIME)])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from chapter3.methods import MethodSettings
 from chapter3.naming import HiddenEffect, method_answer
-from chapter3.record import Conditions, recorded
-from chapter3.system import system_of
+from chapter3.record import Conditions, recorded, system_of
+from texts import says
 
 from gaitdisc.simulation.simulation_file import bundled
 
@@ -51,4 +51,4 @@ def test_one_measured_state_is_refused_in_words(hidden, van_der_pol):
     only = replace(van_der_pol, observation=np.eye(2)[:1])
     found = method_answer(replace(hidden, system=only), recorded(only, Conditions(duration_s=20.0)), "gp")
     assert found.answer == "refused"
-    assert "needs all 2 states measured; 1 are: x" in found.said
+    assert says(found.said, "2 states", "1 are: x")

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.system import KnownRates
+from chapter3.record import KnownRates
 from solving import solve
 
 from gaitdisc.simulation.refusal import SimulationError

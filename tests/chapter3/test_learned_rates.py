@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 from chapter3.augmented_run import learned_rate, learned_term
-from chapter3.error_signal import error_samples
 from chapter3.methods import OF_TIME, MethodSettings, fitted
+from chapter3.record import error_samples
 
 
 @pytest.mark.parametrize("method", ["sindy", "gp", "gpm", "nn", "dmd", "bopdmd"])

@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
 from chapter3.burgers import burgers, fit_local_field, local_cell, recorded_field, slope_and_bend
-from chapter3.error_signal import error_samples
 from chapter3.methods import MethodSettings
-from chapter3.record import Conditions, recorded
+from chapter3.record import Conditions, error_samples, recorded
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 import pytest
-from chapter3.error_signal import error_samples
 from chapter3.methods import OF_TIME, MethodSettings, fitted
+from chapter3.record import error_samples
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
-from chapter3.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
+from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy
 from chapter3.pages import (
     accuracy_figure,
     cost_figure,
@@ -11,6 +11,7 @@ from chapter3.pages import (
     horizon_figure,
     system_figure,
 )
+from texts import says
 
 from gaitdisc.report.table import as_markdown
 
@@ -50,7 +51,7 @@ def test_a_run_that_diverged_is_said_in_its_title():
     values = np.where(TIME[:, None] > 3, np.nan, TRUTH)
     names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH, TRUTH + 0.2, values, 3.0))
     cell = DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x", "y"), names, 1.0, 0.1)
-    assert "diverged at t = 3.00 s" in error_figure([cell], "a", "Fig. 3.4").drawn.axes[0].get_title()
+    assert says(error_figure([cell], "a", "Fig. 3.4").drawn.axes[0].get_title(), "diverged", "3.00 s")
 
 
 def test_bars_of_seeds_of_which_one_diverged_are_a_cross_and_no_number():
@@ -122,7 +123,7 @@ def test_every_panel_of_the_other_figures_has_a_quantity_and_a_unit():
     assert fast.axes[2].get_ylabel() == "missing rate of y [m/s²]"
     bars = accuracy_figure([cell], "b", "Fig. 3.5").drawn.axes
     assert bars[0].get_ylabel() == "less RMSE than known [%]"
-    assert {axes.get_xlabel() for axes in bars} == {"noise [share of the channel’s SD]"}
+    assert all(says(axes.get_xlabel(), "noise", "SD]") for axes in bars)
     assert cost_figure([cell], "d", "Fig. 3.11").drawn.axes[0].get_ylabel() == "processor time [s]"
 
 
@@ -137,7 +138,7 @@ def cell(augmented, diverged, seed=0):
 def test_a_cell_that_diverged_is_a_time_and_never_a_number():
     lost = np.where(TIME[:, None] > 3, np.nan, TRUTH_TABLES)
     table = grid_table([cell(lost, 3.0), cell(TRUTH_TABLES + 0.1, None, seed=1)], "t")
-    assert table.rows[0][6] == "diverged at t = 3.00 s (1 of 2 seeds)"
+    assert says(table.rows[0][6], "diverged", "3.00 s", "1 of 2 seeds")
 
 
 def test_a_cell_is_its_accuracy_and_a_table_is_markdown():
@@ -158,14 +159,14 @@ def test_seeds_are_stated_as_median_and_range_and_their_terms_are_counted():
         [(0.1, "x: -0.01*x**3"), (0.05, "x: -0.0101*x**3"), (0.15, "x: 1e-05*1")])]  # fmt: skip
     row = grid_table(cells, "t").rows[0]
     assert (row[4], row[6]) == ("3", "50.0 [25.0, 75.0]")
-    assert row[-1] == "x: -0.01*x**3 (the same terms in 2 of 3 seeds)"
+    assert says(row[-1], "-0.01*x**3", "2 of 3 seeds")
 
 
 def test_what_some_seeds_refused_is_counted():
     refused = replace(cell(TRUTH_TABLES, None, 1), parts={}, refused="40 too few")
     row = grid_table([cell(TRUTH_TABLES + 0.1, None), refused], "t").rows[0]
     assert row[6] == "50.0 (1 of 2 seeds)"
-    assert row[-1] == "40 too few (1 of 2 seeds)"
+    assert says(row[-1], "40 too few", "1 of 2 seeds")
 
 
 def test_an_error_of_many_times_the_known_one_is_no_number_to_four_digits():

@@ -23,7 +23,7 @@ def test_the_published_variant_starts_and_compares_from_the_last_measured_sample
 
 
 def test_a_record_too_short_says_by_how_much(van_der_pol):
-    with pytest.raises(SamplingError, match=r"needs 60 samples; 0.5 s at 0.01 s give 31, 29 too few"):
+    with pytest.raises(SamplingError, match=r"60 samples.*0.01 s.*31, 29"):
         recorded(van_der_pol, Conditions(duration_s=0.5))
 
 

@@ -31,7 +31,7 @@ def test_bags_drop_what_only_some_draws_see():
 
 def test_a_library_larger_than_the_data_says_by_how_much():
     x = RNG.standard_normal((30, 2))
-    with pytest.raises(TrainingError, match=r"degree 9 in 2 inputs has 55 terms.*there are 30, 25 too few"):
+    with pytest.raises(TrainingError, match=r"degree 9.*55 terms.*30, 25"):
         fit_sindy(samples(x, x), degree=9)
 
 
@@ -51,9 +51,8 @@ def of(x, y, inputs=("x", "y")):
 
 def test_terms_that_are_the_same_on_the_samples_are_refused_by_name():
     x = np.column_stack([np.sin(T), np.cos(2 * T)])  # cos 2t = 1 - 2 sin^2 t
-    words = r"x\*\*2 = 0.5 - 0.5\*y in all 200 samples, and 2 more .*[Rr]ecord what breaks the relation"
     for threshold in (0.005, None):
-        with pytest.raises(TrainingError, match=words):
+        with pytest.raises(TrainingError, match=r"x\*\*2 = 0.5 -.*200 samples.*2 more"):
             fit_sindy(of(x, -0.01 * x[:, :1] ** 3), threshold=threshold)
 
 

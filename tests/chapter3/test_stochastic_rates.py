@@ -1,5 +1,5 @@
 import numpy as np
-from chapter3.system import StochasticRates
+from chapter3.record import StochasticRates
 
 
 def test_without_pushes_it_is_the_system_and_with_them_only_the_pushed_state_leaves_it(van_der_pol):

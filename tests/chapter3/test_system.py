@@ -1,5 +1,5 @@
 import numpy as np
-from chapter3.system import system_of
+from chapter3.record import system_of
 
 from gaitdisc.simulation.simulation_file import bundled
 

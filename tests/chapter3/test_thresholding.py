@@ -37,5 +37,5 @@ def test_the_chosen_threshold_keeps_what_an_inner_block_needs():
 
 def test_terms_that_are_one_on_the_samples_are_named():
     line = np.column_stack([X[:, 0], 2 * X[:, 0]])
-    with pytest.raises(TrainingError, match=r"b = 2\*a in all 400 samples"):
+    with pytest.raises(TrainingError, match=r"b = 2\*a.*400 samples"):
         in_axes((products(line, library(2, 1)), SAMPLES.y), library(2, 1), SAMPLES)

@@ -30,5 +30,5 @@ def test_noise_a_hundred_times_the_missing_rate_leaves_the_term():
 
 def test_too_short_a_record_says_how_many_windows_it_holds():
     short = samples().rows(slice(0, 120))
-    with pytest.raises(TrainingError, match=r"10 terms needs 36 windows of 0.5 s; the record of 120 samples holds 12"):
+    with pytest.raises(TrainingError, match=r"10 terms.*36 windows.*0.5 s.*120 samples.*12"):
         fit_weak_sindy(short)

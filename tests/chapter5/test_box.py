@@ -41,5 +41,5 @@ def test_two_thirds_of_the_wavenumbers_are_kept():
 
 
 def test_too_coarse_a_box_is_refused():
-    with pytest.raises(ShapeError, match="an even number of nodes, 8 or more; requested: 33"):
+    with pytest.raises(ShapeError, match=r"8 or more.*33"):
         Box(33)

@@ -18,11 +18,9 @@ def test_a_window_holds_what_the_route_reads_oldest_first():
     assert snapshots_of(windows)[[0, -1]].tolist() == [4, 119]
     row = np.concatenate([np.concatenate([read[t, k], places[t, k]]) for t in (6, 8, 10) for k in (0, 1)])
     np.testing.assert_array_equal(windows.x[6], row)
-    assert windows.inputs[:3] == (
-        "h of sensor 1 4 month ago",
-        "g of sensor 1 4 month ago",
-        "lat of sensor 1 4 month ago",
-    )
+    assert [name.split(" of ") for name in windows.inputs[:3]] == [
+        [x, "sensor 1 4 month ago"] for x in ("h", "g", "lat")
+    ]
     assert windows.inputs[-4:] == ("h of sensor 2", "g of sensor 2", "lat of sensor 2", "lon of sensor 2")
     assert reading_names(WAVE, ROUTE) == ("h of sensor 1", "g of sensor 1", "h of sensor 2", "g of sensor 2")
 
@@ -48,7 +46,7 @@ def test_ahead_of_its_readings_a_window_tells_a_later_snapshot():
 
 
 def test_a_window_longer_than_the_field_is_refused():
-    with pytest.raises(SamplingError, match="reaches back 121 snapshots; the field has 120"):
+    with pytest.raises(SamplingError, match=r"121 snapshots.*120"):
         field_windows(WAVE, ROUTE, Lags(122, 1))
-    with pytest.raises(SamplingError, match=r"reaches back 99 snapshots and 21 ahead; the field has 120"):
+    with pytest.raises(SamplingError, match=r"99 snapshots.*21 ahead.*120"):
         field_windows(WAVE, ROUTE, Lags(100, 1, 21))

@@ -42,18 +42,18 @@ def test_what_is_there_is_not_computed_again(tmp_path, monkeypatch):
 
 def test_a_folder_of_another_flow_is_refused(tmp_path):
     record_turbulence(SMALL, tmp_path / "flow")
-    with pytest.raises(SchemaError, match=r"flow has snapshots 30, seed 0. Name another folder"):
+    with pytest.raises(SchemaError, match=r"flow.*snapshots 30, seed 0"):
         record_turbulence(FlowSettings(nodes=16, cut=12, snapshots=31, spin_up=40, seed=1), tmp_path / "flow")
     (tmp_path / "flow" / "state.npz").write_bytes(b"x")
-    with pytest.raises(ReadError, match=r"state.npz cannot be read: .* Delete the folder"):
+    with pytest.raises(ReadError, match=r"state.npz.*Delete the folder"):
         record_turbulence(SMALL, tmp_path / "flow")
     (tmp_path / "flow" / "flow.json").write_text("{")
-    with pytest.raises(ReadError, match=r"flow.json cannot be read: .* Delete the folder"):
+    with pytest.raises(ReadError, match=r"flow.json.*Delete the folder"):
         record_turbulence(SMALL, tmp_path / "flow")
 
 
 def test_settings_that_keep_nothing_are_refused():
-    with pytest.raises(ShapeError, match="a cut of 2 to 16 nodes, and snapshots; requested: 17 nodes"):
+    with pytest.raises(ShapeError, match=r"2 to 16 nodes.*17 nodes"):
         FlowSettings(nodes=16, cut=17)
 
 

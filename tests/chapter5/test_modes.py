@@ -51,7 +51,7 @@ def test_most_modes_can_be_limited():
 
 
 def test_what_cannot_be_fitted_is_refused():
-    with pytest.raises(TrainingError, match=r"found 1 snapshots, and the share 0.99"):
+    with pytest.raises(TrainingError, match=r"1 snapshots.*0.99"):
         fit_modes(np.ones((1, 3, 1)))
-    with pytest.raises(TrainingError, match="quantity 2 is the same in all 5 snapshots"):
+    with pytest.raises(TrainingError, match=r"quantity 2.*5 snapshots"):
         fit_modes(np.stack([RNG.normal(size=(5, 3)), np.ones((5, 3))], axis=-1))

@@ -27,18 +27,18 @@ def test_the_winds_as_their_source_tells_them(fields):
 def test_a_grid_with_holes_is_refused(tmp_path):
     held = {"sst": np.zeros((2, 3)), "landmask": np.zeros(3), "lon": np.array([0, 2, 0]), "lat": np.array([0, 0, 2])}
     np.savez(tmp_path / "a.npz", **held)
-    with pytest.raises(ReadError, match=r"a.npz has 3 cells, 2 latitudes and 2 longitudes"):
+    with pytest.raises(ReadError, match=r"a.npz.*3 cells, 2 latitudes.*2 longitudes"):
         read_sst_pacific(tmp_path / "a.npz")
 
 
 def test_winds_that_do_not_fit_are_refused(tmp_path):
     held = {"u": np.zeros((2, 3, 4)), "v": np.zeros((2, 3, 3)), "lon": np.arange(4.0), "lat": np.arange(3.0)}
     np.savez(tmp_path / "a.npz", **held)
-    with pytest.raises(ReadError, match=r"a.npz has \(2, 3, 4\) and \(2, 3, 3\)"):
+    with pytest.raises(ReadError, match=r"a.npz.*3, 4\).*3, 3\)"):
         read_navy_winds(tmp_path / "a.npz")
 
 
 def test_another_file_is_refused(tmp_path):
     (tmp_path / "a.npz").write_bytes(b"x")
-    with pytest.raises(ReadError, match=r"an npz file with u, v, lon, lat; it cannot be"):
+    with pytest.raises(ReadError, match="u, v, lon, lat"):
         read_navy_winds(tmp_path / "a.npz")

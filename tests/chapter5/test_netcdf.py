@@ -33,11 +33,11 @@ def test_netcdf4_reads_alike(tmp_path):
 
 
 def test_an_absent_variable_is_named_with_those_there(tmp_path):
-    with pytest.raises(ReadError, match=r"a.nc needs the variables t, lat; it lacks lat; it has t"):
+    with pytest.raises(ReadError, match=r"a.nc.*lacks lat.*has t"):
         read_variables(classic(tmp_path / "a.nc"), ("t", "lat"))
 
 
 def test_another_file_is_refused(tmp_path):
     (tmp_path / "b.nc").write_bytes(b"not netCDF at all")
-    with pytest.raises(ReadError, match=r"b.nc is to be read as netCDF; it cannot be"):
+    with pytest.raises(ReadError, match=r"b.nc.*netCDF"):
         read_variables(tmp_path / "b.nc", ("t",))

@@ -61,15 +61,14 @@ def test_a_circuit_comes_back_after_its_period():
 
 
 def test_a_path_outside_the_field_is_one_clear_error():
-    said = r"path 'ship' has to stay inside the field; it is outside in 30 of 60 snapshots, first in snapshot 31 at "
     away = [(-2.0, 10.0)] * 30 + [(-2.0, 99.0)] * 30
-    with pytest.raises(ChannelError, match=said + r"lat -2 deg, lon 99 deg\. Move its stops"):
+    with pytest.raises(ChannelError, match=r"'ship'.*30 of 60.*lat -2.*99 deg"):
         along(WAVE, away, "ship")
-    with pytest.raises(ChannelError, match="lat -4 deg, lon 2 deg, which the field's mask leaves out"):
+    with pytest.raises(ChannelError, match=r"lat -4.*lon 2 deg"):
         along(WAVE, [(-4.0, 2.0)] * 60, "ship")
-    with pytest.raises(ChannelError, match=r"each of 60 snapshots along 2 axes; found an array of shape \(3, 2\)"):
+    with pytest.raises(ChannelError, match=r"60 snapshots.*2 axes.*\(3, 2\)"):
         along(WAVE, [(0.0, 0.0)] * 3, "ship")
-    with pytest.raises(ChannelError, match="points of the field, 0 to 69; requested: 70"):
+    with pytest.raises(ChannelError, match=r"0 to 69.*70"):
         fixed(WAVE, [3, 70])
     with pytest.raises(ChannelError, match="requested: none"):
         fixed(WAVE, [])

@@ -47,11 +47,11 @@ def test_a_cell_with_a_missing_week_is_left_out(tmp_path):
 
 
 def test_what_is_wrong_is_said(tmp_path):
-    with pytest.raises(UnitError, match=r"needed in degrees Celsius; sst.nc states 'kelvin'"):
+    with pytest.raises(UnitError, match=r"degrees Celsius.*sst.nc.*'kelvin'"):
         read_oisst(written(tmp_path / "sst.nc", units="kelvin"))
-    with pytest.raises(SamplingError, match=r"snapshot 4 comes 2 week after the one before"):
+    with pytest.raises(SamplingError, match=r"snapshot 4.*2 week"):
         read_oisst(written(tmp_path / "sst.nc", days=(0, 7, 14, 28)))
-    with pytest.raises(ShapeError, match=r"of the grid of the temperature is needed, \(3, 2\); lsmask.nc has \(2, 2\)"):
+    with pytest.raises(ShapeError, match=r"\(3, 2\); lsmask.nc.*\(2, 2\)"):
         read_oisst(written(tmp_path / "sst.nc"), mask(tmp_path / "lsmask.nc", SEA[:2]))
 
 
@@ -66,11 +66,11 @@ def test_the_published_matlab_file(tmp_path):
 
 def test_other_matlab_files_are_refused(tmp_path):
     savemat(tmp_path / "a.mat", {"Z": np.zeros((4, 3))})
-    with pytest.raises(ReadError, match=r"with Z of shape \(64800, weeks\); it holds Z \(4, 3\)"):
+    with pytest.raises(ReadError, match=r"\(64800, weeks\).*\(4, 3\)"):
         read_sst_mat(tmp_path / "a.mat")
     (tmp_path / "b.mat").write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n")
-    with pytest.raises(ReadError, match=r"it is a pointer of Git LFS"):
+    with pytest.raises(ReadError, match="pointer of Git LFS"):
         read_sst_mat(tmp_path / "b.mat")
     (tmp_path / "c.mat").write_bytes(b"\x89HDF\r\n\x1a\n")
-    with pytest.raises(ReadError, match=r"version 7.3. Save it anew with `save -v7`"):
+    with pytest.raises(ReadError, match=r"version 7.3.*-v7`"):
         read_sst_mat(tmp_path / "c.mat")

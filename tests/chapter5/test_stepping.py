@@ -54,5 +54,5 @@ def test_a_forced_flow_stays_free_of_divergence():
 
 
 def test_too_long_a_step_is_refused():
-    with np.errstate(all="ignore"), pytest.raises(SamplingError, match="with steps of 50 the velocity is not finite"):
+    with np.errstate(all="ignore"), pytest.raises(SamplingError, match=r"steps of 50.*not finite"):
         after(first_velocity(BOX, 10.0, 0), Stepper(BOX, 0.001, 0.1, 50.0), 50)

@@ -31,13 +31,13 @@ def test_what_is_wrong_is_said(tmp_path):
     one = written(tmp_path / "a.h5", [1])
     with pytest.raises(ReadError, match=r"b.h5 holds Velocity_0001 again"):
         read_cutout([one, written(tmp_path / "b.h5", [1])], 0.002)
-    with pytest.raises(ShapeError, match=r"c.h5 has other coordinates than a.h5"):
+    with pytest.raises(ShapeError, match=r"c.h5.*a.h5"):
         read_cutout([one, written(tmp_path / "c.h5", [2], shift=1.0)], 0.002)
     with pytest.raises(SamplingError, match=r"advance evenly"):
         read_cutout([written(tmp_path / "d.h5", [1, 2, 4])], 0.002)
-    with pytest.raises(ShapeError, match=r"here \(2, 3, 4, 3\); e.h5 has \(4, 3, 2, 3\)"):
+    with pytest.raises(ShapeError, match=r"3, 4, 3\).*e.h5.*3, 2, 3\)"):
         read_cutout([written(tmp_path / "e.h5", [1], shape=(4, 3, 2, 3))], 0.002)
-    with pytest.raises(ReadError, match=r"data sets Pressure_0001, ...; a.h5 has Velocity_0001"):
+    with pytest.raises(ReadError, match=r"Pressure_0001.*a.h5.*Velocity_0001"):
         read_cutout([one], 0.002, "pressure")
     with pytest.raises(ReadError, match=r"requested: 'heat'"):
         read_cutout([one], 0.002, "heat")

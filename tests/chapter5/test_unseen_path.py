@@ -22,6 +22,6 @@ def test_the_error_on_a_path_never_fitted_is_stated():
 
 
 def test_one_path_is_not_many():
-    with pytest.raises(ChannelError, match="each with 1 sensors; found 2 paths, with 1, 2 sensors"):
+    with pytest.raises(ChannelError, match=r"2 paths.*1, 2 sensors"):
         unseen_path(WAVE, [fixed(WAVE, [1]), fixed_at_random(WAVE, 2, 0)], fixed(WAVE, [3]),
                     FieldTask("wave", Lags(6, 3)), ())  # fmt: skip

@@ -17,7 +17,7 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
 
     def failing(person, *others):
         if person.title == "P02":
-            raise ValueError(f"a curve of P02 is broken in {tmp_path}/cycles/P02")
+            raise ValueError(f"P02: {tmp_path}/cycles/P02")
         return real(person, *others)
 
     run = made_run(made_person("P01"), made_person("P02"), refusals=(Refusal("P03", "", "unread"),))

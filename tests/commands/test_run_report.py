@@ -19,6 +19,7 @@ def test_whoever_stops_it_reads_that_nothing_is_lost(study, tmp_path, capsys):
     assert "goes on from there" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_run_of_cycles_has_pages_of_people_drawn_again_only_beside_another_reference(study, tmp_path, capsys):
     run = made_run(made_person())
     run.save(tmp_path)

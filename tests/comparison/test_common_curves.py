@@ -53,7 +53,7 @@ def test_locked_and_repeated_channels_are_left_out():
 
 
 def test_frozen_channels_are_compared_only_when_asked_for():
-    frozen = Finding("warning", "frozen", "a.mot", "the same value for 9 s", "", "ankle_angle_r")
+    frozen = Finding("warning", "frozen", "a.mot", "one value for 9 s", "", "ankle_angle_r")
     walks = replace(summary("a"), findings=(frozen,)), summary("b", seed=1)
     assert [c.name for c in common_curves(walks).channels] == ["hip_flexion_r"]
     assert "ankle_angle_r (frozen): left out" in common_curves(walks).findings[0].what

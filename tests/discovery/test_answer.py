@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hidden_in_a_function import tank, write_record
-from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
 from gaitdisc.discovery.candidate import Candidate
@@ -13,8 +13,8 @@ from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.scored_model import compared
 from gaitdisc.simulation.measured_table import read_measured
+from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
 
 ABOVE = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
@@ -94,23 +94,15 @@ def test_units_are_those_of_what_is_observed(problem):
 @pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])
 def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_strongest(seen, centre):
     """Also of an effect over something that comes 0.1 s late, a tenth of the stride."""
-    text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]')
-    stride = simulation_of(
-        text.replace("[equations]", '[definitions]\nlate = "delay(phase, 0.1)"\n[equations]'), "s.toml"
-    )
+    inputs, late = (*mass().inputs, Input("phase")), (("late", "delay(phase, 0.1)"),)
+    stride = replace(mass(), inputs=inputs, definitions=late)
     measured = record(mass(), 0, Experiment(2, 10.0))
     time = np.arange(measured.samples[0]) / measured.rate
     phase = np.broadcast_to((time % 1.0)[None, :, None], (2, len(time), 1))
     drive = replace(measured.drive, inputs=np.concatenate([measured.drive.inputs, phase], axis=2))
     problem = set_up_problem(stride, replace(measured, drive=drive))
-    pulse = Candidate(
-        "missing_physics",
-        "port",
-        "load",
-        "pulse",
-        (f"exp(-(({seen} - _c)/_w)**2)",),
-        {"c": "phases", "w": "phase widths"},
-    )
+    grids = {"c": "phases", "w": "phase widths"}
+    pulse = Candidate("missing_physics", "port", "load", "pulse", (f"exp(-(({seen} - _c)/_w)**2)",), grids)
     half = 0.1 * np.sqrt(np.log(2))
     begin, end = phase_of(problem, problem.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
     assert (begin, end) == pytest.approx((centre - half, centre + half), abs=0.03)

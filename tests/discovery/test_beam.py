@@ -5,11 +5,10 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.beam import Beam, errs_more
-from gaitdisc.discovery.by_gap_share import scale_of
+from gaitdisc.discovery.by_gap_share import near_runs, scale_of
 from gaitdisc.discovery.gap_share import CrossValidated
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.score import Score
-from gaitdisc.discovery.windows import near_runs
 
 
 @pytest.fixture(scope="module")

@@ -6,14 +6,21 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 from texts import says
 
+from gaitdisc.discovery.answer import corrected, file_bounds
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.corrections import corrected, file_bounds
 from gaitdisc.discovery.discover import discover
 from gaitdisc.results.discovery import Correction, Estimate
 from gaitdisc.simulation.parts import Parameter
 from gaitdisc.simulation.simulation_file import simulation_of
 
 OFF = {"m": (2.0, 2.08), "k": (24.0, 22.9), "c": (0.8, 0.84)}
+
+
+def within(low, high):
+    """The mass, whose stiffness has bounds."""
+    return replace(
+        mass(), parameters=[replace(k, low=low, high=high) if k.name == "k" else k for k in mass().parameters]
+    )
 
 
 def believed(bounds=0.125):
@@ -47,17 +54,15 @@ def test_numbers_that_are_a_little_off_do_not_spoil_the_name_and_value_of_what_i
 
 
 def test_a_number_that_has_to_leave_its_bounds_is_wrong_and_lies_outside():
-    narrow = simulation_of(MASS.replace("value = 24.0", "value = 24.0\nlow = 23.5\nhigh = 24.5"), "narrow.toml")
-    found, _ = discover(narrow, record(mass().with_values({"k": 27.0}), 3))
+    found, _ = discover(within(23.5, 24.5), record(mass().with_values({"k": 27.0}), 3))
     assert (found.verdict, found.effects[0].place, found.effects[0].bounds) == ("wrong_parameter", "k", (23.5, 24.5))
     assert says(found.sentence, "23.5", "24.5 N/m")
     assert not found.corrections
 
 
 def test_few_samples_do_not_carry_a_number_out_of_its_bounds():
-    narrow = simulation_of(MASS.replace("value = 24.0", "value = 24.0\nlow = 23.9\nhigh = 24.1"), "narrow.toml")
     how = Experiment(trials=2, seconds=4.0, noise=0.3)
-    found, augmented = discover(narrow, record(mass(), 5, how))
+    found, augmented = discover(within(23.9, 24.1), record(mass(), 5, how))
     assert found.verdict == "no_gap"
     assert 23.9 <= augmented.values()["k"] <= 24.1
 

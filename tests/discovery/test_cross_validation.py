@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.cross_validation import FOLDS, left_out_errors
 from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.gap_share import FOLDS, left_out_errors
 from gaitdisc.discovery.prior import Prior
 
 RUNS, ROWS, STATES, FREE = 7, 40, 2, 3

@@ -6,6 +6,7 @@ from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.simulation_file import simulation_of
 
 RATE, PERIOD = 50.0, 2.0
@@ -86,11 +87,11 @@ def test_a_curved_map_and_one_that_sees_the_rate_beside_are_solved(text, seen, a
 
 
 def test_a_product_with_a_state_that_stands_still_is_bridged():
-    text = MASS.replace("[inputs.push]", "[states.gain]\ninitial = 2.0\n[inputs.push]")
-    text = text.replace("[equations]", '[equations]\ngain = "0"').replace('x = "x"', 'x = "x*gain"\ny = "gain"')
+    mixed = mass().with_state(State("gain", initial=2.0), "0")
+    mixed = mixed.with_observation("x", "x*gain").with_observation("y", "gain")
     drive = Drive.of([0.1 * T[:, None]], RATE)
     measured = Measured(drive, np.column_stack([3 * X, 3 + 0 * X])[None], ("1",), ("x", "y"))
-    states = guess_states(simulation_of(text, "gain.toml"), measured, PERIOD, {"x": "v"}).states[0]
+    states = guess_states(mixed, measured, PERIOD, {"x": "v"}).states[0]
     np.testing.assert_allclose(states[10:-10, 0], X[10:-10], atol=2e-3)
     np.testing.assert_allclose(states[10:-10, 2], 3.0, atol=1e-6)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
-from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.catalogue import Asked, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.problem import set_up_problem
@@ -112,22 +112,19 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
 )
 def test_delays_of_the_users_own_effects_are_refused_as_those_of_the_file(measured, piece, words):
     with pytest.raises(SimulationError, match=words):
-        discover(mass(), measured, (Shape("mine", (piece,)),))
+        discover(mass(), measured, Asked((Shape("mine", (piece,)),)))
     discover_begins = set_up_problem(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
     assert any(one.name == "mine" for one in discover_begins.search.candidates)
 
 
 def test_a_delay_of_the_simulation_longer_than_the_shortest_trial_is_refused(measured):
-    equations = (("x", "v"), ("v", "(push + load - k*delay(x, 1e9) - c*v)/m"))
+    late = mass().with_equation("v", "push + load - delay(x, 1e9)")
     with pytest.raises(SimulationError, match=r"\[equations\].*shorter.*'1'"):
-        discover(replace(mass(), equations=equations), measured)
+        discover(late, measured)
 
 
 def test_a_filter_beyond_half_the_rate_is_refused(measured):
     filtered = mass().with_sensor(Sensor("x", lowpass=25.0))
-    with pytest.raises(
-        SamplingError,
-        match=r"below.*25 Hz.*\[observations.x\].*lowpass = 25 where walk.csv.*50 samples",
-    ):
+    with pytest.raises(SamplingError, match=r"25 Hz.*\[observations.x\].*walk.csv.*50 samples"):
         matched(filtered, measured)
     assert matched(mass().with_sensor(Sensor("x", lowpass=24.0)), measured).sensors

@@ -42,14 +42,14 @@ def found_in(simulation, measured):
 
 @pytest.mark.parametrize("trial", [0, 2])
 def test_a_turned_sign_is_found_whichever_trial_has_it(cubic, trial):
-    said = "the sign of x or of push were turned"
-    assert found_in(mass(), turned(cubic, trial)) == [(trial, said, "x")]
+    [(found, said, channel)] = found_in(mass(), turned(cubic, trial))
+    assert (found, channel) == (trial, "x") and says(said, "sign", "x", "push")
 
 
 def test_channels_that_may_each_be_turned_are_both_named():
     measured = record(two_rods(), 3, Experiment(seconds=8.0))  # a motion with both signs turned is a motion as well
-    said = "the sign of upper or of lower were turned"
-    assert found_in(two_rods(), turned(measured, 2, 1)) == [(2, said, "upper")]
+    [(found, said, channel)] = found_in(two_rods(), turned(measured, 2, 1))
+    assert (found, channel) == (2, "upper") and says(said, "sign", "upper", "lower")
 
 
 @pytest.mark.parametrize(("samples", "said"), [(25, "early"), (-25, "late")])

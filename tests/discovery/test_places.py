@@ -1,6 +1,8 @@
 import pytest
 from hidden_in_a_mass import MASS, TWO_RODS, mass, two_rods
 
+from gaitdisc.discovery.candidate import candidates_of
+from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.places import driven_state, kinematic_rates, places_of
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -66,3 +68,21 @@ def test_a_model_without_ports_takes_effects_in_every_equation():
 def test_a_kinematic_equation_takes_no_effect():
     portless = MASS.replace('[ports.load]\nunit = "N"\n', "").replace("push + load", "push")
     assert list(_places(simulation_of(portless, "portless.toml"))) == ["v"]
+
+
+def test_a_state_in_metres_a_second_without_its_position_is_a_speed():
+    """Drag and friction act on it, and no spring."""
+    simulation = simulation_of("""
+title = "A sled that is pushed"
+[states.v]
+unit = "m/s"
+[inputs.push]
+unit = "N"
+[equations]
+v = "push/80"
+""")
+    (place,) = places_of(simulation, compile_simulation(simulation))
+    assert place.motions == (("v", "v"),)
+    names = {one.name for one in candidates_of(simulation, (place,), known_shapes()) if one.kind == "equation"}
+    assert {"viscous_damping", "coulomb_friction", "quadratic_drag"} <= names
+    assert not {"linear_stiffness", "cubic_stiffness", "one_sided_spring", "dead_zone_spring"} & names

@@ -7,10 +7,10 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.problem import SHORT, set_up_problem, split_in_time
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import scored
-from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows

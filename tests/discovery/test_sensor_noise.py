@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.sensor_noise import LEAST, sensor_noise
+from gaitdisc.discovery.noise import LEAST, sensor_noise
 
 T = np.arange(3000) / 100
 

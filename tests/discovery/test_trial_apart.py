@@ -8,9 +8,9 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 from texts import says
 
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.odd_trials import without_trial_apart
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.trial_apart import without_trial_apart
 
 
 def spoiled(measured, how):

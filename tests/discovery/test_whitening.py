@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gaitdisc.discovery.whitening import whiten
+from gaitdisc.discovery.noise import whiten
 
 
 def _whitened(values, predictors, spread, known=None):

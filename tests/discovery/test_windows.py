@@ -1,9 +1,8 @@
 import numpy as np
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_gap_share import scale_of
+from gaitdisc.discovery.by_gap_share import NEAR, as_read_on, near_runs, on_longer_runs, scale_of
 from gaitdisc.discovery.problem import set_up_problem
-from gaitdisc.discovery.windows import NEAR, as_read_on, near_runs, on_longer_runs
 
 
 def begun(hidden):

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest import reader_process
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_trial
+
+
+@pytest.fixture
+def playing(monkeypatch, tmp_path):
+    """Return what puts a script in the place of the process that reads files, once it was asked for one."""
+
+    def play(script: str) -> None:
+        worker = tmp_path / "worker.py"
+        worker.write_text("import sys, time, os, signal\nline = sys.stdin.readline()\n" + textwrap.dedent(script))
+        monkeypatch.setattr(reader_process, "WORKER", worker)
+
+    return play
 
 
 def _written(path: Path, points=None, analog=None, parameters=None, first_frame: int = 1) -> Path:

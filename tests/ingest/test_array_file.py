@@ -15,7 +15,6 @@ import pytest
 from scipy.io import loadmat, savemat
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest import reader_process
 from gaitdisc.ingest.array_file import open_arrays
 from gaitdisc.ingest.reader_process import ReaderProcess
 
@@ -199,25 +198,23 @@ def test_a_header_that_lies_about_its_array_meets_the_cap(tmp_path):
         open_arrays(path).numbers("knee")
 
 
-def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(mat5, monkeypatch, tmp_path):
-    worker = tmp_path / "worker.py"
-    worker.write_text("import os, signal, sys; sys.stdin.readline(); os.kill(os.getpid(), signal.SIGSEGV)")
-    with monkeypatch.context() as patch, closing(ReaderProcess()) as process:
-        patch.setattr(reader_process, "WORKER", worker)
+def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(mat5, playing, monkeypatch):
+    with closing(ReaderProcess()) as process:
+        playing("os.kill(os.getpid(), signal.SIGSEGV)")
         with pytest.raises(ReadError, match=r"walk.mat.*-11\)"):
             open_arrays(mat5, process)
-        patch.undo()
+        monkeypatch.undo()
         np.testing.assert_array_equal(open_arrays(mat5, process).numbers("data.knee"), KNEE)
 
 
 def test_flipped_bits_end_in_numbers_or_in_words(mat5, tmp_path):
-    """120 damaged files of two kinds, one process for all; one of them in a thousand is a crash of scipy."""
+    """60 damaged files of two kinds, one process for all; one of them in a thousand is a crash of scipy."""
     held = io.BytesIO()
     savemat(held, {name: loadmat(mat5)[name] for name in ("data", "RKNEE")}, do_compression=True)
     npz = io.BytesIO()
     np.savez_compressed(npz, data=KNEE, RKNEE=2 * KNEE)
     dice, refused, process = random.Random(5), 0, ReaderProcess()
-    for number in range(120):
+    for number in range(60):
         name, sound = ("a.npz", npz.getvalue()) if number % 3 == 0 else ("a.mat", held.getvalue())
         broken = bytearray(mat5.read_bytes() if number % 3 == 1 else sound)
         for _ in range(dice.randint(1, 4)):
@@ -230,4 +227,4 @@ def test_flipped_bits_end_in_numbers_or_in_words(mat5, tmp_path):
                 refused += 1
                 assert name in str(error) and "Traceback" not in str(error)
     process.close()
-    assert 120 < refused < 360
+    assert 60 < refused < 180

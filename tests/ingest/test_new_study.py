@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 from texts import says
 
@@ -168,8 +169,8 @@ def test_what_no_name_shows_is_listed_with_the_one_line_for_all(tmp_path):
 def test_mass_sex_and_stature_come_from_a_table_beside_the_folders(tmp_path):
     for person in ("sub-01", "sub-02", "sub-03"):
         _walk(tmp_path / "raw" / person / "walk.mot")
-    table = "participant_id\tsex\tweight\theight\nsub-01\tF\t61.3\t172\nsub-02\tM\tn/a\t181\n"
-    (tmp_path / "raw" / "participants.tsv").write_text(table)
+    table = {"participant_id": ["sub-01", "sub-02"], "sex": ["F", "M"], "weight": [61.3, "n/a"], "height": [172, 181]}
+    pd.DataFrame(table).to_csv(tmp_path / "raw" / "participants.tsv", sep="\t", index=False)
     study, notes = found_study(tmp_path / "raw", tmp_path / "study")
     study = load_study(write_study(study, tmp_path / "study.toml"))
     found = {one.id: (one.mass_kg, one.height_m, one.sex) for one in study.participants}
@@ -208,14 +209,10 @@ def test_a_draft_keeps_no_samples(tmp_path):
 
 def test_one_name_in_two_groups_is_two_people(tmp_path):
     raw = tmp_path / "raw"
-    for file in (
-        "controls/Smith/walk.mot",
-        "patients/Smith/walk.mot",
-        "controls/S07_walk.mot",
-        "patients/S07_walk.mot",
-    ):
-        _walk(raw / file)
-    (raw / "participants.tsv").write_text("participant_id\tweight\nSmith\t61.3\nS07\t50\n")
+    for group in ("controls", "patients"):
+        _walk(raw / group / "Smith" / "walk.mot")
+        _walk(raw / group / "S07_walk.mot")
+    (raw / "participants.tsv").write_text("participant_id\tweight\nSmith\t61.3\n")
     study, notes = found_study(raw, tmp_path / "study")
     found = {one.trials[0].files[0].removeprefix("../raw/"): one for one in study.participants}
     assert {file: one.group for file, one in found.items()} == {file: file.split("/")[0] for file in found}

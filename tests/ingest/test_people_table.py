@@ -17,9 +17,9 @@ def _read(tmp_path, text, name="participants.tsv"):
 
 
 def test_a_table_as_bids_has_it(tmp_path):
-    found, notes = _read(
-        tmp_path, "participant_id\tage\tsex\tweight\theight\nsub-01\t24\tF\t61.3\t172\nsub-02\t30\tn/a\tn/a\t1.81\n"
-    )
+    one, other = ("sub-01", "24", "F", "61.3", "172"), ("sub-02", "30", "n/a", "n/a", "1.81")
+    lines = [("participant_id", "age", "sex", "weight", "height"), one, other]
+    found, notes = _read(tmp_path, "\n".join(map("\t".join, lines)))
     assert found == {"01": Measured(61.3, 1.72, "f", 24), "02": Measured(None, 1.81, "", 30)}
     assert notes == []
 

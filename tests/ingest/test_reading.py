@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from texts import says
 
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
+from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.recording import Recording
 
 
 def _csv(folder, name, header, rate=100.0, count=50, start=0.0):
@@ -83,9 +86,8 @@ def test_the_unit_of_angles_is_checked_in_what_the_crop_leaves(tmp_path):
     time = np.arange(400) / 100
     hip, knee = 0.4 * np.cos(2 * np.pi * time), 0.5 - 0.5 * np.cos(4 * np.pi * time)
     hip[200:], knee[200:] = 9 * np.sin(time[200:]), 8 * np.cos(time[200:])  # a fit that lost its markers
-    rows = "\n".join(f"{t:.2f}\t{a:.6f}\t{b:.6f}" for t, a, b in zip(time, hip, knee, strict=True))
-    head = "ik\nversion=1\nnRows=400\nnColumns=3\ninDegrees=yes\nendheader\ntime\thip_flexion_r\tknee_angle_r\n"
-    (tmp_path / "ik.mot").write_text(f"{head}{rows}\n")
+    channels = tuple(one for one in vocabulary().channels if one.name in ("hip_flexion_r", "knee_angle_r"))
+    write_storage(Recording(time, np.column_stack([hip, knee]), channels), tmp_path / "ik.mot")
     assert "kinematics" in read_trial(tmp_path / "ik.mot").streams  # nothing shows it in the whole
     with pytest.raises(UnitError, match=r"ik\.mot"):
         read_trial(tmp_path / "ik.mot", crop_s=(0.0, 1.99))

@@ -142,7 +142,7 @@ def test_the_writer_states_degrees_and_refuses_names_with_tabs(tmp_path):
     with pytest.raises(ChannelError, match="without tabs"):
         write_storage(recording, tmp_path / "a.mot")
     path = write_storage(Recording(np.arange(3.0), np.zeros((3, 1)), (KNOWN[6],)), tmp_path / "a.mot")
-    assert "inDegrees=yes\nendheader\ntime\thip_flexion_r\n0.0\t0.0" in path.read_text()
+    assert says(path.read_text(), "inDegrees=yes\n", "endheader\ntime\thip_flexion_r\n0.0\t0.0")
 
 
 def test_translations_are_never_scaled(tmp_path):

@@ -56,8 +56,9 @@ def test_round_trip(tmp_path_factory, ending, recording):
 
 
 def test_units_are_converted_and_known_names_need_none(tmp_path):
-    text = "Time,ankle_angle_r,Sol_r [mV],pelvis_tx [mm],load [kN]\n0,10,1,1000,2\n0.01,12,2,1001,3\n0.02,13,2,1002,4\n"
-    trial = _read(tmp_path, text)
+    columns = {"ankle_angle_r": [10, 12, 13], "Sol_r [mV]": [1, 2, 2], "pelvis_tx [mm]": [1000, 1001, 1002]}
+    table = pd.DataFrame({"Time": [0, 0.01, 0.02], **columns, "load [kN]": [2, 3, 4]})
+    trial = _read(tmp_path, table.to_csv(index=False))
     np.testing.assert_allclose(trial.streams["kinematics"]["pelvis_tx"], [1.0, 1.001, 1.002], rtol=1e-15)
     assert trial.streams["emg"]["emg_sol_r"].tolist() == [0.001, 0.002, 0.002]
     assert trial.streams["signals"]["load"].tolist() == [2000, 3000, 4000]
@@ -71,8 +72,10 @@ def test_semicolons_decimal_commas_milliseconds_and_comments(tmp_path):
 
 
 def test_the_study_names_and_units(tmp_path):
-    text = "time_s\tch1\tch2\n0\t1\t2\n1\t3\t4\n"
-    trial = _read(tmp_path, text, {"ch1": "emg_sol_r [mV]", "ch2": "knee_angle_r"}, "a.tsv")
+    table = pd.DataFrame({"time_s": [0, 1], "ch1": [1, 3], "ch2": [2, 4]})
+    trial = _read(
+        tmp_path, table.to_csv(sep="\t", index=False), {"ch1": "emg_sol_r [mV]", "ch2": "knee_angle_r"}, "a.tsv"
+    )
     assert trial.streams["emg"]["emg_sol_r"].tolist() == [0.001, 0.003]
     assert trial.streams["kinematics"]["knee_angle_r"].tolist() == [2, 4]
 
@@ -161,7 +164,7 @@ def test_a_named_time_in_parquet_and_in_milliseconds(tmp_path):
 
 
 def test_a_table_without_a_time_says_how_to_name_it(tmp_path):
-    with pytest.raises(ReadError, match=r"line 1 .*'Subject,S07'.*\"Frame time\" = \"time"):
+    with pytest.raises(ReadError, match=r"line 1 .*'Subject,S07'.*\"Frame time\""):
         _read(tmp_path, LEADING)
     far = "\n".join(["Comment,x"] * 60) + "\ntime [s],knee_angle_r\n0.0,1\n0.01,2\n"
     with pytest.raises(ReadError, match="line 1 is 'Comment,x'"):

@@ -227,7 +227,7 @@ def test_markers_of_another_set_than_the_given_one_are_refused():
 
 def test_angles_are_no_markers():
     angles = joint_angles(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL))
-    with pytest.raises(ChannelError, match=r"channels <marker>\.x, \.y, \.z; static\.c3d has pelvis_tilt"):
+    with pytest.raises(ChannelError, match=r"<marker>\.x.*static\.c3d has pelvis_tilt"):
         joint_angles(angles, Recording(angles.time, angles.values, angles.channels, source=static_of(RAJAGOPAL).source))
 
 
@@ -310,7 +310,7 @@ def test_pelvis_list_is_that_of_opensim(gait_data):
     list_deg = np.interp(markers.time, angles.time, angles["pelvis_list"])
     walking = (markers.time > 1.06) & (markers.time < 3.23)  # the part of the file that its inverse dynamics covers
     assert np.corrcoef(higher[walking], list_deg[walking])[0, 1] < -0.9
-    assert vocabulary().positive["pelvis_list"] == "right side of the pelvis down"
+    assert says(vocabulary().positive["pelvis_list"], "right", "down")
 
 
 def test_left_and_right_have_one_sign_in_a_walk_of_unlike_legs():

@@ -62,5 +62,5 @@ def test_a_stretched_frame_is_refused():
 
 
 def test_shapes_that_do_not_fit_are_refused():
-    with pytest.raises(ShapeError, match=r"found \(2, 3\) and \(3, 3, 3\)"):
+    with pytest.raises(ShapeError, match=r"\(2, 3\).*\(3, 3, 3\)"):
         Pose(np.zeros((2, 3)), np.tile(np.eye(3), (3, 1, 1)))

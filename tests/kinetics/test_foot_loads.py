@@ -65,7 +65,7 @@ def test_a_force_that_names_its_foot_is_known_throughout():
 def test_a_step_that_names_the_wrong_foot_is_unknown():
     force = plate("ground_force_l", (0.5, 1.0))
     named = Platform("ground_force_l", force.time, force.wrench, UP, force.point, None, "l")
-    steps = [PlateStep("ground_force_l", "l", 0.5, 1.0, "its centre of pressure follows the other foot")]
+    steps = [PlateStep("ground_force_l", "l", 0.5, 1.0, "follows the other foot")]
     known = foot_loads([named], steps, FRAMES, 20.0)["l"].known
     assert [at(known, t) for t in (0.4, 0.7, 1.2)] == [True, False, True]
 

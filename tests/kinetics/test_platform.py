@@ -66,10 +66,7 @@ def test_a_plate_upside_down_in_the_file_is_the_same_plate():
 
 
 def test_turned_sign_is_refused():
-    words = (
-        r"force of the ground on the foot, positive upwards, from plate_1; walk has -700 N at 0\.850 s and never more"
-    )
-    with pytest.raises(UnitError, match=words):
+    with pytest.raises(UnitError, match=r"plate_1; walk.*-700 N.*0\.850 s"):
         platforms(plate_trial(-stance()))
 
 
@@ -90,8 +87,7 @@ def test_a_force_without_its_point_is_refused(gait_data):
     values = np.array(forces.values)
     values[120:130, forces.index("ground_force_l_px")] = np.nan
     broken = replace(trial, streams={"forces": replace(forces, values=values)})
-    words = r"ground_force_l needs its point .*; .*_grf.mot has \d+ N at 0\.200 s without, and 10 such samples"
-    with pytest.raises(ReadError, match=words):
+    with pytest.raises(ReadError, match=r"ground_force_l.*_grf.mot.*\d+ N.*0\.200 s.*10 such"):
         platforms(broken)
 
 

@@ -102,8 +102,7 @@ def test_a_turn_keeps_the_clean_step_and_names_the_other(gait_data):
 
 def test_a_trial_without_a_clean_step_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_static" / "HC030A" / "HC030A01.c3d")
-    words = "step of one foot alone on a force platform; HC030A01.c3d has plate_1 at 0.00 s: both feet stand on it"
-    with pytest.raises(ChannelError, match=words):
+    with pytest.raises(ChannelError, match=r"one foot alone.*HC030A01.c3d.*plate_1.*0.00 s"):
         trial_kinetics(trial, {}, feet(trial), Person(45.8))
 
 

@@ -9,6 +9,7 @@ import pytest
 
 import gaitdisc as gd
 from gaitdisc.channel import Channel
+from gaitdisc.discovery.catalogue import ALL
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.library import discovering
 from gaitdisc.simulation.refusal import SimulationError
@@ -102,5 +103,5 @@ def test_a_tracked_walk_takes_the_file_of_its_angles_and_nothing_else(tracked_wa
 
     monkeypatch.setattr("gaitdisc.batch.discover_tracked.discover_tracked", discover_tracked)
     assert gd.discover(str(tracked_walk), "walk.mot", progress=print) == ("found", "augmented")
-    assert (given["kinematics"], given["catalogue"], given["progress"]) == (Path("walk.mot"), None, print)
+    assert (given["kinematics"], given["catalogue"], given["progress"]) == (Path("walk.mot"), ALL, print)
     assert given["walk"].model == tracked_walk.parent / "leg.osim" and given["walk"].lowpass_hz == 6.0

@@ -122,7 +122,7 @@ def test_times_of_a_pair_that_differ_are_refused():
     """A pair is taken row by row: states of 0.3 s later would be learned as those of now."""
     early = pd.DataFrame({"angle": X[:1500, 0]}, index=pd.Index(T[:1500], name="time"))
     late = pd.DataFrame(Y[:1500], columns=["a", "b"], index=pd.Index(T[:1500] + 0.3, name="time"))
-    said = r"at the same times; in row \d+ the readings are of [0-9.]+ s, the states of [0-9.]+ s. Cut both"
+    said = r"row \d+.*readings.*[0-9.]+ s.*states.*[0-9.]+ s"
     model = gd.Reconstructor(rate_hz=50.0, history_s=0.4)
     for x, y in ((early, late), (early.rename_axis(None), late.rename_axis(None)), ([early], [late])):
         with pytest.raises(SamplingError, match=said):
@@ -134,14 +134,14 @@ def test_times_of_a_pair_that_differ_are_refused():
 
 
 def test_complex_readings_are_refused_everywhere():
-    said = "a recording holds real numbers; found complex ones"
+
     for work in (
         lambda: gd.Reconstructor(rate_hz=50.0).fit(X * 1j, Y),
         lambda: gd.Reconstructor(rate_hz=50.0).fit(X, Y + 0j),
         lambda: gd.lowpass(X[:, 0] * 1j, rate_hz=50.0),
         lambda: gd.Recording(T, X * 1j, ()),
     ):
-        with pytest.raises(ShapeError, match=said):
+        with pytest.raises(ShapeError, match="complex"):
             work()
     with pytest.raises(ReadError, match=r"'knee_angle_r'.*\(complex128\)"):
         gd.read(pd.DataFrame({"time": T, "knee_angle_r": X[:, 0] * 1j}))

@@ -25,7 +25,7 @@ def read_whole(readings, count, spacing):
     return readings[rows].reshape(len(last), -1)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(1, 7), st.integers(1, 4), st.integers(1, 3), st.sampled_from(["gru", "lstm"]), st.integers(1, 2))
 def test_it_tells_what_the_torch_network_tells(count, spacing, sensors, cell, layers):
     network = untrained(count, sensors, cell=cell, layers=layers)

@@ -134,7 +134,7 @@ def test_a_stride_of_twice_the_others_length_is_left_out_over_all_trials(pieces)
     (found,) = pooled_cycles(study, person, lambda planned: trials[int(planned.files[0][0])])
     slow_rows = found.cycles[found.cycles["trial"] == 1]
     assert not slow_rows["kept"].any()
-    assert slow_rows["reason"].str.contains("differs from the median stride of 1.1").any()
+    assert any(says(reason, "median stride", "1.1") for reason in slow_rows["reason"])
 
 
 def test_swapped_sides_are_refused(pieces):
@@ -161,7 +161,7 @@ def test_a_contact_that_an_event_misses_costs_its_strides_and_not_the_trial(piec
     (found,) = pooled_cycles(study, person, lambda _: missed)
     assert found.refusals == () and found.counted("l") == whole.counted("l") - 1
     (reason,) = found.cycles.loc[found.cycles["side"] == "r", "reason"]
-    assert says(reason, "2 contacts of the other foot")
+    assert says(reason, "2 contacts", "other foot")
 
 
 def test_a_belt_s_speed_gives_lengths(pieces):

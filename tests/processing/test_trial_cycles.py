@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.kinetics.plate_steps import PlateStep
@@ -34,9 +35,8 @@ def test_every_event_of_a_cycle_is_its_own():
 
 def test_a_missed_or_a_false_contact_leaves_the_cycle_out_with_its_reason():
     missed = {**CONTACTS, "l": ((0.5, "events"), (1.5, "events"), (3.5, "events"))}
-    assert [one.reason for one in cut_cycles(missed, OFFS) if one.side == "r"] == [
-        "", "no contact of the other foot inside: one was missed or is false",
-    ]  # fmt: skip
+    first, second = [one.reason for one in cut_cycles(missed, OFFS) if one.side == "r"]
+    assert first == "" and says(second, "no contact", "other foot")
     false = {**CONTACTS, "l": ((1.3, "events"), (1.6, "events"))}
     assert next(one for one in cut_cycles(false, OFFS) if one.side == "r").reason.startswith("2 contacts")
 

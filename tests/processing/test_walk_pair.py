@@ -122,7 +122,7 @@ def test_the_force_of_one_foot_is_enough_where_force_is_requested():
     knee = [[channel.name for channel in one.channels].index("knee_angle_r") for one in (walks[0], by_both[0])]
     np.testing.assert_allclose(walks[0].curves[:, :, knee[0]], by_both[0].curves[: len(walks[0].curves), :, knee[1]])
     note = walks[1].findings[-1]
-    assert (note.severity, note.spoils) == ("warning", "percent stride of the other leg")
+    assert note.severity == "warning" and says(note.spoils, "percent stride", "other leg")
     assert says(note.what, "right foot, for both")
     assert [one.detector for one in walk_pair(*one_foot)] == ["angles", "angles"]  # which see both feet
     other = replace(one_foot[1], streams={"forces": walk(2).stream("forces").selected_by(lambda one: one.side == "l")})

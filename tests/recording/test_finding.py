@@ -1,11 +1,15 @@
 import pytest
+from texts import says
 
 from gaitdisc.recording import Finding
 
 
 def test_line_without_channel():
-    assert (
-        Finding("note", "second reader", "a.c3d", "read by c3d", "").line() == "note: a.c3d: second reader: read by c3d"
+    assert says(
+        Finding("note", "second reader", "a.c3d", "read by c3d", "").line(),
+        "note: a.c3d",
+        "second reader",
+        "read by c3d",
     )
 
 

@@ -62,7 +62,7 @@ def test_the_offset_and_few_cycles_are_said():
 
 
 def test_why_no_models_are_fitted_is_said(tmp_path):
-    why = Refusal("P01", "", "a comparison needs one trial of 'walk' and one of 'exo'; P01 has 2 of 'walk'. Correct.")
+    why = Refusal("P01", "", "P01 has 2 of 'walk'.")
     first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
     assert any(says(sentence, "models are fitted", "P01") for sentence in first.sentences)
     assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]

@@ -28,7 +28,7 @@ def walk(name, seed, strides=20, gap=0.0, channel=1, shift=0):
 
 def test_the_first_sentence_is_the_answer():
     first, *rest = mismatch_sentences(compare_walks(walk("model", 0, gap=-8.0), walk("measured", 1)))
-    assert re.match(r"In measured the right ankle .* [78]\.\d deg", first)
+    assert re.match(r"In measured.*right ankle.* [78]\.\d deg", first)
     assert says(first, "more", "model", "12", "55 %")
     assert says(first, "stride-to-stride sd", "p < .001); 3.")
     assert says(first, "the whole curve")
@@ -65,7 +65,7 @@ def test_an_offset_is_distinguished_from_a_change_of_shape():
     higher = replace(higher, curves=higher.curves + np.array([0.0, 6.0, 0.0]))
     first = mismatch_sentences(compare_walks(higher, walk("measured", 1, strides=40)))[0]
     assert says(first, "more", "model throughout the stride")
-    assert re.search(r"\): an offset, .* \S+ deg\.$", first)
+    assert re.search(r"\): an offset, .*\d deg\.$", first)
 
 
 def test_what_is_smaller_than_a_clinician_would_call_one_is_not_named():

@@ -83,9 +83,9 @@ def test_a_split_that_leaks_is_said(reconstruction, word):
 def test_who_errs_least_in_whom_is_said(reconstruction):
     second = reconstruction.summary.assign(participant="P02", rmse_deg=[1.0, 1.25])
     both = replace(reconstruction, summary=pd.concat([reconstruction.summary, second]))
-    assert any(says(line, "least in 1 of 2 participants", "1") for line in reconstruction_sentences(both))
+    assert any(says(line, "least in 1 of 2") for line in reconstruction_sentences(both))
     alike = replace(both, summary=pd.concat([reconstruction.summary, second.assign(rmse_deg=[4.0, 1.0])]))
-    assert any(says(line, "least in every one of 2") for line in reconstruction_sentences(alike))
+    assert any(says(line, "least in every one", "2") for line in reconstruction_sentences(alike))
 
 
 def test_what_calibration_brings_is_said(reconstruction):
@@ -120,7 +120,7 @@ def test_the_page_answers_first_and_needs_nothing_but_itself(reconstruction, tmp
     page = write_reconstruction_report(reconstruction, tmp_path)
     text = page.read_text(encoding="utf-8")
     HTMLParser().feed(text)
-    parts = ("From a 1 other state is reconstructed", "<figure>", "How the numbers were made")
+    parts = ("From a 1 other state", "<figure>", "How the numbers were made")
     assert sorted(parts, key=text.index) == list(parts)
     assert "http" not in text.split("</head>")[1]
     assert {file.name for file in (tmp_path / "tables").iterdir()} >= {"models.csv", "states.csv", "participants.csv"}

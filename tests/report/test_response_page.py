@@ -28,7 +28,7 @@ def page(run, tmp_path_factory):
 
 def test_the_answer_comes_first(page):
     text = page.read_text(encoding="utf-8")
-    order = ["Research use, not a medical device", "<h1>", "Left out: 1", "In P01, the Nominal model explains", "<img"]
+    order = ["Research use, not a", "<h1>", "Left out: 1", "In P01, the Nominal model", "<img"]
     places = [text.index(words) for words in order]
     assert places == sorted(places)
     assert says(text, "need initial contacts", "both")
@@ -80,7 +80,7 @@ def test_writing_again_gives_the_same_bytes(page, run, tmp_path):
 
 @pytest.mark.usefixtures("unpainted")
 def test_hostile_words_are_only_words(run_maker, tmp_path):
-    evil = '<script>alert(1)</script> $\\frac{x}$ "quoted" {{ 7 * 7 }}'
+    evil = '<script>alert(1)</script> $\\frac{x}$ "quoted" {{7*7}}'
     run = run_maker(outputs=("hip_flexion_r",), title=evil, refusals=(Refusal(evil, evil, evil),))
     walks = tuple(replace(walk, subject=evil) for walk in run.walks)
     run = replace(run, nominal="natural").with_units(WALK, walks)
@@ -88,7 +88,7 @@ def test_hostile_words_are_only_words(run_maker, tmp_path):
     text = write_report(run, tmp_path).read_text(encoding="utf-8")
     assert "<script" not in text
     assert "&lt;script&gt;alert(1)" in text
-    assert "{{ 7 * 7 }}" in text
+    assert "{{7*7}}" in text
     assert all(path.parent == tmp_path / "figures" for path in (tmp_path / "figures").iterdir())
 
 
@@ -129,7 +129,7 @@ def test_numbers_that_were_not_computed(run_maker, tmp_path):
 
 @pytest.mark.usefixtures("unpainted")
 def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
-    (tmp_path / "report").write_text("a file stands where the folder shall be")
+    (tmp_path / "report").write_text("a file, no folder")
     with pytest.raises(GaitdiscError, match="to be written whole"):
         write_report(run, tmp_path / "report")
 

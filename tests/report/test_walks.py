@@ -28,7 +28,7 @@ def test_like_reasons_have_one_letter(run_maker):
     run = run.with_units(WALK, tuple(replace(walk, strides=STRIDES) for walk in run.walks))
     numbers = stride_numbers(run, "P01")
     assert list(numbers["code"]) == ["", "A", "", "B", "", "A"] * 2
-    assert walks_table(run).rows[0][6] == "right 2 / 1; left 1 / 2"
+    assert says(walks_table(run).rows[0][6], "right 2 / 1", "left 1 / 2")
     np.testing.assert_allclose(numbers["duration_s"][:3], [1.0, 1.9, 1.0])
     assert reason_kind("") == "no reason was given"
 

@@ -1,3 +1,5 @@
+from texts import says
+
 from gaitdisc.response.over_participants import compare_participants
 
 
@@ -6,4 +8,4 @@ def test_one_participant_is_described_but_not_compared(judged):
     assert set(over.reductions["participant"]) == {judged.participant}
     assert not len(over.lengths) + len(over.baselines) + len(over.reduction_tests) + len(over.responders)
     assert over.lengths_said == ""
-    assert "takes 6 participants (n = 1 participants)" in over.responders_said
+    assert says(over.responders_said, "6 participants", "n = 1")

@@ -22,7 +22,7 @@ def test_arrays_are_read_when_they_are_looked_at(response, stored, monkeypatch):
     assert stored.residuals.keys() == response.residuals.keys()
     read = []
     monkeypatch.setattr(on_disk.np, "load", lambda *_, **__: read.append(1))
-    assert stored.held_out.time is stored.held_out.time, "what was just read is not read again"
+    assert stored.held_out.time is stored.held_out.time  # what was just read is not read again
     assert read == []
 
 

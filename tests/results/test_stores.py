@@ -99,7 +99,7 @@ def test_saving_twice_gives_the_same_bytes(response, tmp_path):
 
 
 def test_why_somebody_was_refused_comes_back_as_it_was(tmp_path):
-    refusals = (Refusal("P07", "exo", "the gait changes at 38 s"),)
+    refusals = (Refusal("P07", "exo", "gait changes at 38 s"),)
     refused = Refused(refusals, ("nominal",))
     REFUSED.save(refused, tmp_path, "key")
     assert REFUSED.load_keyed(tmp_path) == (refused, "key")

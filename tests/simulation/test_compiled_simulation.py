@@ -2,20 +2,13 @@
 
 import numpy as np
 import pytest
+from made_simulation import system
 from scipy.special import ellipk
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
-
-
-def _system(states, equations, inputs=(), parameters=None, more=""):
-    text = "".join(f"[states.{name}]\n" for name in states) + "".join(f"[inputs.{name}]\n" for name in inputs)
-    text += "".join(f"[parameters.{name}]\nvalue = {value}\n" for name, value in (parameters or {}).items())
-    text += "[equations]\n" + "".join(f'{name} = "{line}"\n' for name, line in equations.items())
-    return simulation_of(text + more)
 
 
 def _free(steps, rate=100.0, trials=1):
@@ -42,11 +35,11 @@ def _runge_kutta(rates, x, steps, h, substeps=5):
     return np.array(found[::substeps])
 
 
-VAN_DER_POL = _system(["x", "y"], {"x": "y", "y": "mu*(1 - x**2)*y - x"}, parameters={"mu": 1.0})
+VAN_DER_POL = system({"x": "y", "y": "mu*(1 - x**2)*y - x"}, parameters={"mu": 1.0})
 
 
 def test_decay_is_exponential():
-    decay = compile_simulation(_system(["x"], {"x": "-r*x"}, parameters={"r": 2.0}))
+    decay = compile_simulation(system({"x": "-r*x"}, parameters={"r": 2.0}))
     states, ok = decay.run(_free(100), _rows([[1.0], [3.0]]), 100)
     assert ok.all()
     np.testing.assert_allclose(states[:, :, 0], np.outer([1, 3], np.exp(-2 * np.arange(101) / 100)), rtol=1e-10)
@@ -75,21 +68,21 @@ def test_order_four():
 
 
 def test_period_of_a_pendulum_is_the_elliptic_integral():
-    pendulum = compile_simulation(_system(["a", "w"], {"a": "w", "w": "-w2*sin(a)"}, parameters={"w2": 12.0}))
+    pendulum = compile_simulation(system({"a": "w", "w": "-w2*sin(a)"}, parameters={"w2": 12.0}))
     period = 4 * ellipk(np.sin(1.0) ** 2) / np.sqrt(12.0)  # swings to 2 rad
     states, _ = pendulum.run(_free(100, 100 / period), _rows([2.0, 0.0]), 100)
     np.testing.assert_allclose(states[0, -1], [2.0, 0.0], atol=3e-6)
 
 
 def test_inputs_are_linear_between_samples():
-    ramp = compile_simulation(_system(["x"], {"x": "u"}, ["u"]))
+    ramp = compile_simulation(system({"x": "u"}, ("u",)))
     u = np.array([0.0, 2.0, -1.0, 5.0])[:, None]
     states, _ = ramp.run(Drive.of([u], 10.0), _rows([1.0]), 3)
     np.testing.assert_allclose(states[0, :, 0], [1.0, 1.1, 1.15, 1.35], atol=1e-14)
 
 
 def test_time_is_the_trials_own():
-    clock = compile_simulation(_system(["x"], {"x": "2*t"}))
+    clock = compile_simulation(system({"x": "2*t"}))
     drive = Drive.of([np.empty((101, 0))] * 2, 100.0, [0.0, 5.0])
     rows = Rows(np.array([0, 1, 1]), np.array([0, 0, 50]), np.zeros((3, 1)))
     states, _ = clock.run(drive, rows, 50)
@@ -97,17 +90,15 @@ def test_time_is_the_trials_own():
 
 
 def test_phase_wraps_instead_of_sweeping_back():
-    stride = """[states.x]\n[inputs.phase]\nunit = "1"\n[equations]\nx = "step(phase - 0.9)"\n"""
+    stride = system({"x": "step(phase - 0.9)"}, ("phase",))
     phase = (np.arange(101) / 100 * 2.05) % 1.0
-    states, _ = compile_simulation(simulation_of(stride)).run(
-        Drive.of([phase[:, None]], 100.0), _rows([0.0]), 100, substeps=50
-    )
+    states, _ = compile_simulation(stride).run(Drive.of([phase[:, None]], 100.0), _rows([0.0]), 100, substeps=50)
     assert states[0, -1, 0] == pytest.approx(2 * 0.1 / 2.05, abs=5e-4)  # two strides, a tenth of each
 
 
 def test_a_row_stops_at_its_trials_end():
     drive = Drive.of([np.zeros((11, 1)), np.zeros((31, 1))], 10.0)
-    simple = compile_simulation(_system(["x"], {"x": "1 + u"}, ["u"]))
+    simple = compile_simulation(system({"x": "1 + u"}, ("u",)))
     states, ok = simple.run(drive, Rows(np.array([0, 1]), np.array([4, 0]), np.zeros((2, 1))), 20)
     assert ok.all()
     assert np.isfinite(states[0, :7]).all() and np.isnan(states[0, 7:]).all()
@@ -115,7 +106,7 @@ def test_a_row_stops_at_its_trials_end():
 
 
 def test_a_row_that_diverges_does_not_touch_the_others():
-    growth = compile_simulation(_system(["x"], {"x": "r*x"}, parameters={"r": 1.0}))
+    growth = compile_simulation(system({"x": "r*x"}, parameters={"r": 1.0}))
     states, ok = growth.run(_free(100), _rows([[1.0], [1.0]], np.array([[1.0], [20.0]])), 100)
     assert ok.tolist() == [True, False]
     assert states[0, -1, 0] == pytest.approx(np.e, rel=1e-9)
@@ -124,7 +115,7 @@ def test_a_row_that_diverges_does_not_touch_the_others():
 
 
 def test_a_root_of_a_negative_number_is_a_divergence():
-    root = compile_simulation(_system(["x"], {"x": "-1 + 0*sqrt(x)"}))
+    root = compile_simulation(system({"x": "-1 + 0*sqrt(x)"}))
     states, ok = root.run(_free(100), _rows([[0.495], [5.0]]), 100)
     assert ok.tolist() == [False, True]
     assert np.isfinite(states[0, :49]).all() and np.isnan(states[0, 50:]).all()
@@ -144,7 +135,7 @@ def test_rates_take_parameters_for_each_point(ankle):
 
 
 def test_delayed_decay_by_the_method_of_steps():
-    late = compile_simulation(_system(["x"], {"x": "-delay(x, d)"}, parameters={"d": 1.0}))
+    late = compile_simulation(system({"x": "-delay(x, d)"}, parameters={"d": 1.0}))
     states, _ = late.run(_free(300), _rows([1.0]), 300)
     t = np.arange(301) / 100
     wanted = 1 - t + np.where(t > 1, (t - 1) ** 2 / 2, 0) - np.where(t > 2, (t - 2) ** 3 / 6, 0)
@@ -152,13 +143,13 @@ def test_delayed_decay_by_the_method_of_steps():
 
 
 def test_each_row_has_its_own_delay():
-    late = compile_simulation(_system(["x"], {"x": "-delay(x, d)"}, parameters={"d": 1.0}))
+    late = compile_simulation(system({"x": "-delay(x, d)"}, parameters={"d": 1.0}))
     states, _ = late.run(_free(100), _rows([[1.0], [1.0]], np.array([[0.4], [0.8]])), 100)
     np.testing.assert_allclose(states[:, -1, 0], [1 - 1 + 0.6**2 / 2 - 0.2**3 / 6, 1 - 1 + 0.2**2 / 2], atol=1e-5)
 
 
 def test_an_input_is_delayed_in_the_record_before_the_row():
-    late = compile_simulation(_system(["x"], {"x": "delay(u, 0.25)"}, ["u"]))
+    late = compile_simulation(system({"x": "delay(u, 0.25)"}, ("u",)))
     u = (np.arange(101) / 100)[:, None]
     drive = Drive.of([u], 100.0)
     states, _ = late.run(drive, Rows(np.array([0, 0]), np.array([0, 50]), np.zeros((2, 1))), 50)
@@ -166,7 +157,7 @@ def test_an_input_is_delayed_in_the_record_before_the_row():
 
 
 def test_a_state_is_delayed_into_the_measured_past():
-    late = compile_simulation(_system(["x"], {"x": "delay(x, 0.2)"}))
+    late = compile_simulation(system({"x": "delay(x, 0.2)"}))
     past = (np.arange(101) / 100)[None, :, None]
     drive = _free(100)
     rows = _rows([0.5], begin=50)
@@ -180,8 +171,7 @@ def test_a_state_is_delayed_into_the_measured_past():
 
 def test_a_state_beyond_the_measured_past_is_held_at_its_start():
     """A lag that an explanation brings along is a state of its own, which nobody measured."""
-    more = '[observations]\nz = "delay(y, 0.1)"\n'
-    late = compile_simulation(_system(["x", "y"], {"x": "delay(y, 0.2)", "y": "1"}, more=more))
+    late = compile_simulation(system({"x": "delay(y, 0.2)", "y": "1"}, observations={"z": "delay(y, 0.1)"}))
     drive, rows, past = _free(100), _rows([[0.5, 0.0]], begin=50), np.full((1, 101, 1), 7.0)
     run = {name: late.run(drive, rows, 20, past=one)[0] for name, one in (("narrow", past), ("none", None))}
     np.testing.assert_array_equal(run["narrow"], run["none"])
@@ -190,9 +180,7 @@ def test_a_state_beyond_the_measured_past_is_held_at_its_start():
 
 
 def test_observations_and_their_delays():
-    seen = compile_simulation(
-        _system(["x"], {"x": "1 + 0*u"}, ["u"], {"d": 0.1}, '[observations]\ny = "2*x + u"\nz = "delay(x, d)"\n')
-    )
+    seen = compile_simulation(system({"x": "1 + 0*u"}, ("u",), {"d": 0.1}, {"y": "2*x + u", "z": "delay(x, d)"}))
     drive = Drive.of([np.full((51, 1), 3.0)], 100.0)
     rows = _rows([[0.0], [1.0]], np.array([[0.1], [0.055]]))
     states, _ = seen.run(drive, rows, 50)
@@ -204,14 +192,14 @@ def test_observations_and_their_delays():
 
 
 def test_a_late_input_of_a_row_comes_from_before_its_start():
-    seen = compile_simulation(_system(["x"], {"x": "0*u"}, ["u"], more='[observations]\nz = "delay(u, 0.1)"\n'))
+    seen = compile_simulation(system({"x": "0*u"}, ("u",), observations={"z": "delay(u, 0.1)"}))
     drive, rows = Drive.of([np.arange(101.0)[:, None] / 100], 100.0), _rows([[0.0]], begin=50)
     states, _ = seen.run(drive, rows, 20)
     np.testing.assert_allclose(seen.observe(drive, rows, states)[0, :, 0], 0.4 + np.arange(21) / 100, atol=1e-12)
 
 
 def test_a_delay_without_a_history_is_refused():
-    late = compile_simulation(_system(["x"], {"x": "-delay(x, 1)"}))
+    late = compile_simulation(system({"x": "-delay(x, 1)"}))
     with pytest.raises(SimulationError, match="signals are needed"):
         late.rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))
     assert late.rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)), late=np.array([[4.0]]))[0, 0] == -4.0

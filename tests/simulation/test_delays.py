@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from made_simulation import system
 
 from gaitdisc.simulation.delays import delayed_in_series
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
 
 
 @given(st.floats(0, 3), st.integers(1, 200))
@@ -30,10 +30,7 @@ def test_each_sample_may_have_its_own_delay():
 
 
 def test_an_observed_state_is_delayed_to_the_third_order():
-    swing = simulation_of(
-        '[states.x]\n[states.v]\n[equations]\nx = "v"\nv = "-x"\n[observations]\ny = "delay(x, 0.033)"\n'
-    )
-    compiled = compile_simulation(swing)
+    compiled = compile_simulation(system({"x": "v", "v": "-x"}, observations={"y": "delay(x, 0.033)"}))
     drive, rows = Drive.of([np.empty((301, 0))], 50.0), Rows(np.array([0]), np.array([0]), np.array([[1.0, 0.0]]))
     states, _ = compiled.run(drive, rows, 300)
     observed = compiled.observe(drive, rows, states)[0, :, 0]
@@ -42,8 +39,7 @@ def test_an_observed_state_is_delayed_to_the_third_order():
 
 @pytest.mark.parametrize("begin", [0, 40])
 def test_an_observed_state_is_delayed_into_the_measured_past(begin):
-    line = simulation_of('[states.x]\n[equations]\nx = "1"\n[observations]\ny = "delay(x, 0.1)"\n')
-    compiled = compile_simulation(line)
+    compiled = compile_simulation(system({"x": "1"}, observations={"y": "delay(x, 0.1)"}))
     t = np.arange(101) / 100
     drive = Drive.of([np.empty((101, 0))], 100.0)
     rows = Rows(np.array([0]), np.array([begin]), np.array([[t[begin]]]))

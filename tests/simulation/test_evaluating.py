@@ -16,8 +16,8 @@ X, U = RNG.normal(size=(500, 2)), np.column_stack([RNG.normal(size=500), (T * 0.
 
 def test_states_inputs_parameters_definitions_ports_and_time(ankle):
     spring = ankle.with_effect(Term("ankle_moment", "port", "a", "-2*theta"))
-    values = evaluate(spring, "spring + tau*phase + ankle_moment + b*t", Points(T, X, U))
-    np.testing.assert_allclose(values, 25 * X[:, 0] + U[:, 0] * U[:, 1] - 2 * X[:, 0] + 1.1 * T, rtol=1e-12)
+    values = evaluate(spring, "tau*phase + spring*ankle_moment + b*t", Points(T, X, U))
+    np.testing.assert_allclose(values, U[:, 0] * U[:, 1] - 50 * X[:, 0] ** 2 + 1.1 * T, rtol=1e-12)
 
 
 def test_many_share_their_work_and_agree_with_one(ankle):

@@ -159,7 +159,7 @@ def test_a_real_walk_drives_a_knee(gait_data):
 def test_recordings_with_faults(ankle):
     with pytest.raises(UnitError, match=r"'theta'.*'rad'; walk.mot.*'N m'"):
         measured_of_recordings([_recording("N m")], ankle)
-    with pytest.raises(ReadError, match=r"walk.mot'?.*'tau': 21 rows \(0.21 s\).*0\.07 s"):
+    with pytest.raises(ReadError, match=r"walk.mot'?.*'tau': 21 rows.*0\.07 s"):
         absent = (np.arange(50) >= 7) & (np.arange(50) < 28)
         measured_of_recordings([_recording(tau=np.where(absent, np.nan, np.arange(50.0)))], ankle)
     with pytest.raises(ChannelError, match="needs a measured column 'tau'"):

@@ -46,11 +46,12 @@ def test_powers(power):
 
 
 def test_max_of_three():
-    assert _value("max(x, 2, k) - min(x, 2, k)", x=1.0, k=5.0) == 4.0
+    assert _value("max(x, 2, k)", x=1.0, k=5.0) == 5.0
+    assert _value("min(x, 2, k)", x=1.0, k=5.0) == 1.0
 
 
 def test_a_delay_is_a_leaf_of_its_own():
-    program = compiled_program([parsed("delay(x, d) - delay(x, d)*delay(v, d)")], ["x", "v", "d"])
+    program = compiled_program([parsed("delay(x, d)*delay(x, d)*delay(v, d)")], ["x", "v", "d"])
     assert [signal for signal, _ in program.delays] == ["x", "v"]
     assert program.used().tolist() == [False, False, False, True, True]
 

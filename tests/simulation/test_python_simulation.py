@@ -70,8 +70,7 @@ def test_an_object_that_computes_needs_no_hash():
 )
 def test_a_function_gives_a_derivative_for_each_row_and_state(given, found):
     model = python_simulation("falling", given, [State("v")])
-    needed = r"'falling' gives a number for each row and state, \(2, 1\) here; "
-    with pytest.raises(SimulationError, match=rf"{needed}it gave {found}. Return an array"):
+    with pytest.raises(SimulationError, match=rf"'falling'.*\(2, 1\).*it gave {found}"):
         compile_simulation(model).rates(0.0, np.ones((2, 1)), np.zeros((2, 0)))
 
 

@@ -40,5 +40,5 @@ def test_a_late_input_inside_a_delay_is_later():
 
 
 def test_a_delayed_expression_delays_signals_and_time_but_no_parameters():
-    tree = substituted(parsed("delay(tau, d)"), {"tau": parsed("gain*tau + x*sin(t) + 1")}, ["tau", "x"])
-    assert written(tree) == "gain*delay(tau, d) + delay(x, d)*sin(t - d) + 1"
+    tree = substituted(parsed("delay(tau, d)"), {"tau": parsed("2*gain*tau*x*sin(t)")}, ["tau", "x"])
+    assert written(tree) == "2*gain*delay(tau, d)*delay(x, d)*sin(t - d)"

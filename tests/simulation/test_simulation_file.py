@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from made_simulation import effect_text
 
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.simulation.parts import Parameter, Sensor, Term
@@ -10,12 +11,13 @@ from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
 
 def test_every_part_is_read(ankle, ankle_text, tmp_path):
     path = tmp_path / "ankle.toml"
-    path.write_text(ankle_text + '[[effects]]\nport = "ankle_moment"\nname = "spring"\nterm = "-286*max(0, theta)"\n')
+    spring = Term("ankle_moment", "port", "spring", "-286*max(0, theta)")
+    path.write_text(ankle_text + effect_text(spring))
     read = read_simulation(path)
     assert read.title == "Ankle"
     assert [state.unit for state in read.states] == ["rad", "rad/s"]
     assert read.parameters[2] == Parameter("k", 25.0, "1", 10.0, 60.0)
-    assert read.effects == (Term("ankle_moment", "port", "spring", "-286*max(0, theta)"),)
+    assert read.effects == (spring,)
     assert read.source == path and read.layout.startswith("\ntitle")
     assert read.without_effects() == ankle
 

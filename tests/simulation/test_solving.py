@@ -2,17 +2,15 @@
 
 import numpy as np
 import pytest
+from made_simulation import system
 from solving import solve
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
 
-LORENZ = simulation_of(
-    '[states.x]\n[states.y]\n[states.z]\n[equations]\nx = "10*(y - x)"\ny = "x*(28 - z) - y"\nz = "x*y - 8/3*z"\n'
-)
+LORENZ = system({"x": "10*(y - x)", "y": "x*(28 - z) - y", "z": "x*y - 8/3*z"})
 
 
 def test_lorenz_by_both():
@@ -37,13 +35,13 @@ def test_inputs_by_both(ankle):
 
 
 def test_an_explosion_is_told_with_its_time_and_state():
-    blow = simulation_of('title = "blow"\n[states.x]\n[states.y]\n[equations]\nx = "1"\ny = "y**2"\n')
+    blow = system({"x": "1", "y": "y**2"})
     with pytest.raises(SimulationError, match=r"= 0\.99.*'y'"):
         solve(blow, np.linspace(0, 2, 201), {}, {"x": 0.0, "y": 1.0})
 
 
 def test_delays_are_refused():
-    late = simulation_of('[states.x]\n[equations]\nx = "-delay(x, 1)"\n')
+    late = system({"x": "-delay(x, 1)"})
     with pytest.raises(SimulationError, match="without delays"):
         solve(late, [0.0, 1.0], {}, {"x": 1.0})
 

@@ -31,7 +31,7 @@ def test_the_quick_study_is_the_whole_way_for_one_person(study, tmp_path):
     assert len(result.run.responses) == len(result.run.quantities) == 1
     ours = result.printed.set_index("what")["ours"]
     assert ours["Augmented explains less than Exo"] == "none"
-    assert ours["(ii) Exo is not shown to differ from Exo of 210 s from [s]"] == "not tested"
+    assert ours[[one for one in ours.index if one.startswith("(ii) Exo")]].to_list() == ["not tested"]
     figures = {path.stem for path in (tmp_path / "report" / "figures").glob("*.csv")}
     assert {"quantity", "reduction", "residual-W01-1"} <= figures
     assert (tmp_path / "printed.csv").read_text(encoding="utf-8").startswith("what,printed,ours,source")

@@ -30,4 +30,4 @@ def test_history_divides_the_error_and_windows_drawn_at_random_hide_it(study, tm
     rmse = result.table[result.table["sensors"] == "3 sagittal"].set_index("model")["rmse_deg"]
     assert rmse["delay ridge"] < 0.35 * rmse["linear"]
     text = result.page.read_text(encoding="utf-8")
-    assert "random (leaks)" in text and "calls the norm of the error" in text
+    assert "random (leaks)" in text and "the norm of the error" in text

@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from texts import says
 
 STUDIES = Path(__file__).parents[2] / "studies"
 
@@ -17,7 +18,8 @@ def test_what_calibration_brings_is_said_in_degrees_and_percent(study):
     table = pd.DataFrame(
         {"sensors": "3 sagittal", "model": ["shred", "shred, calibrated"], "rmse_deg": [4.0, 1.0], "participant": "W01"}
     )
-    assert study.calibration_sentences(table) == ["3 sagittal, by ten strides: shred 4.00 to 1.00 deg (-75 %)."]
+    [said] = study.calibration_sentences(table)
+    assert says(said, "3 sagittal", "shred", "4.00 to 1.00 deg", "-75 %")
 
 
 @pytest.mark.slow

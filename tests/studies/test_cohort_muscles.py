@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-STUDY = Path(__file__).parents[2] / "studies" / "cohort_muscles.py"
 MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("cohort_muscles", STUDY)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("cohort_muscles")
 
 
 def of(values, *names):

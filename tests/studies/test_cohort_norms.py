@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-STUDY = Path(__file__).parents[2] / "studies" / "cohort_norms.py"
-
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("cohort_norms", STUDY)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("cohort_norms")
 
 
 def test_the_table_prints_and_its_numbers_are_those_of_walking(study, capsys):
@@ -32,8 +26,9 @@ def test_the_table_prints_and_its_numbers_are_those_of_walking(study, capsys):
         "ankle plantarflexion moment [N m/kg]": (1.1, 1.7),
         "stance [% stride]": (56, 63),
         "vertical force, first peak [BW]": (1.0, 1.3),
-        "sole over belt speed, stance [1]": (0.95, 1.05),
     }
+    [sole] = [name for name in found if name.startswith("sole over belt speed")]
+    ranges[sole] = (0.95, 1.05)
     for name, (low, high) in ranges.items():
         assert np.all((found[name] > low) & (found[name] < high)), (name, found[name])
 

@@ -81,7 +81,7 @@ def test_usage_has_the_arguments_that_the_first_lines_of_the_file_show(helped):
     for file, (_, said, _) in helped[0].items():
         usage, _, description = said.partition("\n\n")
         shown = re.search(rf"^    \w+ {file.parent.name}/{file.name}(.*)$", description, re.MULTILINE)
-        assert shown, f"{file.name} does not show how it is run"
+        assert shown, file.name
         words, typed = shown[1].partition(">")[0], usage.partition(".py")[2]
         assert (options_of(words) - options_of(typed), places_of(words)) == (set(), places_of(typed)), file.name
 

@@ -1,16 +1,10 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import pytest
 
-STUDIES = Path(__file__).parents[2] / "studies"
-
 
 def study(name):
-    spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module(name)
 
 
 @pytest.mark.slow

@@ -1,17 +1,12 @@
-import importlib.util
+import importlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-STUDIES = Path(__file__).parents[2] / "studies"
-
 
 def study(name):
-    spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module(name)
 
 
 @pytest.fixture(scope="module")

@@ -1,17 +1,11 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import pytest
-
-STUDIES = Path(__file__).parents[2] / "studies"
 
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("family_wise_error", STUDIES / "family_wise_error.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("family_wise_error")
 
 
 def test_every_sum_has_its_p(study):

@@ -43,7 +43,7 @@ def person(faults, gait_data, tmp_path):
 
 def planted(faults, person, name):
     before = person.walk.read_bytes(), ezc3d.c3d(str(person.walk))
-    next(kind for kind in faults.KINDS if kind.name == name).plant(person)
+    next(kind for kind in faults.KINDS if kind.name.startswith(name)).plant(person)
     return *before, person.walk.read_bytes(), ezc3d.c3d(str(person.walk))
 
 
@@ -72,14 +72,14 @@ def test_two_exchanged_labels_differ_in_their_samples_alone(faults, person):
 
 
 def test_half_a_second_is_half_a_second(faults, person):
-    _, before, _, after = planted(faults, person, "1 walk heel and toe 0.5 s")
+    _, before, _, after = planted(faults, person, "1 walk heel and toe")
     moved = np.any(points(after, "RHEE") != points(before, "RHEE"), axis=(0, 1))
     assert moved.sum() == 50  # at 100 Hz
     np.testing.assert_array_equal(points(after, "RHEE")[..., moved], points(before, "RTOE")[..., moved])
 
 
 def test_a_gain_of_1_3_is_1_3_times_the_force_of_one_plate(faults, person):
-    _, before, _, after = planted(faults, person, "5 gain of a plate 1.3")
+    _, before, _, after = planted(faults, person, "5 gain of a plate")
     own, theirs = before["data"]["analogs"][0], after["data"]["analogs"][0]
     scale = [float(np.dot(own[k], theirs[k]) / np.dot(own[k], own[k])) for k in (2, 8)]
     assert sorted(scale) == pytest.approx([1.0, 1.3], abs=1e-5)
@@ -137,8 +137,8 @@ def test_what_a_person_lacks_is_skipped_with_the_reason(faults, person):
 
 
 def test_only_what_is_new_and_named_counts_as_said(study):
-    clean = study.Answer(["warning: gap: a.c3d, knee, 3 gaps"], {"hip flexion l": (30.0, "")}, 2, 1, [], [])
-    counted = clean._replace(lines=["warning: gap: a.c3d, knee, 4 gaps", "note: stands for 2 s"])
+    clean = study.Answer(["warning: a.c3d, 3 gaps"], {"hip flexion l": (30.0, "")}, 2, 1, [], [])
+    counted = clean._replace(lines=["warning: a.c3d, 4 gaps", "note: stands for 2 s"])
     assert study.new_lines(counted, clean) == []
     assert study.new_lines(counted, clean, notes=True) == ["note: stands for 2 s"]
     spoken = clean._replace(numbers={"hip flexion l": (50.0, "increased hip flexion")})
@@ -147,5 +147,5 @@ def test_only_what_is_new_and_named_counts_as_said(study):
     assert tighter_limits.spoken(clean) == []
     kinds = {kind.name: kind for kind in study.KINDS}
     assert not study.said(kinds["6 twice"], clean._replace(cycles=4), clean, True)
-    assert study.said(kinds["2 one name in two groups"], clean._replace(people=2), clean, False)
+    assert study.said(next(one for one in study.KINDS if one.people == 2), clean._replace(people=2), clean, False)
     assert not study.said(kinds["11 heels 0.5 s"], clean._replace(cycles=1), clean, True)

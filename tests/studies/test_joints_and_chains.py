@@ -1,27 +1,20 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-PROJECT = Path(__file__).parents[2]
-
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("joints_and_chains", PROJECT / "studies" / "joints_and_chains.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("joints_and_chains")
 
 
 def test_what_is_hidden_changes_every_system_s_motion(study):
-    plain = study.Record(0.0, 0.0, 0.0)
     for hidden in study.KNOWN.values():
         model = study.model_of(hidden)
         truth = study.complete(model, hidden, np.random.default_rng(1))
-        one, other = (study.recorded(of, hidden, plain, np.random.default_rng(2)) for of in (model, truth))
+        driven, plain = study.Driven(tuple(hidden.driven_by), 0.2, hidden.fastest_hz), study.Sensed(0.0)
+        one, other = (study.recorded(of, driven, plain, np.random.default_rng(2)) for of in (model, truth))
         channels = [name for name, _ in model.observations]
         one, other = (table[channels].to_numpy() for table in (one, other))
         assert np.isfinite(other).all()

@@ -1,26 +1,21 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-PROJECT = Path(__file__).parents[2]
-
 
 @pytest.fixture(scope="module")
 def study():
-    spec = importlib.util.spec_from_file_location("knee_with_memory", PROJECT / "studies" / "knee_with_memory.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("knee_with_memory")
 
 
 def test_what_is_hidden_changes_the_leg_s_motion_and_nothing_hides_nothing(study):
     for kind in study.KINDS:
         truth, _ = study.hidden(kind, np.random.default_rng(1))
         plain, _ = study.hidden("nothing", np.random.default_rng(1))
-        one, other = (study.recorded(leg, np.random.default_rng(2), 0.0).to_numpy() for leg in (truth, plain))
+        sensed = study.Sensed(0.0, channels=("hip", "knee"))
+        both = (study.recorded(leg, study.DRIVEN, sensed, np.random.default_rng(2)) for leg in (truth, plain))
+        one, other = (table.to_numpy() for table in both)
         assert (np.abs(one - other).max() < 1e-9) == (kind == "nothing")
 
 

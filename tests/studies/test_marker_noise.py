@@ -27,6 +27,7 @@ def test_markers_are_lost_a_fifth_of_a_second_at_a_time(several):
     assert column.sum() >= round(LOST_S * body.markers.rate_hz) or column[-1]
 
 
+@pytest.mark.slow  # tests/kinematics/test_held_joints.py holds it of one thigh
 def test_joints_held_together_halve_what_skin_does_to_hip_and_knee(several):
     free, held = several[2:]
     wrong = {}

@@ -1,24 +1,18 @@
-import importlib.util
-from pathlib import Path
+import importlib
 
 import numpy as np
 import pytest
 
-STUDIES = Path(__file__).parents[2] / "studies"
-
 
 @pytest.fixture(scope="module")
 def pooled_cycles():
-    spec = importlib.util.spec_from_file_location("pooled_cycles", STUDIES / "pooled_cycles.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module("pooled_cycles")
 
 
 def test_events_of_one_person_found_without_the_file_s_own(pooled_cycles, gait_data):
     study = pooled_cycles.study_of(gait_data, quick=True)
     whole, _ = pooled_cycles.pooled(study)
-    assert dict(pooled_cycles.counts(whole))["walks with a kept cycle of each foot"] == "2 of 2"
+    assert [count for what, count in pooled_cycles.counts(whole) if "each foot" in what] == ["2 of 2"]
     found, trials = pooled_cycles.pooled(study, withhold=True)
     assert all("markers" in one.detectors for one in found)
     for kind, most in (("contacts", 50), ("foot offs", 40)):

@@ -110,7 +110,7 @@ def _noted(side, value, rule="knee", excess=2.0):
 
 def test_a_sentence_has_number_limits_side_and_cycles():
     (said,) = noted_sentences([_noted("l", 38.0)])
-    assert says(said, "Reduced knee flexion", "left 38 deg (5 cycles)", "52 to 66 deg", "59 ± 3.6 deg, 18 people")
+    assert says(said, "Reduced knee flexion", "left 38 deg (5 cycles)", "52 to 66 deg", "59 ± 3.6 deg", "18 people")
 
 
 def test_both_sides_are_one_sentence_and_there_are_at_most_six():

@@ -1,0 +1,212 @@
+"""A second look at a verdict on unseen data: the simpler relative of a shape, a delay, or what free runs refuse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gaitdisc.discovery.beam import errs_more
+from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.decision import HALF, MOST_NEAR, NEAR, Verdict, held_out_proof, random_push
+from gaitdisc.discovery.forward_selection import select_forward
+from gaitdisc.discovery.gap_share import AGREES, cross_validated
+from gaitdisc.discovery.grids import delays
+from gaitdisc.discovery.held_out import by_size, free_run_error, grows_along_runs, proof_of
+from gaitdisc.discovery.paired_test import LEVEL
+from gaitdisc.discovery.problem import Problem
+from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
+from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
+
+AT_ONCE, LATE = "linear_stiffness", "delayed_feedback"
+NEARLY = 0.01  # of a free run's squared error: too little to distinguish explanations by
+STEP = 4  # of the delays that a search begins with
+# What a shape is where one of its constants vanishes or has no end, or where the motion shows but one side of it
+RELATIVES = {
+    "one_sided_spring": ("linear_stiffness",),
+    "dead_zone_spring": ("linear_stiffness",),
+    "one_sided_damper": ("viscous_damping",),
+    "contact_damper": ("viscous_damping",),
+    "hysteresis": ("coulomb_friction", "linear_stiffness"),
+    "series_elasticity": ("linear_stiffness", "viscous_damping"),
+    "delayed_feedback": ("linear_stiffness", "viscous_damping"),
+    "input_lag": ("wrong_parameter",),
+    "product_coupling": ("linear_coupling", "linear_stiffness", "viscous_damping"),
+}
+
+
+def prefer_relatives(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+    """Return a verdict with the simpler relative of each shape in its place, where this leaves no more of unseen data.
+
+    Where a model leaves mere noise, the likelihood says so; where none does, it prefers whatever is more flexible. What
+    relaxes or yields beyond the record's length or range is its relative, or nothing is named.
+    """
+    shows = problem.search.shows
+    if verdict.word in ("unnamed", "process_noise", "no_gap") or not verdict.proof:
+        return replace(verdict, rivals=tuple(one for one in verdict.rivals if shows(one.model)))
+    for number in range(len(verdict.found.model.parts)):
+        found = verdict.found
+        tried = [in_its_place(problem, found, number, one) for one in relatives_of(problem, found, number)]
+        for now in sorted((one for one in tried if one), key=lambda one: one.bic):
+            idle = not shows(found.model) or may_vanish(found.model, number)
+            if found.model.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
+                idle = idle or free_run_error(problem, found) > HALF * free_run_error(problem, now)
+            if not idle and is_needed(problem, now, found):
+                continue
+            proof = held_out_proof(problem, as_read, now)
+            proof = proof if proof.bears_out else by_size(proof, now)
+            if proof.bears_out:
+                verdict = replace(verdict, word=now.word, found=now, rivals=(found, *verdict.rivals), proof=proof)
+                break
+    rivals = tuple(one for one in verdict.rivals if shows(one.model))
+    if not shows(verdict.found.model):
+        return Verdict("no_gap", as_read, rivals, proof=verdict.proof)
+    return replace(verdict, rivals=rivals)
+
+
+def prefer_delay(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+    """Return a verdict with a feedback that comes late in the place of one at once, where unseen data show the delay.
+
+    Whatever answers with a delay (a person, a controller) looks like a spring to a search that begins without one: run
+    freely, the simulation as read leaves the data, and no delay of it says anything. Beside the spring it does not.
+    """
+    parts = verdict.found.model.parts
+    firsts = {place.motions[0] for place in problem.search.places}
+    springs = [one for one in parts if one.candidate.name == AT_ONCE and (one.candidate.role, "") in firsts]
+    if len(parts) != 1 or not springs or not verdict.proof:
+        return verdict
+    late = [
+        one
+        for one in problem.search.candidates
+        if one.name == LATE and (one.place, one.role) == (springs[0].candidate.place, springs[0].candidate.role)
+    ]
+    found, search = verdict.found, problem.search
+    begun = [
+        Part(one, {"factor": springs[0].values["factor"], "d": float(delay)})
+        for one in late
+        for delay in delays(problem.rhythm)[::STEP]
+    ]
+    tried = [
+        fit_model(found.shooting, search.base, (part,), found.model.fit.starts, TURNS, like=found.model)
+        for part in begun
+    ]
+    tried = [one for one in tried if search.sensible(one) and is_certain(one) and not may_vanish(one, 0)]
+    if not tried:
+        return verdict
+    now = ScoredModel(min(tried, key=lambda one: one.bic), found.shooting, found.gained)
+    _, now = compared([found, now], search.base)
+    proof = held_out_proof(problem, as_read, now)
+    if not by_size(proof_of(problem, found, now, now), now).bears_out or not proof.bears_out:
+        return verdict
+    return replace(verdict, found=now, rivals=(found, *verdict.rivals), proof=proof)
+
+
+def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> tuple[ScoredModel, Verdict]:
+    """Return a verdict whose free runs err no more than the simulation's, with what takes half of what they leave.
+
+    In short runs a part of what is missing leaves mere noise; along whole ones the rest adds up. Where a small change
+    of the start grows, free runs say nothing.
+
+    returns: the simulation as read, its numbers those of whole runs; and the verdict
+    """
+    if verdict.word == "process_noise" or verdict.starts or not problem.spans_a_period(as_read):
+        return as_read, verdict
+    base, named = fitted_on_whole_runs(problem, as_read), verdict.found
+    if not named.model.parts:
+        return base, replace(verdict, found=base)
+    scale = scale_of(problem)
+    most = max(free_run_error(problem, base), AGREES**2 * float(np.mean((scale.size / scale.spread) ** 2)))
+    for one in (named, *verdict.rivals):
+        if not one.model.parts or free_run_error(problem, one) > most:
+            continue
+        if one is named:
+            return base, completed(problem, as_read, verdict)
+        proof = held_out_proof(problem, as_read, one)
+        if proof.bears_out:
+            return base, replace(verdict, word=one.word, found=one, rivals=(named, *verdict.rivals), proof=proof)
+    pushes = random_push(problem, as_read)
+    return base, Verdict(
+        "process_noise" if pushes else "no_gap", base, (named, *verdict.rivals), pushes, proof=verdict.proof
+    )
+
+
+def fitted_on_whole_runs(problem: Problem, now: ScoredModel) -> ScoredModel:
+    """Return a model fitted to the learned trials whole, where a small error of a number shows; else as it was.
+
+    All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
+    """
+    shooting = problem.learned_runs(problem.longest).with_noise(scale_of(problem).error_of(now.model.fit))
+    guess = problem.guess.with_run(now.shooting.segments, now.model.fit.states)
+    starts = guess.starts(shooting.segments)
+    model = fit_model(shooting, problem.search.base, now.model.parts, starts, like=now.model)
+    return ScoredModel(model, shooting.with_past(model.fit.states)) if problem.search.sensible(model) else now
+
+
+def completed(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+    """Return a verdict with one explanation more, where this takes half of what free runs of the others leave."""
+    found, search = verdict.found, problem.search
+    if verdict.word == "unnamed" or not grows_along_runs(problem, found):
+        return verdict
+    whole = fitted_on_whole_runs(problem, found)
+    whole = scored(whole.shooting, search.base, whole.model)
+    named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
+    if named is whole:
+        return verdict
+    tried = [one for one in rivals if one.bic < named.bic + NEAR and len(one.model.parts) == len(named.model.parts)]
+    left = {id(one): free_run_error(problem, one) for one in (named, *tried[:MOST_NEAR])}
+    alike = [one for one in (named, *tried[:MOST_NEAR]) if left[id(one)] <= (1 + NEARLY) * min(left.values())]
+    more = ranked(alike, search.candidates)[0]
+    if left[id(more)] > HALF * free_run_error(problem, found):
+        return verdict
+    beside, proof = held_out_proof(problem, whole, more, as_read), held_out_proof(problem, as_read, more)
+    if not beside.bears_out or not proof.bears_out:
+        return verdict
+    return replace(verdict, word=more.word, found=more, rivals=(found, *tried, *verdict.rivals), proof=proof)
+
+
+def relatives_of(problem: Problem, now: ScoredModel, number: int) -> list[Candidate]:
+    """List the simpler relatives of one of a model's explanations: at its place, of the same motion."""
+    own = now.model.parts[number].candidate
+    names, present = RELATIVES.get(own.name, ()), now.model.explanations
+    found = [
+        one
+        for one in problem.search.candidates
+        if one.name in names
+        and one.identity not in present
+        and (
+            own.kind == "input"  # a lag of what drives it may be a time constant of the simulation's own
+            or (
+                (one.kind, one.place) == (own.kind, own.place)
+                and (one.role == own.role or one.pieces[0] in own.pieces[0].split("*"))
+            )
+        )
+    ]
+    return sorted(found, key=lambda one: names.index(one.name))
+
+
+def in_its_place(problem: Problem, now: ScoredModel, number: int, relative: Candidate) -> ScoredModel | None:
+    """Return a model with a relative in the place of one of its explanations; None where it does not fit."""
+    search, fewer = problem.search, problem.search.without(now, number)
+    scores = search.scorer(fewer.shooting, fewer.model).scores((relative,))
+    if not scores:
+        return None
+    parts = [*fewer.model.parts]
+    parts.insert(number, Part(scores[0].candidate, scores[0].values))
+    model = fit_model(now.shooting, search.base, tuple(parts), now.model.fit.starts, TURNS, like=fewer.model)
+    return ScoredModel(model, now.shooting, now.gained) if search.sensible(model) else None
+
+
+def is_needed(problem: Problem, relative: ScoredModel, general: ScoredModel) -> bool:
+    """Whether data show that a general shape explains more than its relative."""
+    first, second = compared([relative, general], problem.search.base)
+    if leaves_noise(problem, second):
+        return first.bic - second.bic > MARGIN
+    proof = by_size(proof_of(problem, first, second, second), second)
+    if proof.bears_out:
+        return True
+    scale, base = scale_of(problem), problem.search.base
+    left = [cross_validated(scale, one.shooting, base, one.model.parts, one.model) for one in (first, second)]
+    return proof.test.fall > 0 and errs_more(*left) < LEVEL

@@ -1,0 +1,52 @@
+"""What unseen data change in a verdict; the mass on a spring lacks what is said."""
+
+from dataclasses import replace
+
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, with_load
+
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.decision import Verdict, held_out_proof
+from gaitdisc.discovery.held_out import free_run_error, grows_along_runs
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.scored_model import scored
+from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_relatives
+
+
+def _problem(truth, how=None):
+    problem = set_up_problem(mass(), record(truth, 3, how or Experiment(seconds=12.0)))
+    return problem, problem.as_read()
+
+
+def _with(problem, as_read, label, **values):
+    """Return the simulation with one explanation in it, fitted from its numbers."""
+    candidate = next(one for one in problem.search.candidates if one.label == label)
+    parts = (Part(candidate, values),)
+    model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts)
+    return scored(as_read.shooting, problem.search.base, model)
+
+
+def test_hysteresis_that_yields_within_a_step_is_dry_friction():
+    problem, as_read = _problem(with_load("-1.5*sign(v)"))
+    candidate = next(one for one in problem.search.candidates if one.label == "hysteresis@load")
+    values = dict.fromkeys(candidate.slots, 0.003) | {"factor": -500.0}
+    general = _with(problem, as_read, "hysteresis@load", **values)
+    verdict = Verdict("missing_physics", general, (), proof=held_out_proof(problem, as_read, general))
+    assert prefer_relatives(problem, as_read, verdict).found.labels == ("coulomb_friction@load",)
+
+
+def test_free_runs_of_what_is_right_leave_the_noise_and_refuse_what_is_wrong():
+    problem, as_read = _problem(with_load("-14*x**3"))
+    right = _with(problem, as_read, "cubic_stiffness@load", factor=-14.0)
+    wrong = replace(right, model=replace(right.model, fit=replace(right.model.fit, values=-8 * right.model.fit.values)))
+    assert free_run_error(problem, right) < 0.01 * free_run_error(problem, as_read)
+    proof = held_out_proof(problem, as_read, right)
+    verdict = Verdict("missing_physics", wrong, (right,), proof=proof)
+    assert look_at_whole_runs(problem, as_read, verdict)[1].found is right
+    _, nothing = look_at_whole_runs(problem, as_read, replace(verdict, rivals=()))
+    assert nothing.word == "no_gap" and not nothing.found.model.parts
+
+
+@pytest.mark.parametrize(("truth", "cutoff_hz", "grows"), [("0", 6.0, False), ("-14*x**3", 0.0, True)])
+def test_what_is_missing_grows_along_a_run_and_a_sensors_noise_does_not(truth, cutoff_hz, grows):
+    assert grows_along_runs(*_problem(with_load(truth), Experiment(seconds=12.0, cutoff_hz=cutoff_hz))) == grows
