@@ -25,7 +25,7 @@ from scipy.signal import savgol_filter
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.gaps import filled

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sensing_walks import treadmill_walks
 
+from gaitdisc.sensing.model_folder import Stream
 from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
-from gaitdisc.sensing.stream import Stream
 from gaitdisc.sensing.windows import windows_of
 
 GOAL_MS = 0.2

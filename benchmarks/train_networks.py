@@ -59,7 +59,7 @@ from gaitdisc.networks import trainer
 from gaitdisc.networks.threads import pinned_threads
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Samples
-from gaitdisc.response.models import fit_models, fit_network
+from gaitdisc.response.fit_response import fit_models, fit_network
 from gaitdisc.statistics.r2 import r2
 
 PEOPLE = 12

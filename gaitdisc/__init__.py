@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from gaitdisc.ingest.writing import write_recording as write
     from gaitdisc.library import plot as plot
     from gaitdisc.library.comparing import compare as compare
+    from gaitdisc.library.comparing import paired_tests as paired_tests
+    from gaitdisc.library.comparing import permutation_clusters as permutation_clusters
     from gaitdisc.library.discovering import discover as discover
     from gaitdisc.library.examples import example_files as example_files
     from gaitdisc.library.examples import example_walks as example_walks
@@ -33,8 +35,6 @@ if TYPE_CHECKING:
     from gaitdisc.library.steps import contacts as contacts
     from gaitdisc.library.steps import contacts_by_detector as contacts_by_detector
     from gaitdisc.library.steps import cycles as cycles
-    from gaitdisc.library.tests_as_tables import paired_tests as paired_tests
-    from gaitdisc.library.tests_as_tables import permutation_clusters as permutation_clusters
     from gaitdisc.processing.inspection import Inspection as Inspection
     from gaitdisc.recording.field import Axis as Axis
     from gaitdisc.recording.field import Field as Field
@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from gaitdisc.recording.trial import Trial as Trial
     from gaitdisc.results.discovery import Discovery as Discovery
     from gaitdisc.results.mismatch import Mismatch as Mismatch
+    from gaitdisc.results.participant_response import ResponseRun as ResponseRun
     from gaitdisc.results.pooled_cycles import PooledCycles as PooledCycles
     from gaitdisc.results.reconstruction import Reconstruction as Reconstruction
-    from gaitdisc.results.response_run import ResponseRun as ResponseRun
     from gaitdisc.signals.contacts import Contacts as Contacts
     from gaitdisc.simulation.parts import Term as Term
     from gaitdisc.simulation.simulation import Simulation as Simulation
@@ -100,14 +100,14 @@ _HOME = {
     "discover": ("library.discovering", "discover"),
     "Discovery": ("results.discovery", "Discovery"),
     "fit_response": ("library.response", "fit_response"),
-    "ResponseRun": ("results.response_run", "ResponseRun"),
+    "ResponseRun": ("results.participant_response", "ResponseRun"),
     "PooledCycles": ("results.pooled_cycles", "PooledCycles"),
     "Reconstructor": ("library.reconstructor", "Reconstructor"),
     "Reconstruction": ("results.reconstruction", "Reconstruction"),
     "signed_rank": ("statistics.signed_rank", "signed_rank"),
-    "paired_tests": ("library.tests_as_tables", "paired_tests"),
+    "paired_tests": ("library.comparing", "paired_tests"),
     "holm_sidak": ("statistics.holm_sidak", "holm_sidak"),
-    "permutation_clusters": ("library.tests_as_tables", "permutation_clusters"),
+    "permutation_clusters": ("library.comparing", "permutation_clusters"),
     "r2": ("statistics.r2", "r2"),
     "load": ("library.loading", "load"),
     "plot": ("library.plot", ""),

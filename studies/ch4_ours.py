@@ -8,8 +8,7 @@ import pandas as pd
 
 import gaitdisc as gd
 from gaitdisc.batch.demonstration import OUTPUTS
-from gaitdisc.response.comparison import r2_by_participant
-from gaitdisc.response.over_participants import representative
+from gaitdisc.response.over_participants import r2_by_participant, representative
 from gaitdisc.words import sideless
 
 ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]

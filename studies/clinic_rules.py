@@ -31,8 +31,8 @@ from gaitdisc.clinic.reference import reference_of
 from gaitdisc.ingest.study import Conditions, PlannedTrial, Study
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.results.clinical_reference import ClinicalReference
+from gaitdisc.results.participant_response import load_run
 from gaitdisc.results.provenance import made_now
-from gaitdisc.results.response_run import load_run
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 70_000
 KINDS = ("", *FOUND_AS, "child")

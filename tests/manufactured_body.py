@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gaitdisc.channel import Channel
-from gaitdisc.kinematics.joint_centres import harrington_hip
-from gaitdisc.kinematics.pose import rotation_of
+from gaitdisc.kinematics.pose import harrington_hip, rotation_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.body_measures import BodyMeasures
 

@@ -141,7 +141,7 @@ def test_an_input_that_does_not_move_is_told(folder):
 
 def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(folder, monkeypatch):
     diverging = partial(TrainingSettings, learning_rate=1e30)
-    monkeypatch.setattr("gaitdisc.batch.participant_unit.TrainingSettings", diverging)
+    monkeypatch.setattr("gaitdisc.batch.run_study.TrainingSettings", diverging)
     written(folder, walker("P01"))
     code, words = said("run", folder)
     assert code == REFUSED

@@ -18,9 +18,9 @@ from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.kind import find_kind
 from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.reconstruction import Reconstruction
-from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.sealed_json import read_sealed
 from gaitdisc.results.variants import VariantRun
 

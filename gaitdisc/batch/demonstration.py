@@ -41,13 +41,10 @@ def write_demonstration(
     progress: Callable[[str, float], None] = lambda *_: None,
     laboratory: str = "angles",
 ) -> Study:
-    """Let the cohort walk and write the recordings, the study file, and apart from them the truth.
+    """Let the cohort walk; write the recordings, the study file as returned, and apart from them the truth.
 
-    duration_s: length of each walk [s]; the dissertation's is 240
-    progress: called with a pseudonym and 1.0 when that person has walked
-    laboratory: `angles` of a treadmill; `markers`, two belts and a static trial in place of them; or markers
-        `overground`: short trials over two plates
-    returns: as written; it passes through the same reading as a laboratory's
+    duration_s: of each walk [s], the dissertation's is 240; progress: called with a pseudonym who has walked
+    laboratory: `angles` of a treadmill; `markers`, two belts and a static trial; or short trials `overground`
     """
     if laboratory not in LABORATORIES:
         raise SchemaError(

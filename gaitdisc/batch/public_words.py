@@ -192,17 +192,13 @@ def package_words() -> frozenset[str]:
     with (schema_folder() / "channels.csv").open(newline="", encoding="utf-8") as file:
         literals += (row[column] for row in csv.DictReader(file) for column in ("name", "quantity", "unit", "aliases"))
     for path in (schema_folder() / "marker_sets").glob("*.toml"):
-        literals += [path.stem.replace("_", " "), *_marker_set_words(path)]
+        # labels, landmarks and title, without the people it cites
+        lines = _TEXT.sub("", path.read_text(encoding="utf-8")).splitlines()
+        cited = {word for line in lines if line.startswith("citation") for word in _WORD.findall(line)}
+        said = {one or other for line in lines for one, other in _LITERAL.findall(line)}
+        both = {text.replace("{S}", side).replace("{s}", side.lower()) for text in said for side in "LR"}
+        literals += [path.stem.replace("_", " "), *({word for text in both for word in _WORD.findall(text)} - cited)]
     return frozenset(word for text in literals for word in _WORD.findall(text))
-
-
-def _marker_set_words(path: Path) -> set[str]:
-    """Labels, landmarks and title of a marker set that comes along, without the people it cites."""
-    lines = _TEXT.sub("", path.read_text(encoding="utf-8")).splitlines()
-    cited = {word for line in lines if line.startswith("citation") for word in _WORD.findall(line)}
-    said = {one or other for line in lines for one, other in _LITERAL.findall(line)}
-    both = {text.replace("{S}", side).replace("{s}", side.lower()) for text in said for side in "LR"}
-    return {word for text in both for word in _WORD.findall(text)} - cited
 
 
 def _files(participant: Participant, planned: PlannedTrial) -> dict[str, str]:

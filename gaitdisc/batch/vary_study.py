@@ -10,10 +10,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.batch.public_words import words_of
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.run_study import response_settings, run_study
 from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import GaitdiscError, SchemaError
@@ -23,14 +22,21 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.recording import Trajectory
-from gaitdisc.response.data_quantity import LENGTHS_S, fit_data_quantity, shortened
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
-from gaitdisc.response.modalities import Setting, compare_modalities, compare_settings, fit_without, settings_around
+from gaitdisc.response.modalities import (
+    LENGTHS_S,
+    Setting,
+    compare_modalities,
+    compare_settings,
+    fit_data_quantity,
+    fit_without,
+    settings_around,
+    shortened,
+)
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results.over_participants import OVER
-from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity
+from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ResponseRun
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.study_run import save_run
 from gaitdisc.results.variants import QUESTIONS, VARIANT_COLUMNS, VARIANTS, VariantRun, Variants, save_variant_run
 from gaitdisc.write_lock import write_lock
@@ -47,11 +53,9 @@ def vary_study(
 ) -> VariantRun:
     """Fit every participant's models with one thing changed at a time; the run itself is made first if it is not there.
 
-    folder: folder of the run; what is computed here goes into a folder of the question's name in it
-    question: `modalities`: without one family of inputs at a time. `sensitivity`: other cut-offs and training lengths
-    workers: where participants are computed; in this process, one after the other, by default
-    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
-    returns: also saved in the folder of the question; whoever had to be refused is in `refusals`
+    question: `modalities`, without one family of inputs at a time, or `sensitivity`, other cut-offs and lengths; its
+        result also lies in a folder of that name in the run's
+    progress: called with a pseudonym and the fraction of that participant's work that is done
     """
     if question not in QUESTIONS:
         raise SchemaError(f"a question is one of: {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
@@ -163,10 +167,7 @@ def ablate_study(
 ) -> ResponseRun:
     """Fit every participant's models to less and less data; the run itself is made first where it is not there.
 
-    lengths_s: lengths of the training part [s]; its whole length is always added
-    workers: where participants are computed; in this process, one after the other, by default
-    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
-    returns: with `quantities`; whoever had to be refused is in `refusals`
+    lengths_s: of the training part [s]; its whole length is always added. Who had to be refused is in `refusals`.
     """
     workers = workers or Workers()
     run = run_study(study, folder, workers)

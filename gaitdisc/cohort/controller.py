@@ -84,7 +84,12 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     joint, joint_rate = _by_joint(psi), _by_joint(cycle_rate(psi, step_s))
     capacity = capacities(strength, joint, joint_rate)
     habit = habitual_activation(person, side, stage)
-    excitation, activation = _commanded(expected, capacity, habit, person.style.recruitment, step_s)
+    recruitment = person.style.recruitment
+    # where a muscle cannot let go in time, others act in the second pass
+    rest = np.broadcast_to(recruitment.rest, habit.shape)
+    excitation, activation = _nearest(shared(expected, capacity, habit, rest, recruitment.dear), recruitment, step_s)
+    least = np.where(excitation > rest + AT_REST, rest, activation)
+    excitation, activation = _nearest(shared(expected, capacity, habit, least, recruitment.dear), recruitment, step_s)
     others = expected - np.matmul(activation[:, None], capacity)[:, 0]
     others = _smoothed(others + LAG_S * cycle_rate(others, step_s), SMOOTH)
     side_angles = np.radians(angles[:, 1:3])
@@ -118,20 +123,6 @@ def habitual_activation(person: Person, side: int, phase: NDArray[np.float64]) -
     if person.learnt is not None:
         own = own * (1 + person.learnt.stiffness / STIFFNESS * person.adaptation.effort)
     return np.minimum(habit.rest + own, MOST)
-
-
-def _commanded(
-    wanted: NDArray[np.float64],
-    capacity: NDArray[np.float64],
-    habit: NDArray[np.float64],
-    recruitment: Recruitment,
-    step_s: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Excitation and activation (phase, group); where a muscle cannot let go in time, others act in the second pass."""
-    rest = np.broadcast_to(recruitment.rest, habit.shape)
-    excitation, activation = _nearest(shared(wanted, capacity, habit, rest, recruitment.dear), recruitment, step_s)
-    least = np.where(excitation > rest + AT_REST, rest, activation)
-    return _nearest(shared(wanted, capacity, habit, least, recruitment.dear), recruitment, step_s)
 
 
 def _nearest(

@@ -107,7 +107,9 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     waves = np.hstack([np.cos(turn), np.sin(turn)])
     slopes = 2 * np.pi * np.hstack([-order * np.sin(turn), order * np.cos(turn)])
     stage = staged(person, phase)
-    weight = _held_window(stage) / (person.speed_m_per_s * person.stride_s)
+    # 1 while the foot stands alone, falling to 0 at contact and at the toe's end: there a shoe gives and rolls
+    share = (stage - 0.5 * STANCE) / (0.5 * STANCE)
+    weight = np.clip((1.0 - np.abs(share)) / HELD_EDGE, 0.0, 1.0) / (person.speed_m_per_s * person.stride_s)
     reluctance = np.tile(np.r_[order, order] ** (2 * RELUCTANCE), 3) * len(psi) / 2
     pressure = pressure_centre(stage, leg.sole_m)
     wanted = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
@@ -161,12 +163,6 @@ def by_phase(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
     cycle (phase, ...): evenly spaced, without its end
     """
     return cycle_rate(cycle, 1 / len(cycle))
-
-
-def _held_window(phase: NDArray[np.float64]) -> NDArray[np.float64]:
-    """1 while the foot stands alone, falling to 0 at contact and at the toe's end: there a shoe gives and rolls."""
-    share = (phase - 0.5 * STANCE) / (0.5 * STANCE)
-    return np.clip((1.0 - np.abs(share)) / HELD_EDGE, 0.0, 1.0)
 
 
 def _integrated(cycle: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:

@@ -27,7 +27,7 @@ from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, staged
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Surface, Trial
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 SIDES = (("r", 1.0), ("l", -1.0))
 ASIS_WIDTH, PELVIS_DEPTH = 0.145, 0.090  # of height

@@ -30,7 +30,7 @@ def angles(
     """Joint angles from markers or segments, with the package's signs; widths are those of the static C3D, if any."""
     from dataclasses import replace
 
-    from gaitdisc.ingest.c3d_measures import body_measures_in
+    from gaitdisc.ingest.c3d_kinetics import body_measures_in
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.writing import write_recording
     from gaitdisc.kinematics.motion import moved_body, segment_angles

@@ -22,7 +22,7 @@ def apply(
     ] = None,
 ) -> None:
     """Reconstruct the states of a recording by a saved model, with their errors where the recording has them."""
-    from gaitdisc.batch.reconstruct_recording import reconstruct_recording
+    from gaitdisc.batch.reconstruct_study import reconstruct_recording
     from gaitdisc.own_files import claim_file
 
     if model.is_file():

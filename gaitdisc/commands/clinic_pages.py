@@ -12,7 +12,7 @@ from gaitdisc.whole_file import remove_file, write_whole
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from gaitdisc.report.clinic.words import PageWords
+    from gaitdisc.report.clinic.values import PageWords
     from gaitdisc.results.clinical_reference import ClinicalReference, PersonSession
     from gaitdisc.results.provenance import Provenance
     from gaitdisc.results.study_run import StudyRun
@@ -47,7 +47,7 @@ def kept_reference(run_folder: Path) -> ClinicalReference | None:
 
 def keep_words(language: str, run_folder: Path) -> list[str]:
     """Copy a table of words into a run, or take it away for `en`; gives the words that it lacks."""
-    from gaitdisc.report.clinic.words import read_words, write_words
+    from gaitdisc.report.clinic.values import read_words, write_words
 
     if language == "en":
         remove_file(run_folder / WORDS)
@@ -60,21 +60,21 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
 
 def write_english(path: Path) -> Path:
     """Write the table of words that is to be filled in."""
-    from gaitdisc.report.clinic.words import write_words
+    from gaitdisc.report.clinic.values import write_words
 
     return write_words(path, _english())
 
 
 def _english() -> list[str]:
     from gaitdisc.clinic.rules import rule_words
-    from gaitdisc.report.clinic.words import english_words
+    from gaitdisc.report.clinic.values import english_words
 
     return english_words(rule_words())
 
 
 def kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run: English where no others were kept."""
-    from gaitdisc.report.clinic.words import ENGLISH, read_words
+    from gaitdisc.report.clinic.values import ENGLISH, read_words
 
     return read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
 

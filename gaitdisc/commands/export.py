@@ -44,7 +44,7 @@ def export(
     from gaitdisc.batch.public_words import with_public_labels
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.writing import write_recording
-    from gaitdisc.processing.one_base import on_one_base
+    from gaitdisc.processing.process import on_one_base
 
     together = on_one_base(read_trial(files), rate, tuple(stream) if stream else None)
     if not labels:
@@ -74,7 +74,7 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings
-    from gaitdisc.results.response_run import load_run
+    from gaitdisc.results.participant_response import load_run
     from gaitdisc.spreadsheet import write_csv
     from gaitdisc.whole_file import whole_file
 

@@ -22,7 +22,7 @@ def moments(
     ] = 20.0,
 ) -> None:
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
-    from gaitdisc.ingest.c3d_measures import body_measures_in
+    from gaitdisc.ingest.c3d_kinetics import body_measures_in
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.writing import write_recording
     from gaitdisc.kinematics.motion import moved_body

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from gaitdisc.batch.workers import StudyProgress
     from gaitdisc.ingest.study import Study
+    from gaitdisc.results.participant_response import ResponseRun
     from gaitdisc.results.provenance import Refusal
-    from gaitdisc.results.response_run import ResponseRun
 
 Result = TypeVar("Result")
 

@@ -138,11 +138,7 @@ def compare_people(
 
 
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
-    """By how much later the first curve fits the second best [% stride], and the rms gap that is left then.
-
-    first, second (phase,) [channel's unit]: mean curves over one stride on 101 points; the stride is closed, 100 % is
-        0 %
-    returns shift_percent, rms: within 10 % of the stride, in steps of 1 %
+    """By how much later the first closed curve (phase,) fits the second best [% stride, to 10], and the rms gap left.
 
     >>> wave = np.sin(2 * np.pi * PERCENT / 100)
     >>> [round(value, 3) for value in best_shift(np.roll(wave[:-1], -3)[np.arange(101) % 100], wave)]

@@ -13,7 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 from gaitdisc.simulation.measured import Measured
 
 KIND = "spike"

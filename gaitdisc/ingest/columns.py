@@ -214,10 +214,7 @@ def sorted_trial(
     channels: Sequence[Channel],
     findings: Sequence[Finding] = (),
 ) -> Trial:
-    """Trial of one file whose columns share one time base.
-
-    time (time,) [s]: even
-    values (time, channel) [each channel's unit]: converted already
+    """Trial of one file whose columns (time, channel), in each channel's unit, share one even time base [s].
 
     >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
     >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)
@@ -225,7 +222,15 @@ def sorted_trial(
     """
     _check_names(channels, source.file)
     _refuse_missing_force(time, values, channels, source.file)
-    _refuse_slow_walk(time, channels, source.file)
+    # too slow to show a step: mostly ms under the name of seconds
+    measured = next((one.name for one in channels if one.quantity not in ("signal", "translation")), None)
+    step_s = float(time[1] - time[0]) if len(time) >= FEW else 0.0
+    if measured and step_s > SLOWEST_S:
+        raise SamplingError(
+            f"{source.file}: {measured} of a walk needs a sample every {SLOWEST_S:g} s or more often",
+            f"times are {step_s:g} s apart, and {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
+            "If they are ms, name the column 'time [ms]'.",
+        )
     columns: dict[str, list[int]] = {}
     for i, channel in enumerate(channels):
         columns.setdefault(stream_of(channel), []).append(i)
@@ -246,18 +251,6 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
             "each channel needs a column of its own",
             f"{file} has {doubled!r} in columns {first} and {second}",
             "Remove one of them, or name them differently in the study's [channels].",
-        )
-
-
-def _refuse_slow_walk(time: NDArray[np.float64], channels: Sequence[Channel], file: str) -> None:
-    """Refuse a walk that was sampled too slowly to show a step: its times are mostly ms under the name of seconds."""
-    measured = next((one.name for one in channels if one.quantity not in ("signal", "translation")), None)
-    step_s = float(time[1] - time[0]) if len(time) >= FEW else 0.0
-    if measured and step_s > SLOWEST_S:
-        raise SamplingError(
-            f"{file}: {measured} of a walk needs a sample every {SLOWEST_S:g} s or more often",
-            f"times are {step_s:g} s apart, and {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
-            "If they are ms, name the column 'time [ms]'.",
         )
 
 

@@ -13,20 +13,24 @@ import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.ingest.file_names import (
+from gaitdisc.ingest.people_table import (
     PLAIN,
     PSEUDONYM,
     WALK_WORDS,
+    Measured,
     condition_word,
     group_word,
+    is_people_table,
     kind_of_trial,
+    measured_people,
+    person_key,
     person_word,
+    said_of,
     session_word,
     walk_key,
     walk_place,
     walk_word,
 )
-from gaitdisc.ingest.people_table import Measured, is_people_table, measured_people, person_key, said_of
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study import (
     ANGLES,
@@ -233,9 +237,7 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 
 
 def stands(trial: Trial) -> bool:
-    """Whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
-
-    A file with contacts of both feet is a walk, however many points beside the body it has.
+    """Whether half of the markers, or else hips and knees, stay still (5 cm); with contacts of both feet it is a walk.
 
     >>> stands(Trial("no markers, no angles", {}))
     False

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import runs, spans_s
+from gaitdisc.recording.arrays import runs, spans_s
 
 JOINTS = ("angle", "translation")
 CHANCE = 1e-6  # of a stretch that repeats one value, with the channel's own share of repeated samples; no false one in

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import UnitError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
@@ -31,11 +31,7 @@ _LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 def plausible_unit(
     time: NDArray[np.float64], values: NDArray[np.float64], names: Sequence[str], stated: str | None, file: str
 ) -> tuple[str, Finding | None]:
-    """Unit of a file's angles: the stated one if the numbers do not contradict it.
-
-    time (time,) [s]: times of the samples
-    values (time, angle) [deg or rad]: angles as read
-    returns finding: said where the unit was taken from the magnitude, or where it is in doubt
+    """Unit of a file's angles (time, angle): the stated one unless the numbers contradict it; a finding where in doubt.
 
     >>> t = np.linspace(0, 2, 200)
     >>> plausible_unit(t, 30 * np.sin(6 * t)[:, None], ["hip_flexion_r"], "deg", "walk.mot")
@@ -49,7 +45,9 @@ def plausible_unit(
     bounded = [i for i in joints if "_rot" not in names[i]] or joints  # an arm or a thigh may wind on by whole turns
     most = _largest(values[:, bounded])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
-    reach = _largest_range(values[:, moving or joints])
+    # without the twentieth at either end, where a fit may have lost its markers
+    columns = [column[np.isfinite(column)] for column in values[:, moving or joints].T]
+    reach = max((float(np.ptp(np.percentile(column, PERCENTILES))) for column in columns if column.size), default=0.0)
     long_enough = time[-1] - time[0] >= SHORTEST_S and len(time) >= FEWEST
     beyond = most > FULL_TURN
     like_rad = not beyond and long_enough and WALKING_RAD[0] <= reach <= WALKING_RAD[1]
@@ -108,12 +106,6 @@ def copied_coordinate_unit(
 def _largest(values: NDArray[np.float64]) -> float:
     finite = values[np.isfinite(values)]
     return float(np.abs(finite).max()) if finite.size else 0.0
-
-
-def _largest_range(values: NDArray[np.float64]) -> float:
-    """Widest range of a column, without the twentieth at either end, where a fit may have lost its markers."""
-    columns = [column[np.isfinite(column)] for column in values.T]
-    return max((float(np.ptp(np.percentile(column, PERCENTILES))) for column in columns if column.size), default=0.0)
 
 
 def _undecided(file: str, why: str) -> UnitError:

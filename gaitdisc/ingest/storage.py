@@ -24,7 +24,7 @@ from gaitdisc.channel import (
     vocabulary,
 )
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Cells, Form, check_counts, even_time, parsed_cells, printed_digit
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import (
     Column,
     check_written_names,
@@ -75,7 +75,15 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     cells = parsed_cells(lines[header.body_line - 1 :], header.labels, header.body_line, form)
     claims = ("rows", header.rows, len(cells.values)), ("columns", header.columns, len(header.labels))
     findings = [*check_counts(cells, raw.name, *claims), *naming_findings(columns, raw.name)]
-    _check_last_cell(lines, cells, raw.name)
+    if lines[-1].strip() and len(cells.lines) >= 3:  # a number cut: no line end, shorter than all of one width
+        before = {len(str(lines[number - 1]).rstrip()) for number in cells.lines[:-1].tolist()}
+        width = max(before)
+        if len(before) == 1 and len(lines[-1]) < width:
+            raise ReadError(
+                f"{raw.name}: every line has {width} characters",
+                f"the last one, line {cells.lines[-1]}, stops after {len(lines[-1])}",
+                "The file was cut: copy or export it again.",
+            )
     time = even_time(cells.values[:, 0], printed_digit(cells.first_column), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
     values = np.column_stack([c.converted(cells.values[:, i]) for i, c in enumerate(columns, 1)])
@@ -84,11 +92,10 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
 
 
 def write_storage(recording: Recording, path: Path | str) -> Path:
-    """Write a recording as an OpenSim storage file, whole or not at all.
+    """Write a recording as an OpenSim storage file with `inDegrees`, whole or not at all.
 
-    `inDegrees` is always stated. Channels that their names alone do not determine are described by lines such as
-    `column 3=emg [V] r` in the header, which OpenSim passes over. Marks of suspect samples, subject and
-    condition are not written.
+    What a channel's name does not determine stands in lines such as `column 3=emg [V] r`, which OpenSim passes over;
+    marks of suspect samples, subject and condition are not written.
     """
     path = Path(path)
     check_written_names(recording.names, path.name)
@@ -111,20 +118,6 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
     table = np.column_stack([recording.time, recording.values])
     rows = ("\t".join(map(repr, row)) for row in table.tolist())
     return write_whole(path, "\n".join([*header, *rows]) + "\n")
-
-
-def _check_last_cell(lines: Sequence[str], cells: Cells, file: str) -> None:
-    """Refuse a last number that was cut: no line end, and shorter than all others of a column of one width."""
-    if not lines[-1].strip() or len(cells.lines) < 3:
-        return
-    before = {len(str(lines[number - 1]).rstrip()) for number in cells.lines[:-1].tolist()}
-    width = max(before)
-    if len(before) == 1 and len(lines[-1]) < width:
-        raise ReadError(
-            f"{file}: every line has {width} characters",
-            f"the last one, line {cells.lines[-1]}, stops after {len(lines[-1])}",
-            "The file was cut: copy or export it again.",
-        )
 
 
 def _in_true_unit(

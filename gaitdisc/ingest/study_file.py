@@ -255,7 +255,11 @@ def _place_in(finding: Mapping[str, Any]) -> Place:
 def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) -> tuple[str, str, str]:
     kind, given, context = finding["type"], finding.get("input"), finding.get("ctx", {})
     if kind == "extra_forbidden":
-        return _unknown_key(place, model)
+        owner = _part(place[:-1], model)
+        keys = list(owner.model_fields) if owner else []
+        nearest = nearest_word(str(place[-1]), keys)
+        needed = f"the keys of {_table(place[:-1])} are {', '.join(keys)}"
+        return (needed, f"{place[-1]!r} is not known", f"Did you mean {nearest!r}?" if nearest else "Remove it.")
     if kind == "missing" and isinstance(place[-1], int):
         return f"{_named(place[:-1])} needs {place[-1] + 1} or more entries", f"found {place[-1]}", "Add the other."
     if kind == "missing":
@@ -288,14 +292,6 @@ def _wanted(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str, str
     else:
         wanted, remedy = next((words for key, words in _KINDS.items() if kind.startswith(key)), (wanted, remedy))
     return wanted, remedy
-
-
-def _unknown_key(place: Place, model: type[BaseModel]) -> tuple[str, str, str]:
-    owner = _part(place[:-1], model)
-    keys = list(owner.model_fields) if owner else []
-    nearest = nearest_word(str(place[-1]), keys)
-    needed = f"the keys of {_table(place[:-1])} are {', '.join(keys)}"
-    return needed, f"{place[-1]!r} is not known", f"Did you mean {nearest!r}?" if nearest else "Remove it."
 
 
 def _named(place: Place) -> str:

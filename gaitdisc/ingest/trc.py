@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError, SamplingError, UnitError
@@ -55,7 +54,14 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     findings = check_counts(cells, raw.name, *claims)
     digit = printed_digit(lines[number - 1].split("\t")[1] for number in cells.lines.tolist())
     time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
-    _check_rate(header, time, digit, raw.name)
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    allowed = RATE_TOLERANCE / header.rate_hz + digit / (len(time) - 1)
+    if abs(step - 1 / header.rate_hz) > allowed:
+        raise SamplingError(
+            f"{raw.name}: the header's DataRate and the time column must agree",
+            f"DataRate says {header.rate_hz:g} Hz, the times step by {step:.6g} s, which is {1 / step:.6g} Hz",
+            "Find out which is right and export the file again.",
+        )
     seen = np.where(cells.values[:, 2:] == 0, np.nan, cells.values[:, 2:])
     refuse_other_unit(header.unit, distance_from_origin(seen), raw.name, "Units in line 3")
     positions = np.asarray(convert(cells.values[:, 2:], header.unit, inner_unit(header.unit)), float)
@@ -114,17 +120,6 @@ def _number(fields: Mapping[str, str], key: str, file: str) -> float:
     if not 0 < number < 1e9:
         raise ReadError(f"{file}: {key} in line 3 needs a number above 0", f"found {fields[key]!r}", "Export it again.")
     return number
-
-
-def _check_rate(header: TrcHeader, time: NDArray[np.float64], digit_s: float, file: str) -> None:
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    allowed = RATE_TOLERANCE / header.rate_hz + digit_s / (len(time) - 1)
-    if abs(step - 1 / header.rate_hz) > allowed:
-        raise SamplingError(
-            f"{file}: the header's DataRate and the time column must agree",
-            f"DataRate says {header.rate_hz:g} Hz, the times step by {step:.6g} s, which is {1 / step:.6g} Hz",
-            "Find out which is right and export the file again.",
-        )
 
 
 def _marker_names(labels: Sequence[str], channels: Mapping[str, str] | None) -> tuple[list[str], bool]:

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.ingest.c3d_measures import body_measures_in
+from gaitdisc.ingest.c3d_kinetics import body_measures_in
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Participant, PlannedTrial, Study
 
@@ -68,8 +68,7 @@ def _of_session(trials: list[PlannedTrial], session: str) -> PlannedTrial | None
 def refused_participant(study: Study, participant: Participant) -> str:
     """Why nothing of a participant is reported; empty where something is.
 
-    Who lacks one of two compared conditions is refused, but for a group, such as controls, that never has it. So is who
-    has a recording that is another person's or another condition's too, or two bodies in one session.
+    Refused is who lacks a compared condition (unless the whole group does), shares a recording, or has two bodies.
     """
     if participant.excluded:
         return f"excluded in the study: {participant.excluded}"

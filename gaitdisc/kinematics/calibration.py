@@ -14,11 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip
-from gaitdisc.kinematics.laboratory import check_right_handed, up_axis
 from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
-from gaitdisc.kinematics.markers import marker_labels, still_places
-from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose
+from gaitdisc.kinematics.markers import check_right_handed, marker_labels, still_places, up_axis
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, DavisHip, Pose, chord_centre, harrington_hip
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 
@@ -313,13 +311,10 @@ def _axes(
 
 
 def landmark_order(marker_set: MarkerSet, places: Points, up: NDArray[np.float64]) -> list[tuple[float, str]]:
-    """By how much each landmark of a standing person is on its side of another [m]; below 0 a label is wrong.
+    """By how much each landmark of a standing person is on its side of another [m]; below 0 a label is wrong, as said.
 
     Right is right of left, the leg's landmarks come down in their order, ankle between heel and toe, and pelvis and
     toes point to the same side. Joints that are bent and feet that turn by less than 90 deg do not change that.
-
-    places each (3,) [m]: markers, by the names of the set, in the static trial
-    returns: how far on the right side, and what is said where it is not
     """
     labels = {(key, side): marker_set.landmark(key, side, places) for key in (*SIDED, "sacrum") for side in "lr"}
     at = {(name,): np.asarray(place) for name, place in places.items()}

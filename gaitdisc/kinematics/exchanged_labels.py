@@ -14,7 +14,7 @@ from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.kinematics.segment_poses import free_fits, placed_markers
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import spans_s
+from gaitdisc.recording.arrays import spans_s
 
 # Root mean square over a segment's points [m]. Two labels exchanged give 0.012 or more, whatever pair (2,400 pairs in
 # six walks of three people); one person's skin 0.002 to 0.004 (median), in 1 % of the frames up to 0.016.

@@ -67,7 +67,11 @@ def _found(
     above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), seen[whole]
     below, places = fitted_pose(body, markers).pose, above.to_segment(markers)
     found = fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
-    swing_deg = _swing_deg(places, found.centre)
+    # to each side, in the direction in which the thigh turns less
+    way = (places - found.centre).mean(axis=1)
+    way = way / np.linalg.norm(way, axis=1, keepdims=True)
+    spread = np.linalg.eigvalsh(np.cov(way.T))
+    swing_deg = float(np.degrees(np.sqrt(max(spread[1], 0.0))))
     if swing_deg < LEAST_SWING_DEG:
         words = f"the thigh turns by {swing_deg:.1f} deg (rms) at right angles to its largest swing"
         return None, f"{words}, {LEAST_SWING_DEG:g} are needed"
@@ -118,14 +122,6 @@ def sphere_centre(places: NDArray[np.float64], start: NDArray[np.float64]) -> Pi
             break
     distance = np.linalg.norm(places - centre, axis=2)
     return Pivot(centre, float(np.sqrt(((distance - distance.mean(axis=0)) ** 2).mean())))
-
-
-def _swing_deg(places: NDArray[np.float64], centre: NDArray[np.float64]) -> float:
-    """Root mean square by which the thigh turns to each side in the direction in which it turns less."""
-    way = (places - centre).mean(axis=1)
-    way = way / np.linalg.norm(way, axis=1, keepdims=True)
-    spread = np.linalg.eigvalsh(np.cov(way.T))
-    return float(np.degrees(np.sqrt(max(spread[1], 0.0))))
 
 
 def _apart(found: Pivot, usual: NDArray[np.float64]) -> float:

@@ -92,10 +92,7 @@ class MarkerSet:
         return replace(self, joint_centres={**self.joint_centres, "hip": (method,)})
 
     def names(self, labels: Iterable[str]) -> dict[str, str]:
-        """Names in this set of the labels of a recording: set's name -> label.
-
-        labels: markers as the file has them. Case, blanks and punctuation do not count; a label that is the set's own
-            name comes before one that is an alias
+        """Set's name -> label; case, blanks, punctuation do not count, the set's own name comes before an alias.
 
         >>> marker_set("helen_hayes").names(["R.ASIS", "RKNEE"])
         {'RASI': 'R.ASIS', 'RKNE': 'RKNEE'}

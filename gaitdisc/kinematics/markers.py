@@ -1,17 +1,22 @@
-"""Markers of a recording as arrays, under the names of a marker set; the stillest part of a static trial."""
+"""Markers as arrays; where the person stands stillest; up, forward and right-handedness, from the data."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, ShapeError, StrideError
 from gaitdisc.recording import Recording
 
 STILL_S = 0.5
 STEP_S = 0.1
+PATH_S = 1.0  # about a stride: the sway from step to step cancels over it
+TRAVELS_M_PER_S = 0.3  # slower is a treadmill, or standing
+STRAIGHT_DEG = 15.0  # a path that turns less has one direction
+UPRIGHT = 0.85  # cosine between an axis of the laboratory and the line from feet to pelvis
 
 
 def marker_labels(markers: Recording) -> list[str]:
@@ -38,15 +43,10 @@ def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float
 
 
 def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[str]) -> tuple[dict, float, float]:
-    """Where each marker is while the person stands stillest, over half a second in which every needed marker is seen.
+    """Where each marker is (3,) [m] over the stillest half second in which every needed one is seen.
 
-    names: name in the marker set -> label in the recording
-    needed: markers, by the names of the set, without which no frame can be built
-    returns places each (3,) [m]: median over the half second, or over the whole trial for a marker that is missing in
-        it; without those that are never seen
-    returns moved_m: how far the needed markers are from their places, at most on the mean over markers, in that half
-        second [m]
-    returns start_s: where it begins [s]
+    A marker missing in it has the median of the trial. Beside: how far the needed ones move, at most, on the mean over
+    markers [m], and when the half second begins [s].
     """
     all_places = marker_places(markers, list(names.values()))
     rows = [list(names).index(name) for name in needed]
@@ -76,3 +76,148 @@ def _moved(places: NDArray[np.float64]) -> float:
     middle = np.nanmedian(places, axis=0)
     apart = np.where(seen, np.linalg.norm(np.nan_to_num(places - middle), axis=2), 0.0)
     return float((apart.sum(axis=1) / np.maximum(seen.sum(axis=1), 1)).max())
+
+
+@dataclass(frozen=True, eq=False)
+class WalkingFrame:
+    """The walker's frame over time: x forward, y up, z to the right."""
+
+    rotation: NDArray[np.float64]  # (frame, 3, 3), columns are forward, up, right in the laboratory's frame
+    how: str  # what up and forward were found from
+
+
+def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = "") -> NDArray[np.float64]:
+    """Laboratory's axis (3,) along which the pelvis (frame, 3) [m] lies above the feet (frame, 3) [m]; NaN allowed.
+
+    >>> up_axis(np.array([[1.0, 2.0, 0.9]]), np.array([[1.0, 2.1, 0.1]]))
+    array([0., 0., 1.])
+    """
+    lines = pelvis - feet
+    lines = lines[np.isfinite(lines).all(axis=1)]
+    if not len(lines):
+        raise ShapeError(
+            "up is found from a frame with markers of the pelvis and of a foot",
+            f"{file or 'the recording'} has none",
+            "Fill the markers, or give another trial.",
+        )
+    mean = lines.mean(axis=0)
+    size = float(np.linalg.norm(mean))
+    axis = int(np.argmax(np.abs(mean)))
+    if not size > 0 or abs(mean[axis]) < UPRIGHT * size:
+        raise ShapeError(
+            "one axis of the laboratory points up, along which the pelvis is above the feet",
+            f"{file or 'the recording'}: from feet to pelvis it is ({', '.join(f'{part:.3g}' for part in mean)}) m",
+            "Export the markers in the laboratory's level frame.",
+        )
+    up = np.zeros(3)
+    up[axis] = np.sign(mean[axis])
+    return up
+
+
+def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], file: str = "") -> None:
+    """Refuse mirrored frames; pelvis axes (frame, 3, 3): x sacrum forward, z left to right spine; up (3,).
+
+    >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    gaitdisc.errors.ShapeError: the laboratory's axes make a right-handed frame... or the labels.
+    """
+    upright = float(np.nanmedian(pelvis[:, :, 1] @ up))
+    if not upright > 0:
+        raise ShapeError(
+            "the laboratory's axes make a right-handed frame, and left and right markers bear their own names",
+            f"{file or 'the recording'}: with the right iliac spine on the right and the sacrum behind, up is down "
+            f"(cosine {upright:.2f}): the frame is mirrored, or left and right are exchanged",
+            "Correct the export's axes, or the labels.",
+        )
+
+
+def walking_frame(
+    origin: NDArray[np.float64],
+    facing: NDArray[np.float64],
+    up: NDArray[np.float64],
+    rate_hz: float,
+    given: Sequence[float] | None = None,
+) -> WalkingFrame:
+    """Forward, up and right at each frame.
+
+    Forward is, in this order: as given; where the pelvis travels, its path over a second around each frame if the path
+    turns by 15 deg or more, its mean path otherwise; where it does not travel (a treadmill, standing), the way that the
+    pelvis faces on the mean. Of a person who walks backwards, forward is against the path.
+
+    origin (frame, 3) [m]: the pelvis over time; NaN allowed
+    facing (frame, 3): axis of the pelvis that points forward
+    up (3,): up in the laboratory
+    """
+    if given is not None:
+        return WalkingFrame(_frames(np.tile(_level_given(given, up), (len(origin), 1)), up), "forward as given")
+    known = np.isfinite(origin).all(axis=1) & np.isfinite(facing).all(axis=1)
+    if not known.any():
+        raise StrideError(
+            "the direction of walking needs a frame with the pelvis", "there is none", "Fill the markers of the pelvis."
+        )
+    faced = _level(facing[known].mean(axis=0), up)
+    seen = np.flatnonzero(known)
+    spread = seen - seen.mean()
+    mean = _level_part(spread @ origin[seen] / max(float(spread @ spread), 1e-9) * rate_hz, up)
+    headings = _headings(origin, seen, up, rate_hz)
+    if headings is None and np.linalg.norm(mean) < TRAVELS_M_PER_S:
+        return WalkingFrame(
+            _frames(np.tile(faced, (len(origin), 1)), up), "forward as the pelvis faces: it stays in place"
+        )
+    paths = np.tile(_level(mean, up), (len(origin), 1)) if headings is None else headings
+    backwards = bool(np.median(np.einsum("fi,fi->f", paths[known], facing[known])) < 0)
+    words = "forward along the path of the pelvis" + ", against it since the person walks backwards" * backwards
+    paths = -paths if backwards else paths
+    turned = float(np.degrees(np.ptp(np.unwrap(np.arctan2(paths @ np.cross(up, faced), paths @ faced)))))
+    if turned < STRAIGHT_DEG:
+        straight = _level(mean, up)
+        paths = np.tile(-straight if backwards else straight, (len(origin), 1))
+    else:
+        words += f", which turns by {turned:.0f} deg"
+    return WalkingFrame(_frames(paths, up), words)
+
+
+def _level_given(given: Sequence[float], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    forward = np.asarray(given, float)
+    size = float(np.linalg.norm(forward)) if forward.shape == (3,) else 0.0
+    if not size > 0 or not abs(forward @ up) <= 0.5 * size:
+        raise StrideError(
+            "the direction of walking is a level vector of three numbers",
+            f"found {tuple(np.ravel(forward).tolist())}, up is {tuple(up.tolist())}",
+            "Give it in the laboratory's axes, such as 0 -1 0.",
+        )
+    return _level(forward, up)
+
+
+def _level_part(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    return vector - np.outer(vector @ up, up).reshape(np.shape(vector))
+
+
+def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    level = _level_part(vector, up)
+    return level / max(float(np.linalg.norm(level)), 1e-12)
+
+
+def _frames(forward: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    upward = np.broadcast_to(up, forward.shape)
+    return np.stack([forward, upward, np.cross(forward, upward)], axis=2)
+
+
+def _headings(
+    origin: NDArray[np.float64], seen: NDArray[np.intp], up: NDArray[np.float64], rate_hz: float
+) -> NDArray[np.float64] | None:
+    """Level direction over a whole second around each frame, held where there is none; None where it is mostly slow."""
+    samples = np.arange(len(origin))
+    path = _level_part(np.stack([np.interp(samples, seen, origin[seen, axis]) for axis in range(3)], axis=1), up)
+    half = max(round(PATH_S * rate_hz / 2), 1)
+    whole = samples[(samples - half >= seen[0]) & (samples + half <= seen[-1])]
+    if not len(whole):
+        return None
+    velocity = (path[whole + half] - path[whole - half]) / (2 * half) * rate_hz
+    speed = np.linalg.norm(velocity, axis=1)
+    moving = speed >= TRAVELS_M_PER_S
+    if moving.mean() < 0.5:
+        return None
+    nearest = np.rint(np.interp(samples, whole[moving], np.arange(moving.sum()))).astype(int)
+    return (velocity[moving] / speed[moving, None])[nearest]

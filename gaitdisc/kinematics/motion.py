@@ -22,9 +22,8 @@ from gaitdisc.kinematics.exchanged_labels import (
     exchanged_pairs,
     without_exchanged,
 )
-from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
-from gaitdisc.kinematics.markers import marker_labels
+from gaitdisc.kinematics.markers import WalkingFrame, check_right_handed, marker_labels, up_axis, walking_frame
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose, clinical_angles, fitted_pose, residual_m
 from gaitdisc.kinematics.segment_poses import (
     PlacedMarkers,
@@ -35,8 +34,8 @@ from gaitdisc.kinematics.segment_poses import (
     placed_markers,
 )
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.arrays import spans_s
 from gaitdisc.recording.body_measures import BodyMeasures
-from gaitdisc.recording.runs import spans_s
 
 ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
 LABELS = {"pelvis": "pelvis"} | {

@@ -1,4 +1,4 @@
-"""The segments of a person through a trial: each over its own markers, or all held together at their joints."""
+"""Segments through a trial, each over its own markers or all held at their joints by one least squares a frame."""
 
 from __future__ import annotations
 
@@ -7,16 +7,269 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.held_joints import carried_over, held_in_gaps, held_together
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose, RigidFit, fitted_pose
 from gaitdisc.recording import Recording
 
+ROUNDS = 60
+FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
+DAMPING = 1e-9  # m2; keeps what no marker determines where it is
+SETTLED = 1e-9  # rad and m; the step after is smaller by far
+STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
+LONGEST_STEP_RAD = 0.5
+
+Points = Mapping[str, NDArray[np.float64]]
+Placed = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+Turns = dict[str, NDArray[np.float64]]
+CARRIED_STEADY_M = 0.06  # a thigh of Plug-in Gait that lost its wand has less, and may be wrong by 30 deg
+FROM_STRAIGHT_DEG = 30.0  # a shank that turns by 300 deg/s one way and back again over 0.2 s
 PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+
+
+def held_together(
+    first: Mapping[str, Pose],
+    placed: Placed,
+    points: Mapping[str, Points],
+    plane: NDArray[np.float64] | None = None,
+    steady_m: float = STEADY_M,
+) -> dict[str, Pose]:
+    """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
+
+    Skin moves over bone: a thigh that is laid over its own markers leaves its hip by centimetres, and its angles are
+    wrong by some degrees. Held together at the joints, each segment is steadied by those beside it, and one that has
+    lost markers is carried by them. Joints turn freely about all three axes; in a plane, all turn about its normal, and
+    the pelvis stays beside it.
+
+    first: each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
+        frames before and after
+    placed each ((marker, 3), (frame, marker, 3)) [m]: segment -> its markers in its own frame, and in the laboratory;
+        NaN where one is missing
+    points each (3,) [m]: segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides
+        of the joint
+    plane (frame, 3, 3): the walker's forward, up and right, as columns, where only the plane of forward and up is
+        wanted
+    steady_m: a segment whose turn has a shorter lever is unknown (`levers_m`) [m]
+    returns: a segment is NaN in frames whose markers do not determine it; all are where no pose is near them
+    Source: Lu & O'Connor 1999, J Biomech 32:129. Differs from the source: all markers weigh the same.
+    """
+    turns, origin = _beginning(first)
+    if plane is not None:
+        turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
+    allowed = _allowed(len(origin), plane)
+    moving: NDArray[np.intp] = np.arange(len(origin))
+    for _ in range(ROUNDS):
+        some = {segment: turn[moving] for segment, turn in turns.items()}
+        there = {segment: (body, seen[moving]) for segment, (body, seen) in placed.items()}
+        gradient, normal = _normal_equations(some, _origins(origin[moving], some, points), there)
+        step = _solved(normal, gradient, allowed[moving])
+        origin[moving] += step[:, :3]
+        for segment in SEGMENTS:
+            for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
+                some[segment] = _turn(step[:, _columns(above)]) @ some[segment]
+            turns[segment][moving] = some[segment]
+        moving = moving[np.abs(step).max(axis=1) > SETTLED]
+        if not len(moving):
+            break
+    origins = _origins(origin, turns, points)
+    _, normal = _normal_equations(turns, origins, placed)
+    far = ~(_apart_m(turns, origins, placed) <= FARTHEST_M)
+    for segment, lever in levers_m(normal, allowed).items():
+        unknown = far | ~(lever >= steady_m)
+        origins[segment][unknown], turns[segment][unknown] = np.nan, np.nan
+    return {segment: Pose(origins[segment], turns[segment]) for segment in SEGMENTS}
+
+
+def _chain(segment: str) -> tuple[str, ...]:
+    """A segment and those that carry it, from the pelvis down."""
+    if segment == "pelvis":
+        return ("pelvis",)
+    part, side = segment.split("_")
+    parts = ("thigh", "shank", "foot")
+    return ("pelvis", *(f"{one}_{side}" for one in parts[: parts.index(part) + 1]))
+
+
+def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
+    """Rotations and the place of the pelvis, where they are unknown between those before and after."""
+    turns: Turns = {}
+    origin = np.empty(0)
+    for segment in SEGMENTS:
+        pose = first[segment]
+        known, frames = np.flatnonzero(pose.known), np.arange(len(pose))
+        if not len(known):
+            turns[segment] = np.tile(np.eye(3), (len(pose), 1, 1))
+        else:
+            turns[segment] = _between(known, pose.rotation[known], np.clip(frames, known[0], known[-1]))
+        if segment == "pelvis" and len(known):
+            origin = np.stack([np.interp(frames, known, pose.origin[known, axis]) for axis in range(3)], axis=1)
+        elif segment == "pelvis":
+            origin = np.zeros((len(pose), 3))
+    return turns, origin
+
+
+def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Points]) -> Turns:
+    """Places of the proximal joints, from the pelvis down."""
+    origins = {"pelvis": np.array(origin)}
+    for segment in SEGMENTS[1:]:
+        above = _chain(segment)[-2]
+        joint = {"thigh": "hip", "shank": "knee", "foot": "ankle"}[segment[:-2]] + segment[-2:]
+        centre = origins[above] + turns[above] @ points[above][joint]
+        origins[segment] = centre - turns[segment] @ points[segment][joint]
+    return origins
+
+
+def _normal_equations(turns: Turns, origins: Turns, placed: Placed) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
+    frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
+    gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
+    for segment, (body, seen) in placed.items():
+        there = np.asarray(np.isfinite(seen).all(axis=2))
+        places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
+        apart = np.where(there[..., None], seen - places, 0.0)
+        columns = np.concatenate([np.arange(3), *(_columns(above) for above in _chain(segment))])
+        slope = np.zeros((frames, len(body), 3, len(columns)))
+        slope[..., :3] = np.eye(3)
+        for place, above in enumerate(_chain(segment)):
+            x, y, z = np.moveaxis(places - origins[above][:, None], 2, 0)
+            first = 3 + 3 * place  # columns of a turn: the axis it is about, crossed with the arm
+            slope[..., 1, first], slope[..., 2, first] = -z, y
+            slope[..., 0, first + 1], slope[..., 2, first + 1] = z, -x
+            slope[..., 0, first + 2], slope[..., 1, first + 2] = -y, x
+        flat = (slope * there[..., None, None]).reshape(frames, -1, len(columns))
+        across = np.swapaxes(flat, 1, 2)
+        gradient[:, columns] += (across @ apart.reshape(frames, -1, 1))[..., 0]
+        normal[:, columns[:, None], columns] += across @ flat
+    return gradient, normal
+
+
+def _columns(segment: str) -> NDArray[np.intp]:
+    """Columns of the turn of a segment's joint."""
+    return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
+
+
+def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The turn about the normal of the plane that is nearest to a turn."""
+    inside = np.swapaxes(plane, 1, 2) @ turn
+    angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
+    return _turn(angle[:, None] * plane[:, :, 2]) @ plane
+
+
+def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
+    width = 3 + 3 * len(SEGMENTS)
+    if plane is None:
+        return np.broadcast_to(np.eye(width), (frames, width, width))
+    columns = np.zeros((frames, width, 2 + len(SEGMENTS)))
+    columns[:, :3, :2] = plane[:, :, :2]
+    for place in range(len(SEGMENTS)):
+        columns[:, 3 + 3 * place : 6 + 3 * place, 2 + place] = plane[:, :, 2]
+    return columns
+
+
+def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64]:
+    """Root mean square distance of all markers from their bodies in each frame."""
+    squares, count = 0.0, 0
+    for segment, (body, seen) in placed.items():
+        places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
+        apart = ((seen - places) ** 2).sum(axis=2)
+        squares, count = squares + np.nansum(apart, axis=1), count + np.isfinite(apart).sum(axis=1)
+    return np.sqrt(squares / np.maximum(count, 1))
+
+
+def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
+    """Error of a marker over that of the turn it makes, by segment (frame,) [m], about the axis of the shortest."""
+    some = _among(normal, allowed)
+    spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
+    levers = {}
+    for segment in SEGMENTS:
+        of_chain = np.concatenate([_columns(above) for above in _chain(segment)])
+        parts = spread[:, of_chain[:, None], of_chain].reshape(len(spread), -1, 3, len(of_chain) // 3, 3)
+        levers[segment] = 1 / np.sqrt(np.linalg.eigvalsh(parts.sum(axis=(1, 3)))[:, -1])
+    return levers
+
+
+def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.swapaxes(allowed, 1, 2) @ normal @ allowed
+
+
+def _solved(
+    normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
+    some = _among(normal, allowed)
+    right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
+    step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]
+    longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
+    return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
+
+
+def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotations about vectors by their length [rad] (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    axis = vectors / np.maximum(angle, 1e-300)[:, None]
+    cross = np.zeros((len(vectors), 3, 3))
+    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -axis[:, 2], axis[:, 1], -axis[:, 0]
+    cross -= np.swapaxes(cross, 1, 2)
+    sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
+
+
+def held_in_gaps(free: Mapping[str, Pose], placed: Placed, points: Mapping[str, Points]) -> dict[str, Pose]:
+    """Poses held together at the joints, in frames in which some segment is unknown and beside them; NaN in all others.
+
+    free: each segment over its own points, NaN where too few; placed, points: as `held_together` takes them
+    """
+    unknown = ~np.logical_and.reduce([free[segment].known for segment in SEGMENTS])
+    beside = np.convolve(unknown, np.ones(3), "same") > 0
+    rows: NDArray[np.intp] = np.flatnonzero(beside)
+    held = {}
+    some = {segment: (body, seen[rows]) for segment, (body, seen) in placed.items()}
+    part = {segment: Pose(pose.origin[rows], pose.rotation[rows]) for segment, pose in free.items()}
+    for segment, pose in held_together(part, some, points, steady_m=CARRIED_STEADY_M).items():
+        origin, rotation = np.full((len(unknown), 3), np.nan), np.full((len(unknown), 3, 3), np.nan)
+        origin[rows], rotation[rows] = pose.origin, pose.rotation
+        held[segment] = Pose(origin, rotation)
+    return held
+
+
+def carried_over(free: Pose, held: Pose) -> Pose:
+    """A segment's pose whose gaps are those of the held body, led over from known to known frame.
+
+    Held together, two markers and a joint determine a pose. It differs from that of the segment's own points: skin
+    moves; the difference at both ends of a gap is led over it, so that no step is made.
+
+    free: laid over its own points; NaN where these are too few
+    held: of the body held together; NaN where it is not determined
+    returns: known frames as they were; NaN where the held body turns by more than 30 deg from the straight way between
+        the ends, as it does in another minimum and in gaps that are too long
+    """
+    ends: NDArray[np.intp] = np.flatnonzero(free.known & held.known)
+    gaps: NDArray[np.intp] = np.flatnonzero(~free.known & held.known)
+    if not len(gaps) or not len(ends):
+        return free
+    turns = free.rotation[ends] @ np.swapaxes(held.rotation[ends], 1, 2)
+    where = np.clip(gaps, ends[0], ends[-1])
+    rotations = _between(ends, turns, where) @ held.rotation[gaps]
+    known: NDArray[np.intp] = np.flatnonzero(free.known)
+    straight = _between(known, free.rotation[known], np.clip(gaps, known[0], known[-1]))
+    near = Rotation.from_matrix(rotations @ np.swapaxes(straight, 1, 2)).magnitude() <= np.radians(FROM_STRAIGHT_DEG)
+    shift = free.origin[ends] - held.origin[ends]
+    moved = np.stack([np.interp(where, ends, shift[:, axis]) for axis in range(3)], axis=1)
+    origin, rotation = np.array(free.origin), np.array(free.rotation)
+    origin[gaps[near]] = (held.origin[gaps] + moved)[near]
+    rotation[gaps[near]] = rotations[near]
+    return Pose(origin, rotation)
+
+
+def _between(known: NDArray[np.intp], rotations: NDArray[np.float64], where: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Rotations at frames between known ones, on the shortest way from one to the next."""
+    if len(known) == 1:
+        return np.tile(rotations, (len(where), 1, 1))
+    return Slerp(known, Rotation.from_matrix(rotations))(where).as_matrix()
 
 
 def named_places(markers: Recording, calibration: Calibration) -> dict[str, NDArray[np.float64]]:
@@ -77,10 +330,7 @@ def joined_poses(
 ) -> dict[str, Pose]:
     """The segments with their joints as the marker set has them: free, held, or in the plane of walking.
 
-    placed each ((marker, 3), (frame, marker, 3)) [m]: as `placed_markers` returns them
-    calibration: of the same person; its marker set says how the joints are
-    walker (frame, 3, 3): the walker's forward, up and right as columns
-    returns: free segments that lost markers are carried by the others where these determine them
+    Free ones that lost markers are carried by others; walker (frame, 3, 3): forward, up and right as columns.
     """
     joints = calibration.marker_set.joints
     if joints != "free":

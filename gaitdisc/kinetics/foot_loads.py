@@ -13,7 +13,7 @@ from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform
 from gaitdisc.kinetics.wrench import Wrench
 from gaitdisc.recording import Trial
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 SWING_AT_MOST_S = 0.7  # between two steps of one foot; a stance between them would not fit
 HOLE_S = 0.06  # between what the file calls foot off and the end of the force

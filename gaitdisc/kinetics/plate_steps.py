@@ -14,8 +14,7 @@ from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform
 from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import read_only
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import read_only, runs
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
 

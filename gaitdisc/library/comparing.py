@@ -1,20 +1,34 @@
-"""Where two walks disagree over the stride."""
+"""Where two walks disagree over the stride; tests as tables, of pairs column by column, of curves over the stride."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.batch.compare_recordings import compare_files
 from gaitdisc.comparison.compare import compare_walks
+from gaitdisc.errors import ShapeError
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.recording.arrays import real_array
 from gaitdisc.recording.recording import several
+from gaitdisc.recording.strides import PERCENT
+from gaitdisc.response.over_participants import compare_columns
 from gaitdisc.results.mismatch import Smallest
+from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
+from gaitdisc.statistics.holm_sidak import check_level
+from gaitdisc.statistics.labels import check_numbers, check_same, in_one_order
 
 if TYPE_CHECKING:
     from gaitdisc.results.mismatch import Mismatch
+
+POINTS = len(PERCENT)  # of a stride; as many rows of another length are a set on its side
+COLUMNS = ("channel", "first_point", "last_point", "sign", "mass", "p")
 
 
 def compare(
@@ -73,3 +87,146 @@ def compare(
         return compare_files(Path(first), Path(second), several(channels), cutoff_hz, detector, smallest)
     walks = walk_pair(trial_of(first), trial_of(second), cutoff_hz, detector)
     return compare_walks(walks[0], walks[1], several(channels), smallest=smallest)
+
+
+def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05) -> pd.DataFrame:
+    """Test each column of the second table against the first, one row a participant in both.
+
+    Wilcoxon's signed-rank test, exact, of the pairs; Holm's step-down with Sidak's levels over the columns.
+
+    Parameters
+    ----------
+    first, second : DataFrame (participant, variable)
+        With the same participants in the index and the same columns, in any order; NaN where a number is missing.
+    alpha : float
+        Chance of one false alarm or more in all columns.
+
+    Returns
+    -------
+    DataFrame
+        One row a variable: n, w, p, medians, Hodges-Lehmann `shift` (second minus first) with its 95 % interval `low`
+        and `high`, `rank_biserial`, `p_adjusted`, `different`, and who was left out. A variable that fewer than six
+        participants have is not tested, and not counted among the tests.
+
+    Raises
+    ------
+    ShapeError
+        If the tables are of other participants or variables, a participant stands twice, or a column holds no numbers.
+
+    References
+    ----------
+    Wilcoxon 1945; Holm 1979; Sidak 1967. Ebers 2023, section 4.2.3.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd, numpy as np, pandas as pd
+    >>> people = [f"P{k:02}" for k in range(1, 9)]
+    >>> before = pd.DataFrame({"knee": np.arange(8.0), "ankle": np.arange(8.0)}, index=people)
+    >>> after = before + np.column_stack([np.arange(1.0, 9.0), [1, -2, 3, -4, 5, -6, 7, -8]])
+    >>> found = gd.paired_tests(before, after).set_index("variable")
+    >>> found["p"].round(3).tolist(), found["different"].tolist()
+    ([0.008, 0.844], [True, False])
+    """
+    for table in (first, second):
+        if not isinstance(table, pd.DataFrame):
+            raise ShapeError(
+                "paired tests take two DataFrames (participant, variable)",
+                f"found {type(table).__name__}",
+                "Take signed_rank for one variable; bring a long table here with table.pivot(...).",
+            )
+        check_numbers(table, "variables")
+    check_same(first.index, second.index, "participants")
+    check_same(first.columns, second.columns, "variables")
+    return compare_columns(first, second.loc[first.index, first.columns], alpha)
+
+
+def permutation_clusters(
+    first: ArrayLike | pd.DataFrame,
+    second: ArrayLike | pd.DataFrame,
+    paired: bool = False,
+    channels: Sequence[str] | str = (),
+    alpha: float = 0.05,
+    permutations: int = 2000,
+    seed: int = 0,
+) -> pd.DataFrame:
+    """Find where two sets of curves differ, all points and channels corrected together.
+
+    Parameters
+    ----------
+    first, second : array_like or DataFrame (unit, phase) or (unit, phase, channel)
+        One row a person, a stride or a block of strides, complete: `strides.normalised(recording)`, or a DataFrame
+        with one column a point of the stride.
+    paired : bool
+        Row k of both belongs to one person (of two DataFrames, rows of one index); else the sets are independent.
+    channels : sequence of str, or str, optional
+        Names of the channels; numbers where they are not given.
+    alpha : float
+        Chance of a false alarm anywhere.
+    permutations : int
+        At most; all there are where there are fewer.
+    seed : int
+        Of the permutations that are drawn.
+
+    Returns
+    -------
+    DataFrame
+        One row a cluster: channel, first_point and last_point (both inside), sign of second minus first (1 where the
+        second set lies above), mass, p; empty where nothing differs. `attrs` holds threshold, permutations and exact.
+
+    Raises
+    ------
+    ShapeError
+        If the curves do not fit together or a value is missing.
+    ComparisonError
+        If there are fewer than six units, or too few permutations for this alpha.
+
+    References
+    ----------
+    Nichols and Holmes 2002; Pataky, Vanrenterghem and Robinson 2015.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> curves = np.random.default_rng(0).normal(0.0, 1.0, (20, 101))
+    >>> moved = curves + 3.0 * ((np.arange(101) >= 40) & (np.arange(101) < 60))
+    >>> noise = np.random.default_rng(1).normal(0.0, 0.5, curves.shape)
+    >>> gd.permutation_clusters(curves, moved + noise, paired=True)[["first_point", "last_point"]].values.tolist()
+    [[40, 59]]
+    """
+    check_level(alpha, "alpha")
+    if paired:
+        first, second = in_one_order(first, second)
+    one, other = _curves(first), _curves(second)
+    names = several(channels) or tuple(range(one.shape[2]))
+    if one.shape[1:] != other.shape[1:] or len(names) != one.shape[2] or (paired and len(one) != len(other)):
+        raise ShapeError(
+            "two sets of curves have the same points and channels" + (", and as many rows in pairs" if paired else ""),
+            f"found {one.shape} and {other.shape}, (unit, phase, channel), with {len(names)} names of channels",
+            "Cut both into strides of 101 points with the same channels.",
+        )
+    plan = PermutationPlan(alpha, permutations, seed)
+    test = one_sample_test(other - one, plan) if paired else two_sample_test(one, other, plan)
+    rows = [(names[each.channel], each.first, each.last, each.sign, each.mass, each.p) for each in test.clusters]
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    table.attrs.update(threshold=test.threshold, permutations=test.permutations, exact=test.exact)
+    return table
+
+
+def _curves(given: Any) -> NDArray[np.float64]:
+    if isinstance(given, pd.DataFrame):
+        check_numbers(given, "points of the stride")
+        if pd.api.types.infer_dtype(given.columns) in ("mixed", "mixed-integer"):  # 0, 1, ..., 100, participant
+            name = next(label for label in given.columns if isinstance(label, str))
+            raise ShapeError(
+                "every column is one of the points of the stride",
+                f"column {name!r} stands beside {len(given.columns) - 1} others",
+                f"Make it the index: table.set_index({name!r}).",
+            )
+    values = real_array(given)
+    if values.ndim not in (2, 3) or (len(values) == POINTS != values.shape[1]):
+        raise ShapeError(
+            "a set of curves has the shape (unit, phase) or (unit, phase, channel): one row a person or stride",
+            f"found {values.shape}",
+            "Turn it round (array.T); of a long table, table.pivot(index=..., columns=..., values=...).",
+        )
+    return values[:, :, None] if values.ndim == 2 else values

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from gaitdisc.ingest.c3d_measures import body_measures_in
+from gaitdisc.ingest.c3d_kinetics import body_measures_in
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.motion import joint_angles, moved_body
 from gaitdisc.kinetics.body_inertia import Person

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from gaitdisc.processing.inspection import Inspection
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.results.mismatch import Mismatch
+    from gaitdisc.results.participant_response import ResponseRun
     from gaitdisc.results.pooled_cycles import PooledCycles
     from gaitdisc.results.reconstruction import Reconstruction
-    from gaitdisc.results.response_run import ResponseRun
     from gaitdisc.results.variants import VariantRun
 
 

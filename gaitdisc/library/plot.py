@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from gaitdisc.library.reconstructor import Reconstructor
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.results.mismatch import Mismatch
+    from gaitdisc.results.participant_response import ResponseRun
     from gaitdisc.results.reconstruction import Reconstruction
-    from gaitdisc.results.response_run import ResponseRun
 
 STRIDE = "stride [%]"
 __all__ = ["curves", "cycles", "discovery", "latent", "mismatch", "r2", "reconstruction", "recording"]
@@ -143,7 +143,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     >>> gd.plot.curves(gd.load("run"), "ankle_angle_r")  # doctest: +SKIP
     """
     from gaitdisc.report.curves import curve_numbers, draw_walks, walks_key
-    from gaitdisc.report.palette import SIDES
+    from gaitdisc.report.panels import SIDES
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers = curve_numbers(run, participant or _first(run.reported))
@@ -268,7 +268,7 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     >>> gd.plot.mismatch(gd.load("compare"), "ankle_angle_r", gap=True)  # doctest: +SKIP
     """
     from gaitdisc.report.mismatch_page import draw_both, draw_gap, mismatch_key, mismatch_numbers
-    from gaitdisc.report.palette import SIDES
+    from gaitdisc.report.panels import SIDES
 
     _refuse_other(found, "Mismatch", "gaitdisc.compare")
     numbers = mismatch_numbers(found, [_known(channel, found.names)])

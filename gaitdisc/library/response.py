@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
-from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.public_words import public_settings
+from gaitdisc.batch.run_study import response_settings
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
 from gaitdisc.library.walks import Walk, trial_of
@@ -15,10 +15,9 @@ from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
 from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted
-from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.participant_response import RESPONSE, ResponseRun
 from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import made_now
-from gaitdisc.results.response_run import ResponseRun
 
 WITHOUT, WITH = "nominal", "exo"
 

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.ingest.study import Study
-from gaitdisc.kinematics.joint_centres import hip_of_spines
-from gaitdisc.kinematics.laboratory import up_axis
 from gaitdisc.kinematics.marker_set import shipped_marker_sets
-from gaitdisc.kinematics.markers import marker_labels, marker_places
+from gaitdisc.kinematics.markers import marker_labels, marker_places, up_axis
+from gaitdisc.kinematics.pose import hip_of_spines
 from gaitdisc.kinetics.newton_euler import GRAVITY, moment_per_foot_kg
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.process import envelope_of, is_raw

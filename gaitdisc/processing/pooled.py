@@ -100,14 +100,6 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     return tuple(found)
 
 
-def _print_of(trial: Trial) -> str:
-    """Hash of what was measured: equal for two files of one recording, whatever their headers and formats."""
-    whole = hashlib.sha256()
-    for key in sorted(trial.streams):
-        whole.update(trial.stream(key).values.tobytes())
-    return whole.hexdigest()
-
-
 def _seen_trials(
     standing: Standing, one: TrialSet, read: Read, shelved: Shelf, prints: dict[str, tuple[str, int]]
 ) -> tuple[list[_Seen], list[Refusal]]:
@@ -118,7 +110,10 @@ def _seen_trials(
         where = name.removeprefix(participant.id).strip()
         try:
             trial = read(planned)
-            twin = prints.setdefault(_print_of(trial), (name, number))
+            whole = hashlib.sha256()  # equal for two files of one recording, whatever their headers and formats
+            for key in sorted(trial.streams):
+                whole.update(trial.stream(key).values.tobytes())
+            twin = prints.setdefault(whole.hexdigest(), (name, number))
             if twin != (name, number):
                 needed = "a recording counts once, for one session and condition"
                 raise StrideError(needed, f"the samples are those of {twin[0]}", "Take one of the two out.")

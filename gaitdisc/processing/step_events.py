@@ -66,11 +66,7 @@ class StepEvents:
         return found[np.abs(found) <= MOST_OFFSET_S]
 
     def corrected(self, kind: str, offset_s: float) -> dict[str, tuple[tuple[float, str], ...]]:
-        """Events moved by an offset, each replaced by the ground's own where that saw it.
-
-        offset_s: added to what markers or angles say [s]
-        returns dict of str to tuple of (float, str): side -> time and what placed it, in order of time
-        """
+        """Events moved later by `offset_s` [s] or replaced by the ground's own: side -> (time, what placed it)."""
         own, ground = self._of(kind)
         by = self.detector if kind == "contacts" else self.off_detector
         found = {}

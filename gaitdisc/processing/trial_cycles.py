@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Filters
-from gaitdisc.kinematics.laboratory import PATH_S, STRAIGHT_DEG
+from gaitdisc.kinematics.markers import PATH_S, STRAIGHT_DEG
 from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.butterworth import lowpassed

@@ -17,9 +17,9 @@ from scipy.stats import median_abs_deviation, rankdata
 
 from gaitdisc.channel import list_names
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.kinematics.joint_centres import hip_of_spines
 from gaitdisc.kinematics.marker_set import NEEDED, shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
+from gaitdisc.kinematics.pose import hip_of_spines
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.strides import interpolated
 

@@ -37,12 +37,7 @@ def walk_summary(
     follow: str,
     findings: Sequence[Finding],
 ) -> WalkSummary:
-    """What is kept of a walk.
-
-    Channels of the other side are cut by the strides of their own foot, so that left and right read alike.
-
-    states: filtered, each at its own rate; where there is none, length and rate are those of the trial's first stream
-    """
+    """What is kept of a walk; channels of the other side are cut by the strides of their own foot, as the first are."""
     lead = [*states, *trial.streams.values()][0]
     return WalkSummary(
         trial.subject,

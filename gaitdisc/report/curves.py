@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import side_of
 from gaitdisc.recording import Recording
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import RECONSTRUCTED, SIDES, WITHOUT_DEVICE
-from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import RECONSTRUCTED, SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
 from gaitdisc.results.pooled_cycles import WALK, WalkSummary, mean_curve
 from gaitdisc.results.study_run import StudyRun
 from gaitdisc.words import counted, label, sideless, unit_text, upwards

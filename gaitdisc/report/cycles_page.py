@@ -23,8 +23,7 @@ from gaitdisc.report.cycles_tables import (
 )
 from gaitdisc.report.figure import Figure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
-from gaitdisc.report.palette import SIDES
-from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.results.leg_curves import FEET
 from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles

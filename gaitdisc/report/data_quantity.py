@@ -8,13 +8,11 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import MODELS
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.r2 import LOWEST, held_out_text, models_key
 from gaitdisc.report.table import Table
 from gaitdisc.results.over_participants import WHOLE
-from gaitdisc.results.participant_response import DataQuantity
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.participant_response import DataQuantity, ResponseRun
 from gaitdisc.words import counted, label, number
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import MEASURED, MODELS
-from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels, panels_for
+from gaitdisc.report.panels import MEASURED, MODELS, Room, in_style, legend, lines_of, panels, panels_for
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.effect_words import shown_unit
 

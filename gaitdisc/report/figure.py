@@ -53,7 +53,11 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     figure: what to save; its drawing is closed for further use
     inline_bytes: largest SVG that is shown in the page; beyond it the smaller of SVG and PNG is
     """
-    _place_no_empty_labels(figure.drawn)
+    # each axis measures its ticks to place its label, even one without words
+    for axes in figure.drawn.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if not axis.get_label_text():
+                axis.set_label_coords(0.5, 0.0)
     svg, png = _svg(figure.drawn), _png(figure.drawn)
     for ending, content in (("svg", svg), ("png", png)):
         with whole_file(folder / f"{figure.name}.{ending}") as part:
@@ -89,14 +93,6 @@ def file_names(participants: Sequence[str]) -> dict[str, str]:
             name = f"{plain}-{count}"
         names[participant] = name
     return names
-
-
-def _place_no_empty_labels(drawn: matplotlib.figure.Figure) -> None:
-    # each axis measures its ticks to place its label, even one without words
-    for axes in drawn.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            if not axis.get_label_text():
-                axis.set_label_coords(0.5, 0.0)
 
 
 @in_style

@@ -12,8 +12,7 @@ from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
 from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import MEASURED, MODELS, SIDES
-from gaitdisc.report.panels import Room, in_style, legend, panels, panels_for, sheets
+from gaitdisc.report.panels import MEASURED, MODELS, SIDES, Room, in_style, legend, panels, panels_for, sheets
 from gaitdisc.report.r2 import r2_by_variable
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, StrideMean, mean_over_strides

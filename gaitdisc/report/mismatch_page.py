@@ -15,8 +15,7 @@ from gaitdisc.report.curves import sides_together
 from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences, smallest_p_sentence
 from gaitdisc.report.page import write_page
-from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
-from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables, seen_table
 from gaitdisc.results.mismatch import Mismatch
 from gaitdisc.words import NONE, amount, counted, label, p_cell, plain, spoken, unit_text, upwards, with_unit

@@ -11,11 +11,10 @@ import pandas as pd
 from gaitdisc.report.data_quantity import length_sentences, length_table, quantity_figure, quantity_sentences
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
-from gaitdisc.report.palette import MODELS
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.r2 import held_out_text, models_key
 from gaitdisc.report.table import Table
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
 
 if TYPE_CHECKING:

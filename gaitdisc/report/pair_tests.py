@@ -10,12 +10,11 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import MODELS
-from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
+from gaitdisc.report.panels import MODELS, Room, draw_box, in_style, legend, panels, sheets
 from gaitdisc.report.r2 import held_out_text, lowest_drawn, models_key, r2_numbers, variables
 from gaitdisc.report.table import Table
 from gaitdisc.results.over_participants import FAMILIES, PAIRS, PairTests
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
 
 if TYPE_CHECKING:

@@ -10,11 +10,9 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import MODELS, NULL
-from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
+from gaitdisc.report.panels import MODELS, NULL, Room, draw_box, in_style, legend, panels, sheets
 from gaitdisc.report.table import Table
-from gaitdisc.results.participant_response import ParticipantResponse
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.participant_response import ParticipantResponse, ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, number, unit_text
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure, file_names, save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
-from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels_for, sheets
+from gaitdisc.report.panels import MEASURED, RECONSTRUCTED, Room, in_style, legend, lines_of, panels_for, sheets
 from gaitdisc.report.table import Table, left_out_table, provenance_tables, save_tables, seen_table
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, WORTH, Reconstruction, enough_sensors
 from gaitdisc.words import counted, label, listed, number, plain, unit_text

@@ -25,9 +25,8 @@ from gaitdisc.report.table import (
     save_tables,
 )
 from gaitdisc.report.walks import dropped_table, fits_table, strides_figure, walks_table
-from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.participant_response import RESPONSE, ResponseRun
 from gaitdisc.results.pooled_cycles import WALK
-from gaitdisc.results.response_run import ResponseRun
 
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded

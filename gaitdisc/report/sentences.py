@@ -15,8 +15,7 @@ from gaitdisc.report.r2 import (
     r2_by_variable,
     sample_counts,
 )
-from gaitdisc.results.participant_response import ParticipantResponse
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.participant_response import ParticipantResponse, ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number, plain
 
 if TYPE_CHECKING:
@@ -68,7 +67,17 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     """What one participant shows: what the models explain, whether the device model helps, ridge, and the null."""
     table = r2_by_variable(response)
     middle = medians(table)
-    sentences = [_headline(response, table, middle)]
+    computed = int(table[_ON_EXO["nominal"]].notna().sum())
+    whole = len(table)
+    over = f"{whole} variables" if computed == whole else f"{computed} of {whole} variables, the others not computed"
+    if whole == 1:
+        over = "the only variable"
+    nominal, augmented, exo = (middle[column] for column in _ON_EXO.values())
+    sentences = [
+        f"In {response.participant}, the Nominal model {_explains(nominal)} of the device walk's variance "
+        f"(R², median over {over}, held-out last {response.held_out_s:.4g} s, n = {sample_counts(response)} samples), "
+        f"the Augmented model {number(augmented)}, the Exo model {number(exo)}."
+    ]
     if np.isfinite(middle["nominal_on_nominal"]):
         sentences.append(
             f"On held-out walking without the device, for which it was trained, the Nominal model "
@@ -79,20 +88,6 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
         if sentence:
             sentences.append(sentence)
     return sentences
-
-
-def _headline(response: ParticipantResponse, table: pd.DataFrame, middle: pd.Series) -> str:
-    computed = int(table[_ON_EXO["nominal"]].notna().sum())
-    whole = len(table)
-    over = f"{whole} variables" if computed == whole else f"{computed} of {whole} variables, the others not computed"
-    if whole == 1:
-        over = "the only variable"
-    nominal, augmented, exo = (middle[column] for column in _ON_EXO.values())
-    return (
-        f"In {response.participant}, the Nominal model {_explains(nominal)} of the device walk's variance "
-        f"(R², median over {over}, held-out last {response.held_out_s:.4g} s, n = {sample_counts(response)} samples), "
-        f"the Augmented model {number(augmented)}, the Exo model {number(exo)}."
-    )
 
 
 def _explains(r2: float) -> str:

@@ -9,8 +9,7 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.palette import MODELS
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.table import Table, save_table, save_tables
 from gaitdisc.results.variants import VariantRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number

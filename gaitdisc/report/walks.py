@@ -11,10 +11,9 @@ import pandas as pd
 
 from gaitdisc.report.curves import WALKS, walk_of
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import DROPPED, KEPT, SIDES
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import DROPPED, KEPT, SIDES, Room, in_style, legend, panels
 from gaitdisc.report.table import Table
-from gaitdisc.results.response_run import ResponseRun
+from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.words import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Which inputs carry the response: the models fitted without one family of inputs at a time (section 6.2.2)."""
+"""Which inputs carry the response (section 6.2.2), other settings, and how much data is enough (section 4.2.4)."""
 
 from __future__ import annotations
 
@@ -10,18 +10,29 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import side_of
+from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples, Trajectory
-from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns
-from gaitdisc.response.fit_response import ResponseSettings, held_out_part, held_out_samples
-from gaitdisc.response.models import fit_linear, fit_network
+from gaitdisc.response.fit_response import (
+    ResponseSettings,
+    fit_linear,
+    fit_network,
+    fit_response,
+    held_out_part,
+    held_out_samples,
+    report_share,
+)
+from gaitdisc.response.over_participants import ALPHA, FEWEST, compare_columns
 from gaitdisc.response.samples import PHASE, gait_samples
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
 from gaitdisc.statistics.r2 import r2
 
 ALL = "all inputs"
 MODELS = ("augmented", "exo")
 Fitted = Callable[[Samples], Model]
+LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
+PARTS = ("first", "last")
 
 
 def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
@@ -99,12 +110,9 @@ def fit_without(
 
 
 def compare_modalities(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
-    """Test R2 without a family of inputs against R2 with all, over participants.
+    """Test R2 without a family of inputs against R2 with all, over six participants or more.
 
-    people: of the question `modalities`; fewer than six are not tested
-    alpha: of each family of tests: the variables of one model and one family of inputs
-    returns: columns `VARIANT_TEST_COLUMNS`; first is `all inputs`, second `without`, so that a negative shift is a
-        fall
+    alpha is of a family of tests, one model's and family's variables; a negative shift (second `without`) is a fall.
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
@@ -163,14 +171,11 @@ def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[
 
 
 def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
-    """Test Nominal against Augmented under every setting, over participants.
+    """Test Nominal against Augmented under every setting, over six participants or more.
 
-    R2 under two settings are not of the same thing, for the filter makes what is to be predicted as well; the order of
-    the models under each setting can be compared, and how far each lies above the null of its filters.
-
-    people: of the question `sensitivity`; fewer than six are not tested
+    R2 under two settings are not of the same thing, for the filter makes what is predicted, too: the order of the
+    models under each can be compared, and how far each lies above the null of its filters.
     alpha: of each family of tests: the variables under one setting
-    returns: columns `VARIANT_TEST_COLUMNS`; model and second are `augmented`, first `nominal`
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
@@ -182,3 +187,69 @@ def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.Dat
         found = compare_columns(nominal, augmented, alpha)
         parts.append(found.assign(variant=variant, model="augmented", first="nominal", second="augmented"))
     return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
+
+
+def fit_data_quantity(
+    nominal: Trajectory,
+    exo: Trajectory,
+    settings: ResponseSettings,
+    lengths_s: Sequence[float] = LENGTHS_S,
+    part: str = "first",
+    progress: Callable[[float], None] | None = None,
+    whole: ParticipantResponse | None = None,
+) -> DataQuantity:
+    """Fit Nominal, Exo and Discrepancy to parts of the training part, and to all of it, and score each alike.
+
+    lengths_s: lengths of the training part [s]; its whole length is always added
+    part: `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to
+        what is held out. The text does not say which; the two differ where gait drifts
+    whole: what the whole training part gave, fitted to the same walks with the same settings; it is then not fitted
+        again
+    Source: Ebers 2023, section 4.2.4 and Fig. 4.4.
+    """
+    if part not in PARTS:
+        raise SamplingError("the training part is taken from its first or last seconds", f"found {part!r}", "Name one.")
+    progress = progress or (lambda _: None)
+    training = {"nominal": held_out_part(nominal, settings)[0], "exo": held_out_part(exo, settings)[0]}
+    whole_s = min(len(walk.time) / walk.rate_hz for walk in training.values())
+    wanted = sorted({length for length in lengths_s if length < whole_s})
+    left_away = {
+        length: f"the training part has {whole_s:.1f} s" for length in sorted(set(lengths_s)) if length >= whole_s
+    }
+    tables = []
+    for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
+        less_nominal, less_exo = (shortened(walk, settings, length, part) for walk in (nominal, exo))
+        report = partial(report_share, progress, number, len(wanted) + 1)
+        try:
+            response = fit_response(less_nominal, less_exo, settings, progress=report)
+        except TrainingError as error:
+            left_away[length] = str(error)
+            continue
+        tables.append(_with_length(response, length))
+    if whole:
+        tables.append(_with_length(whole, whole_s))
+    progress(1.0)
+    columns = pd.Index(QUANTITY_COLUMNS)
+    table = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=columns)
+    return DataQuantity(exo.subject or nominal.subject, part, table, left_away)
+
+
+def _with_length(response: ParticipantResponse, length_s: float) -> pd.DataFrame:
+    fits, r2 = response.fits, response.r2
+    used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
+    return r2[r2["kind"] != "null"].assign(length_s=length_s, n_training=used)  # the filters' null has no length
+
+
+def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
+    """Walk whose training part keeps `length_s` [s] usable; the held-out part is untouched."""
+    training, _ = held_out_part(walk, settings)
+    count, keep = len(training.time), round(length_s * walk.rate_hz)
+    good = np.flatnonzero(np.isfinite(training.phi) & training.usable.all(axis=1))
+    if not len(good):
+        return walk
+    usable = walk.usable.copy()
+    if part == "first":  # counted from the first sample that can be used: a filter's edge teaches nothing
+        usable[good[0] + keep : count] = False
+    else:
+        usable[: max(0, good[-1] + 1 - keep)] = False
+    return replace(walk, usable=usable)

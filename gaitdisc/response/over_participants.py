@@ -1,37 +1,45 @@
-"""All that the participants of a study say together, beside the pairs of models."""
+"""What the participants say together: which model explains more (section 4.2.3), and all beside these pairs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns, r2_by_participant, too_few
 from gaitdisc.results.over_participants import (
     BASELINE_COLUMNS,
+    FAMILIES,
+    FAMILY_COLUMNS,
     LENGTH_COLUMNS,
+    PAIRS,
     REDUCTION_COLUMNS,
     REDUCTION_TEST_COLUMNS,
     RESPONDER_COLUMNS,
+    TEST_COLUMNS,
     WHOLE,
     OverParticipants,
+    PairTests,
     no_rows,
 )
 from gaitdisc.results.participant_response import BASELINES, MODELS, DataQuantity, ParticipantResponse
 from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
 from gaitdisc.statistics.groups import Groups, find_groups
+from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by
+from gaitdisc.statistics.signed_rank import signed_rank, smallest_p
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_strides
+
+FEWEST = 6  # the fewest of whom a two-sided exact test can be below 0.05
+ALPHA = 0.05
+LEVEL = 0.95
 
 
 def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = ALPHA) -> pd.DataFrame:
-    """Compare the networks' R2 on held-out device walking with that of ridge regressions and of the filters' null.
+    """Compare the networks' R2 on held-out device walking with ridge regressions' and the null's (`BASELINE_COLUMNS`).
 
-    alpha: of each family: the variables of one model and baseline
-    returns: columns `BASELINE_COLUMNS`: first is the baseline, second `network`; empty for fewer than six
-        participants. A network that is shown to be no better than its baseline in a variable earns nothing there
+    alpha is of one model's and baseline's variables; a network shown to be no better there earns nothing.
     """
     if len(responses) < FEWEST:
         return no_rows("baselines")
@@ -48,11 +56,8 @@ def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = A
 def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
     """Compare, at every training length, Augmented with Exo, and Exo with the Exo of the whole training part.
 
-    alpha: of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
-        would hold 72 tests or more and at most 52 can
-    returns: columns `LENGTH_COLUMNS`, one row a length, comparison and variable; empty for fewer than six
-        participants. second is `exo` or `exo, whole training part`. A participant without a length is left out of it
-        by name
+    alpha: of the variables at one length: a family of all would hold 72 tests or more, and at n = 11 at most 52
+        can show something. Who lacks a length is left out of it by name; empty for fewer than six
     Source: Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
     """
     if len(quantities) < FEWEST:
@@ -212,3 +217,122 @@ def compare_participants(
         lengths_said=why_no_lengths(quantities) if quantities else "",
         responders_said=said,
     )
+
+
+def compare_models(responses: Sequence[ParticipantResponse]) -> PairTests:
+    """Compare Nominal, Augmented and Exo by their R2 on held-out device walking, in pairs, and Exo with R2 = 1.
+
+    responses: the participants; fewer than six are not tested, and the result says why
+    Source: Ebers 2023, section 4.2.3: Wilcoxon signed-rank tests, Holm-Sidak step-down corrections, alpha = 0.05. The
+        family is not said; all variables of a pair is the reading that gives the printed 0.013 and 0.042. Beside the
+        source: other families, effect sizes, intervals. That Exo is below R2 = 1 no measurement can contradict, for R2
+        is never above 1: its p is the smallest that n allows, and only the shift is of interest.
+    """
+    models = {model: r2_by_participant(responses, model) for model in ("nominal", "augmented", "exo")}
+    models["perfect"] = models["exo"].where(models["exo"].isna(), 1.0)
+    if len(responses) < FEWEST:
+        empty = pd.DataFrame(columns=pd.Index(TEST_COLUMNS)), pd.DataFrame(columns=pd.Index(FAMILY_COLUMNS))
+        return PairTests(len(responses), ALPHA, LEVEL, too_few(len(responses)), *empty)
+    tests = pd.concat(
+        [compare_columns(models[a], models[b]).assign(first=a, second=b) for a, b in PAIRS], ignore_index=True
+    )
+    return PairTests(len(responses), ALPHA, LEVEL, "", tests[list(TEST_COLUMNS)], by_family(tests))
+
+
+def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
+    """Test second against first in every column, participants paired, corrected over the columns.
+
+    first, second DataFrame (participant, variable): with the same participants and variables; NaN where a number was
+        not computed
+    returns: one row a variable, the columns of `PairTests.tests` but first and second. A variable that fewer than six
+        participants have is in the table, but not tested and not of the family
+    """
+    table = pd.DataFrame([_row(variable, first[variable], second[variable]) for variable in first.columns])
+    tested = table["p"].notna().to_numpy()
+    table["tests"] = int(tested.sum())
+    table["step_level"], table["p_adjusted"], table["different"] = np.nan, np.nan, False
+    if tested.any():
+        found = holm_sidak(table.loc[tested, "p"].to_numpy(), alpha)
+        table.loc[tested, "step_level"] = found.level
+        table.loc[tested, "p_adjusted"] = found.adjusted
+        table.loc[tested, "different"] = found.rejected
+    return table
+
+
+def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
+    """Tests (first, second, variable, p) of three pairs corrected under every family meant: `FAMILY_COLUMNS`."""
+    chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
+    families = {
+        "pair": (chosen["first"] + " " + chosen["second"]).tolist(),
+        "all": ["all"] * len(chosen),
+        "variable": chosen["variable"].tolist(),
+    }
+    parts = []
+    for name in FAMILIES:
+        for family, found in holm_sidak_by(chosen["p"].to_numpy(), families[name], alpha).items():
+            rows = chosen.loc[np.array(families[name]) == family, ["first", "second", "variable"]]
+            parts.append(
+                rows.assign(
+                    family=name,
+                    tests=len(rows),
+                    critical=found.critical,
+                    step_level=found.level,
+                    p_adjusted=found.adjusted,
+                    different=found.rejected,
+                )
+            )
+    if not parts:
+        return pd.DataFrame(columns=pd.Index(FAMILY_COLUMNS))
+    return pd.concat(parts, ignore_index=True)[list(FAMILY_COLUMNS)]
+
+
+def r2_by_participant(responses: Sequence[ParticipantResponse], model: str, kind: str = "network") -> pd.DataFrame:
+    """R2 on held-out device walking, (participant, variable); NaN where it was not computed."""
+    variables = dict.fromkeys(name for response in responses for name in response.outputs)
+    rows = {r.participant: {v: r.r2_of(v, model, kind) for v in r.outputs} for r in responses}
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(variables), dtype=float)
+
+
+def too_few(participants: int) -> str:
+    """Why so few participants are not tested.
+
+    >>> too_few(5)
+    '5 participants are too few for a test: the smallest p is 0.0625, not below 0.05 even if all of them agree'
+    """
+    if participants < 2:
+        return "One participant carries no test" if participants else "No participant, no test"
+    return (
+        f"{participants} participants are too few for a test: the smallest p is {smallest_p(participants):g}, "
+        f"not below {ALPHA:g} even if all of them agree"
+    )
+
+
+def _row(variable: str, first: pd.Series, second: pd.Series) -> Mapping[str, object]:
+    absent = [i for i, (a, b) in enumerate(zip(first, second, strict=True)) if not np.isfinite(a) or not np.isfinite(b)]
+    names = [str(first.index[i]) for i in absent]
+    left_out = f"not computed: {', '.join(names)}" if names else ""
+    row: dict[str, object] = {"variable": variable, "left_out": left_out}
+    if len(first) - len(absent) < FEWEST:
+        nothing = dict.fromkeys(
+            (
+                "w", "p", "median_first", "median_second", "median_difference", "shift", "low", "high", "rank_biserial",
+            ),
+            np.nan,
+        )  # fmt: skip
+        return row | {"n": len(first) - len(absent), "zeros": 0, "ties": False} | nothing
+    found = signed_rank(first.to_numpy(), second.to_numpy(), dict(zip(absent, names, strict=True)), LEVEL)
+    there = np.setdiff1d(np.arange(len(first)), absent)
+    return row | {
+        "n": found.n,
+        "zeros": found.zeros,
+        "ties": found.ties,
+        "w": found.w,
+        "p": found.p,
+        "median_first": float(first.iloc[there].median()),
+        "median_second": float(second.iloc[there].median()),
+        "median_difference": found.median,
+        "shift": found.shift,
+        "low": found.low,
+        "high": found.high,
+        "rank_biserial": found.rank_biserial,
+    }

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 KINDS = {  # the JSON file of each result that stands alone, and its kind
-    "run.json": "gaitdisc.results.response_run:RUN",
+    "run.json": "gaitdisc.results.participant_response:RUN",
     "discovery.json": "gaitdisc.results.discovery_folder:DISCOVERY",
     "reconstruction.json": "gaitdisc.results.reconstruction:RECONSTRUCTION",
     "mismatch.json": "gaitdisc.results.mismatch:MISMATCH",

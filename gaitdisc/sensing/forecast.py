@@ -47,12 +47,9 @@ class PhaseAverage:
     stride_s: float  # mean duration of a stride [s]
 
     def forecast(self, trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
-        """States (window, state) at the phase that is expected; NaN before the first contact.
+        """States (window, state) `ahead_s` [s] after the last reading, at the expected phase; NaN before a contact.
 
-        The phase is the time since the last contact that had happened when the forecast was made, by the mean duration
-        of a stride: percent stride itself is known only when the stride is over.
-
-        ahead_s: from the last reading to the state that is forecast [s]
+        Phase is the time since the last known contact by the mean duration of a stride: percent stride is known later.
         """
         found = []
         for trial in trials:

@@ -1,25 +1,28 @@
-"""A fitted reconstructor on disk: what it reads and reconstructs, in which units, at which rate; and its weights."""
+"""A fitted reconstructor on disk: what it reads and gives, its weights; and states live, reading after reading."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import SamplingError, SchemaError, UnitError
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import real_array
 from gaitdisc.results.on_disk import DamagedError
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
-from gaitdisc.sensing.missing import filled
+from gaitdisc.sensing.missing import filled, refuse_unknown_way
 from gaitdisc.sensing.reconstructor import (
     ENSEMBLE,
     KINDS,
     MASKED,
     MEMBERS,
+    OF_TEXT,
     ON_REQUEST,
     STATIC,
     Reconstructor,
@@ -29,6 +32,9 @@ from gaitdisc.sensing.reconstructor import (
 )
 from gaitdisc.sensing.windows import Lags, windows_of
 from gaitdisc.whole_file import write_whole, written_so_far, written_together
+
+if TYPE_CHECKING:
+    from gaitdisc.networks.carried_windows import CarriedWindows
 
 NAME, WEIGHTS = "model.json", "weights.npz"
 FORMAT = 1
@@ -134,15 +140,6 @@ def load_model(folder: Path) -> SensingModel:
             "Run `gaitdisc reconstruct` again.",
         ) from error
     weights = _weights(kind, what, folder)
-    _refuse_others(weights, kind, what, folder)
-    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
-
-
-def _said(error: Exception) -> str:
-    return error.found if isinstance(error, DamagedError) else str(error)
-
-
-def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path) -> None:
     readings = 1 if kind in STATIC else what.lags.count
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
         raise SchemaError(
@@ -151,6 +148,11 @@ def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path)
             f"the model has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files belong to one model: copy them together, or run `gaitdisc reconstruct` again.",
         )
+    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
+
+
+def _said(error: Exception) -> str:
+    return error.found if isinstance(error, DamagedError) else str(error)
 
 
 def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
@@ -165,3 +167,80 @@ def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
         paths = [member_path(folder / WEIGHTS, number) for number in range(1, MEMBERS + 1)]
         return Ensemble(tuple(load_network(path, build) for path in paths))
     return load_network(folder / WEIGHTS, build)
+
+
+class Stream:
+    """Reconstructs the states at each new reading, with the same numbers as over a recording.
+
+    A recurrent network carries the windows under way along (`gaitdisc.networks.carried_windows`), others keep readings.
+    missing: a word of `gaitdisc.sensing.missing.WAYS` for a missing reading, unless the model is a masked one
+    """
+
+    def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
+        refuse_unknown_way(missing)
+        self._sensors = reconstructor.sensing.sensors
+        self._model = _stepwise(reconstructor)
+        self._missing = missing
+        self._stands = reconstructor.sensor_means
+
+    def update(self, reading: ArrayLike) -> NDArray[np.float64]:
+        """States at the time of a new reading, (state,) [each state's unit].
+
+        NaN until the history is full, and while it holds a missing reading that the model needs: unless the stream was
+        given what to put in its place, a value that was never measured is not made up.
+
+        reading array_like (sensor,) [each sensor's unit]: in the order of the sensors; NaN where a sensor dropped out.
+            One call a sample, at the model's rate
+        """
+        new = real_array(reading)
+        if new.shape != (len(self._sensors),):
+            raise ShapeError(
+                f"a reading needs one value for each of {', '.join(self._sensors)}",
+                f"found an array of shape {new.shape}",
+                "Give them in this order, NaN where a sensor dropped out.",
+            )
+        if self._missing != "none":
+            new = np.where(np.isfinite(new), new, self._stands)
+        if self._missing == "last":
+            self._stands = new
+        return self._model.update(new)
+
+
+class _LastReadings:
+    """The last readings, and what a model reconstructs from them."""
+
+    def __init__(self, reconstructor: Reconstructor) -> None:
+        what = reconstructor.sensing
+        lags = what.lags.static() if reconstructor.kind in STATIC else what.lags
+        self._model = reconstructor.model
+        self._readings = np.full((lags.reach + 1, len(what.sensors)), np.nan)
+        self._rows = np.arange(lags.count) * lags.spacing
+
+    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
+        self._readings[:-1] = self._readings[1:]
+        self._readings[-1] = reading
+        return self._model(self._readings[self._rows].reshape(1, -1))[0]
+
+
+class _Mean:
+    """Mean of what several carried networks reconstruct."""
+
+    def __init__(self, members: Sequence[CarriedWindows]) -> None:
+        self._members = members
+
+    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.mean([member.update(reading) for member in self._members], axis=0)
+
+
+def _stepwise(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWindows:
+    if reconstructor.kind not in ("shred", MASKED, ENSEMBLE, OF_TEXT):
+        return _LastReadings(reconstructor)
+    from gaitdisc.networks.carried_windows import CarriedWindows
+    from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
+
+    lags, model = reconstructor.sensing.lags, reconstructor.model
+    if isinstance(model, Ensemble):
+        return _Mean([CarriedWindows(member, lags.count, lags.spacing) for member in model.members])
+    if isinstance(model, TrainedNetwork):
+        return CarriedWindows(model, lags.count, lags.spacing)
+    return _LastReadings(reconstructor)  # corrected for a person by what the windows hold

@@ -90,13 +90,10 @@ def angle_columns(channels: Sequence[Channel]) -> list[int]:
 
 
 def angles_error(tested: Reconstructed, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
-    """One number for all angles that no sensor measures, by each of the three names.
+    """One number for all angles that no sensor (window, sensor) [deg] measures, by each of the three names.
 
-    sensors (window, sensor) [deg]: readings of those sensors that are angles: they belong to the state, and their
-        error is none
-    returns: `rmse_deg` (root of the mean square over windows and angles), `relative_l2`, `r2` (median of the angles),
-        and `relative_l2_whole`, in which the sensors count as states without error, as in Table 5.2. NaN without
-        angles
+    returns: `rmse_deg` over windows and angles, `relative_l2`, `r2` (median of angles), `relative_l2_whole` with the
+        sensors as states without error, as in Table 5.2. NaN without angles
     """
     angles = angle_columns(channels)
     if not angles:

@@ -17,7 +17,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import runs, spans_s
+from gaitdisc.recording.arrays import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 from gaitdisc.signals.gaps import MAX_SPLINE_S, filled
 

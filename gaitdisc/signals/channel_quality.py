@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import runs, spans_s
+from gaitdisc.recording.arrays import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.runs import spans_s
+from gaitdisc.recording.arrays import spans_s
 from gaitdisc.signals.butterworth import highpassed, lowpassed
 
 HIGHPASS_HZ = 40.0

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.runs import runs, spans_s
+from gaitdisc.recording.arrays import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 MAX_SPLINE_S = 0.1

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 ORDER, OTHER = 2, 4  # of one pass: the filter that is sought, and a steeper one
 WINDOW = 512  # samples

@@ -7,7 +7,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import runs, spans_s
+from gaitdisc.recording.arrays import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 
 HALF_S = 0.03  # of the window of the running median: spikes of up to three samples at 100 Hz

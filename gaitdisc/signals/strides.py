@@ -6,7 +6,7 @@ import numpy as np
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import filled
 

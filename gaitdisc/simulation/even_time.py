@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.recording import Finding
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 SHORTEST = 20  # samples of a trial
 JITTER = 0.1  # of a step: how far a sample may lie from its place on the even time base

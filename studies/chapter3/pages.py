@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block, write_blocks, write_markdown
-from gaitdisc.report.palette import Look
-from gaitdisc.report.panels import Room, decades, in_style, legend, lines_of, panels
+from gaitdisc.report.panels import Look, Room, decades, in_style, legend, lines_of, panels
 from gaitdisc.report.table import Table, save_table, words_table
 from gaitdisc.words import unit_text
 

@@ -20,7 +20,7 @@ from torch import nn
 
 import gaitdisc as gd
 from gaitdisc.batch.demonstration import MUSCLES, OUTPUTS
-from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.run_study import response_settings
 from gaitdisc.cohort.cohort import walks_of
 from gaitdisc.cohort.person import drawn
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study
@@ -29,8 +29,19 @@ from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.process import processed
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.response.fit_response import Refit, ResponseSettings, covered, fit_response, held_out_part, response_bands
-from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network, refitted_network
+from gaitdisc.response.fit_response import (
+    Refit,
+    ResponseModels,
+    ResponseSettings,
+    covered,
+    fit_linear,
+    fit_models,
+    fit_network,
+    fit_response,
+    held_out_part,
+    refitted_network,
+    response_bands,
+)
 from gaitdisc.response.samples import gait_samples
 
 SETTINGS = ResponseSettings(ANGLES)

@@ -21,8 +21,7 @@ from gaitdisc.channel import vocabulary
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import RECONSTRUCTED
-from gaitdisc.report.panels import Room, decades, draw_box, in_style, legend, panels
+from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_style, legend, panels
 from gaitdisc.report.reconstruction_page import NOT_MSE, write_reconstruction_report
 from gaitdisc.report.table import Table
 from gaitdisc.results.reconstruction import mean_over_people

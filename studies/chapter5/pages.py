@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording import Field
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.palette import RECONSTRUCTED, Look
-from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
+from gaitdisc.report.panels import RECONSTRUCTED, Look, Room, in_style, legend, lines_of, panels
 from gaitdisc.report.table import Table
 from gaitdisc.words import number
 

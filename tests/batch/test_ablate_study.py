@@ -1,12 +1,10 @@
 import pytest
 from texts import says
 
-from gaitdisc.batch.participant_unit import response_key, unit_keys
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.run_study import response_key, run_study, unit_keys
 from gaitdisc.batch.vary_study import ablate_study, computed_quantity
-from gaitdisc.results.participant_response import QUANTITY, DataQuantity
+from gaitdisc.results.participant_response import QUANTITY, DataQuantity, load_run
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.response_run import load_run
 
 
 @pytest.mark.slow

@@ -6,12 +6,11 @@ import pytest
 from driven_walker import DrivenWalker
 from texts import says
 
-from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
-from gaitdisc.batch.participant_unit import computed_unit
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.processed_walks import computed_cycles, cycles_key
+from gaitdisc.batch.run_study import computed_unit, run_study
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Kinematics, Models, Participant, PlannedTrial, StrideRules, Study
-from gaitdisc.results.response_run import load_run
+from gaitdisc.results.participant_response import load_run
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
 

@@ -1,7 +1,7 @@
 import pytest
 from texts import says
 
-from gaitdisc.batch.participant_unit import computed_unit
+from gaitdisc.batch.run_study import computed_unit
 
 
 def alone(study, **changes):

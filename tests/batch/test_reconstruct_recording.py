@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.batch.reconstruct_recording import reconstruct_recording
-from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
+from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_recording, reconstruct_study
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage

@@ -10,11 +10,10 @@ import pandas as pd
 import pytest
 from texts import says
 
-from gaitdisc.batch.participant_unit import computed_unit
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.run_study import computed_unit, run_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.results.response_run import load_run
+from gaitdisc.results.participant_response import load_run
 
 
 @pytest.fixture(scope="module")

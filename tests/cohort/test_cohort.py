@@ -14,8 +14,7 @@ from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
-from gaitdisc.response.fit_response import ResponseSettings, held_out_part
-from gaitdisc.response.models import fit_linear
+from gaitdisc.response.fit_response import ResponseSettings, fit_linear, held_out_part
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.statistics.r2 import r2
 

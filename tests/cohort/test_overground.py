@@ -12,7 +12,7 @@ from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.processing.markers_to_moments import foot_paths_of
-from gaitdisc.recording.runs import runs
+from gaitdisc.recording.arrays import runs
 
 START_S = 2.0
 

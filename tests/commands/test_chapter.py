@@ -1,9 +1,9 @@
 import pytest
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 from texts import says
 
 from gaitdisc.batch import chapter_run
 from gaitdisc.batch.chapter_parts import PARTS
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 from gaitdisc.errors import SchemaError
 
 

@@ -11,9 +11,9 @@ from gaitdisc.cli import app
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Samples
+from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.results.pooled_cycles import CYCLES, cycles_name
 from gaitdisc.results.provenance import made_now
-from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.study_run import save_run
 from gaitdisc.sensing.model_folder import SensingModel, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor

@@ -17,7 +17,7 @@ from made_clinic import made_controls, made_person, made_run
 from gaitdisc.commands.clinic_pages import keep_reference, write_people
 from gaitdisc.errors import WriteError
 from gaitdisc.results.clinical_reference import save_reference
-from gaitdisc.results.response_run import load_run
+from gaitdisc.results.participant_response import load_run
 from gaitdisc.whole_file import PART
 
 KILLS = 12
@@ -28,7 +28,7 @@ from pathlib import Path
 import gaitdisc.report.clinic.person_pdf, gaitdisc.report.clinic.person_page, gaitdisc.clinic.reading
 import matplotlib.backends.backend_pdf
 from gaitdisc.commands.clinic_pages import write_people
-from gaitdisc.results.response_run import load_run
+from gaitdisc.results.participant_response import load_run
 for line in sys.stdin:
     count, folder = line.split(maxsplit=1)
     children = []

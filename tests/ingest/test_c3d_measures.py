@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.ingest.c3d_measures import body_measures_of, read_body_measures
+from gaitdisc.ingest.c3d_kinetics import body_measures_of, read_body_measures
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from gaitdisc.ingest.file_names import (
+from gaitdisc.ingest.people_table import (
     PSEUDONYM,
     condition_word,
     group_word,

@@ -30,8 +30,8 @@ from texts import says
 
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.joint_centres import DavisHip, harrington_hip
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
+from gaitdisc.kinematics.pose import DavisHip, harrington_hip
 from gaitdisc.recording import Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.kinematics.held_joints import carried_over
 from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinematics.segment_poses import carried_over
 
 FRAMES, GAP = 60, slice(20, 40)
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip, hip_of_spines
+from gaitdisc.kinematics.pose import DavisHip, chord_centre, harrington_hip, hip_of_spines
 
 
 def test_harrington_has_the_numbers_of_the_paper():

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from texts import says
 
 from gaitdisc.errors import ShapeError, StrideError
-from gaitdisc.kinematics.laboratory import check_right_handed, up_axis, walking_frame
+from gaitdisc.kinematics.markers import check_right_handed, up_axis, walking_frame
 
 UP = np.array([0.0, 0.0, 1.0])
 

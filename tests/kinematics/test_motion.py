@@ -27,11 +27,11 @@ from texts import says
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.laboratory import WalkingFrame
 from gaitdisc.kinematics.marker_set import marker_set
+from gaitdisc.kinematics.markers import WalkingFrame
 from gaitdisc.kinematics.motion import angles_of_poses, chosen_marker_set, joint_angles, motion
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.recording import Recording

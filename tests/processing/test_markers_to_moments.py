@@ -5,7 +5,7 @@ import pytest
 from texts import says
 
 from gaitdisc.ingest.c3d import read_c3d
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person

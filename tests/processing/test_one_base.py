@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel
-from gaitdisc.processing.one_base import on_one_base
+from gaitdisc.processing.process import on_one_base
 from gaitdisc.recording import Recording, Trial
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.motion import joint_angles
 from gaitdisc.kinematics.pose import clinical_angles, rotation_of

@@ -10,7 +10,7 @@ import pytest
 from texts import says
 
 from gaitdisc.ingest.c3d import read_c3d
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTrial, Study
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set

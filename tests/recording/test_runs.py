@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.recording.runs import runs, spans_s
+from gaitdisc.recording.arrays import runs, spans_s
 
 TIME = np.arange(1000) / 100
 

@@ -10,12 +10,10 @@ import pytest
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.response.comparison import compare_models
-from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+from gaitdisc.response.over_participants import compare_models, compare_participants
+from gaitdisc.results.participant_response import HeldOut, ParticipantResponse, ResponseRun
 from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.results.provenance import Provenance, Refusal
-from gaitdisc.results.response_run import ResponseRun
 
 RATE_HZ = 100.0
 STRIDE_S = 1.07

@@ -15,7 +15,7 @@ from gaitdisc.report.curves import (
     sides_together,
     walk_of,
 )
-from gaitdisc.report.palette import SIDES
+from gaitdisc.report.panels import SIDES
 from gaitdisc.results.pooled_cycles import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "pelvis_tilt")

@@ -17,8 +17,8 @@ from gaitdisc.report.cycles_page import (
     write_cycles_page,
 )
 from gaitdisc.report.response_page import write_report
+from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.results.provenance import Refusal, made_now
-from gaitdisc.results.response_run import ResponseRun
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 

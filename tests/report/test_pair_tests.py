@@ -6,7 +6,7 @@ import pytest
 from texts import says
 
 from gaitdisc.report.pair_tests import PLACES, comparison_figures, comparison_sentences, comparison_tables, p_text
-from gaitdisc.report.palette import MODELS
+from gaitdisc.report.panels import MODELS
 from gaitdisc.results.over_participants import TESTS
 from gaitdisc.results.participant_response import RESPONSE
 
@@ -72,7 +72,7 @@ def test_too_few_are_said_and_not_tabled(tested_maker, run):
 
 def test_a_variable_that_was_not_tested_says_so(tested_maker):
     run = tested_maker(6)
-    from gaitdisc.response.comparison import compare_models
+    from gaitdisc.response.over_participants import compare_models
 
     def without_soleus(response):
         return replace(

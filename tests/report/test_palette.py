@@ -1,4 +1,4 @@
-from gaitdisc.report.palette import MODELS, SIDES, WITHOUT_DEVICE
+from gaitdisc.report.panels import MODELS, SIDES, WITHOUT_DEVICE
 
 
 def test_models_and_sides_differ_without_colour():

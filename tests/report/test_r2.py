@@ -6,7 +6,7 @@ from matplotlib.text import Text
 from texts import says
 
 from gaitdisc.recording import Finding
-from gaitdisc.report.palette import MODELS
+from gaitdisc.report.panels import MODELS
 from gaitdisc.report.r2 import (
     LOWEST,
     R2_TABLE,

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.recording import Samples
-from gaitdisc.response.fit_response import BLOCKS, covered, parted, response_bands
-from gaitdisc.response.models import fit_linear, fit_models
+from gaitdisc.response.fit_response import BLOCKS, covered, fit_linear, fit_models, parted, response_bands
 
 
 def walk(seed: int, gain: float, count: int = 2000) -> Samples:

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from texts import says
 
-from gaitdisc.response.comparison import by_family, compare_columns, compare_models, too_few
+from gaitdisc.response.over_participants import by_family, compare_columns, compare_models, too_few
 from gaitdisc.results.over_participants import PAIRS
 
 VARIABLES = ("hip", "knee", "ankle", "HAM", "RF", "VAS", "GAS", "SOL")

@@ -11,12 +11,13 @@ from gaitdisc.recording import PERCENT
 from gaitdisc.response.fit_response import (
     ResponseSettings,
     fit_both,
+    fit_linear,
+    fit_models,
     fit_response,
     held_out_part,
     residual_strides,
     training_samples,
 )
-from gaitdisc.response.models import fit_linear, fit_models
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.recording import Samples
-from gaitdisc.response.models import Fit, fit_linear, fit_models, fit_network
+from gaitdisc.response.fit_response import Fit, fit_linear, fit_models, fit_network
 
 
 class Offset:

@@ -9,10 +9,9 @@ import pytest
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.results.over_participants import FAMILY_COLUMNS, TEST_COLUMNS, PairTests
-from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+from gaitdisc.results.participant_response import HeldOut, ParticipantResponse, ResponseRun
 from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.results.provenance import Provenance, Refusal
-from gaitdisc.results.response_run import ResponseRun
 
 
 @pytest.fixture

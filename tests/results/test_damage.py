@@ -12,13 +12,12 @@ import pytest
 from resealed import resealed
 from texts import says
 
-from gaitdisc.batch.participant_unit import REFUSED, Refused
+from gaitdisc.batch.run_study import REFUSED, Refused
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.results.over_participants import OVER, TABLES, TESTS, OverParticipants, no_rows
-from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity
+from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity, load_run
 from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.response_run import load_run
 from gaitdisc.results.study_run import save_run
 from gaitdisc.results.unit_folder import damaged_units, unit_name
 from gaitdisc.results.variants import (

@@ -8,7 +8,7 @@ import pytest
 from driven_walker import DrivenWalker
 from made_cycles import made_cycles
 
-from gaitdisc.batch.participant_unit import REFUSED, Refused
+from gaitdisc.batch.run_study import REFUSED, Refused
 from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.walk_pair import walk_pair

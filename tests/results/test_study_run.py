@@ -6,9 +6,8 @@ from resealed import resealed
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.over_participants import TESTS
-from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.results.participant_response import RESPONSE, load_run
 from gaitdisc.results.pooled_cycles import WALK
-from gaitdisc.results.response_run import load_run
 from gaitdisc.results.study_run import created_before, save_run
 from gaitdisc.results.unit_folder import unit_name
 

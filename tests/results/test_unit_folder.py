@@ -7,8 +7,7 @@ from resealed import resealed
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
-from gaitdisc.results.participant_response import RESPONSE
-from gaitdisc.results.response_run import load_run
+from gaitdisc.results.participant_response import RESPONSE, load_run
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 
 

@@ -4,9 +4,8 @@ import pytest
 from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.sensing.calibration import calibrated
 from gaitdisc.sensing.missing import with_missing
-from gaitdisc.sensing.model_folder import SensingModel
+from gaitdisc.sensing.model_folder import SensingModel, Stream
 from gaitdisc.sensing.reconstructor import MASKED, STATIC, fit_reconstructor
-from gaitdisc.sensing.stream import Stream
 
 RIDGES = ("linear", "delay ridge", "fourier ridge")
 

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.palette import SIDES
+from gaitdisc.report.panels import SIDES
 from gaitdisc.results.clinical_reference import Band, ClinicalReading, Contrast
 from gaitdisc.results.leg_curves import FEET, KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
 from gaitdisc.results.pooled_cycles import PooledCycles

@@ -20,15 +20,19 @@ from gaitdisc.report.clinic.panels import (
     sheet,
     svg,
 )
-from gaitdisc.report.clinic.values import files_table, numbers_table, profile_svg, profile_table, values_table
-from gaitdisc.report.clinic.words import (
+from gaitdisc.report.clinic.values import (
     ENGLISH,
     PageWords,
     contrast_sentences,
+    files_table,
     noted_sentences,
+    numbers_table,
     outstanding_sentences,
+    profile_svg,
+    profile_table,
     quality_sentence,
     score_sentences,
+    values_table,
 )
 from gaitdisc.report.figure import file_names
 from gaitdisc.report.page import page_text

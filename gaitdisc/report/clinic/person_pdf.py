@@ -10,10 +10,15 @@ from typing import TYPE_CHECKING
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.clinic.panels import Panel, consistency_sheet, emg_sheet, sheet
 from gaitdisc.report.clinic.person_page import CONSISTENCY, EMG, MOMENT_SIGNS, band_words
-from gaitdisc.report.clinic.values import values_table
-from gaitdisc.report.clinic.words import ENGLISH, PageWords, outstanding_sentences, quality_sentence, score_sentences
-from gaitdisc.report.palette import SIDES
-from gaitdisc.report.panels import in_style
+from gaitdisc.report.clinic.values import (
+    ENGLISH,
+    PageWords,
+    outstanding_sentences,
+    quality_sentence,
+    score_sentences,
+    values_table,
+)
+from gaitdisc.report.panels import SIDES, in_style
 from gaitdisc.results.clinical_reference import ClinicalReading, PersonSession
 from gaitdisc.results.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.results.provenance import Provenance

@@ -13,7 +13,7 @@ from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.clinic.person_page import write_index, write_person_page
-from gaitdisc.report.clinic.words import (
+from gaitdisc.report.clinic.values import (
     MOST,
     PageWords,
     contrast_sentences,
