@@ -249,10 +249,10 @@ class C3DLayout:
     33024
     """
 
-    frames: int  # frames, points a frame, analog channels, samples of each channel a frame
-    points: int  # frames, points a frame, analog channels, samples of each channel a frame
-    channels: int  # frames, points a frame, analog channels, samples of each channel a frame
-    samples_per_frame: int  # frames, points a frame, analog channels, samples of each channel a frame
+    frames: int
+    points: int  # a frame
+    channels: int  # analog
+    samples_per_frame: int  # of each analog channel
     word_bytes: int  # 4 where values are floats, 2 where they are integers
     data_block: int  # where the data begin [blocks of 512 bytes, from 1]
 
