@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.gap_share import MODEL_ERROR
+from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.paired_test import PairedTest, paired_test, projected_test
 from gaitdisc.discovery.problem import LENGTHENED, Problem
@@ -20,7 +21,7 @@ from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
 
 TURNS = 30
-GROWN = 2.0  # times the error of short runs: a start from a few samples errs as well
+GROWN = 2.0  # standard deviations of what noise and the doubt about the start make of a run
 LOST = 4.0  # squared standard deviations, which a run that has left the data errs by
 INFORMATIVE = 36.0  # how far two runs are apart, in variances of the noise, for trials to show which is true
 STRONG_SUPPORT = 50.0  # fall of the criterion on the trials that were learned from
@@ -55,41 +56,52 @@ def runs_of(problem: Problem, now: ScoredModel, trials: tuple[int, ...], like: S
 
 
 def free_run_error(problem: Problem, now: ScoredModel) -> float:
-    """Mean square that free runs of the held-out trials err by, over each channel's variance.
+    """Mean square that free runs of the held-out trials err by, over each channel's variance."""
+    return float(np.mean([error for error, _ in _free_runs(problem, now)]))
+
+
+def _free_runs(problem: Problem, now: ScoredModel) -> list[tuple[float, float]]:
+    """Return what each held-out trial's free run errs by, and what the doubt about its start alone would make of it.
 
     A run begins with what its first samples say, a period or a third of the trial, and errs over the others: a start
     that is fitted to the whole run absorbs an offset. A run that has left the data errs by `LOST`.
+
+    returns: mean squares, over each channel's variance
     """
-    errors = []
+    scale, found = scale_of(problem), []
     for trial in problem.held_out:
         samples = int(problem.measured.drive.samples[trial])
         segments = problem.segments((trial,), samples / problem.rhythm.samples)
         first = segments.margin + max(min(round(problem.rhythm.samples), samples // 3), 1)
         seen = problem.measured.observed.copy()
         seen[trial, first:] = np.nan
-        shooting = problem.shooting(segments).with_noise(now.noise)
+        shooting = problem.shooting(segments).with_noise(white_noise(scale.size))
         begun = replace(shooting, measured=replace(problem.measured, observed=seen))
         run = _started(begun, now, problem.guess.starts(segments))
-        ran = shooting.observed(now.model.machine, run.states[None], run.values[None])[0]
-        error = ((shooting.seen - ran) / np.nanstd(problem.measured.observed, axis=(0, 1))) ** 2
-        later = segments.samples[:, segments.compared] >= first
-        errors.append(
-            np.nanmean(np.fmin(np.where(np.isnan(ran), LOST, error), LOST)[later & shooting.known.all(axis=2)])
+        whole = shooting.at(now.model.machine, (), run.values, run.starts)
+        error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, LOST)
+        slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
+        late = (segments.samples[:, segments.compared] >= first)[..., None] & shooting.known
+        early = slopes[~late & shooting.known]
+        doubt = (
+            np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
+            * (scale.size / scale.spread) ** 2
         )
-    return float(np.mean(errors))
+        found.append((float(np.fmin(error, LOST)[late].mean()), float(np.fmin(doubt, LOST)[late].mean())))
+    return found
 
 
 def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:
     """Whether free runs of unseen data err clearly more than the short runs that a model was fitted to.
 
-    What a sensor's noise leaves, also one that remembers, is as large in a long run as in a short one; what is missing
-    in the dynamics adds up. A simulation is granted a hundredth of the spread. Where a small change of the start grows,
-    free runs say nothing.
+    What a sensor's noise leaves, also one that remembers, is as large in a long run as in a short one, but for the
+    doubt about the start; what is missing in the dynamics adds up. A simulation is granted a hundredth of the spread.
+    Where a small change of the start grows, free runs say nothing.
     """
     if not problem.spans_a_period(now):
         return False
-    short = scale_of(problem).relative(now.model.fit)
-    return free_run_error(problem, now) > (GROWN * max(short, MODEL_ERROR)) ** 2
+    error, doubt = np.mean(_free_runs(problem, now), axis=0)
+    return bool(error > GROWN**2 * (max(scale_of(problem).relative(now.model.fit), MODEL_ERROR) ** 2 + doubt))
 
 
 def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:

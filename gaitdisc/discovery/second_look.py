@@ -149,6 +149,8 @@ def completed(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdi
         return verdict
     whole = fitted_on_whole_runs(problem, found)
     whole = scored(whole.shooting, search.base, whole.model)
+    if leaves_noise(problem, whole):
+        return verdict
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
         return verdict
