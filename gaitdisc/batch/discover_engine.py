@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gaitdisc.batch.discover_files import discovered
 from gaitdisc.batch.fit_by_engine import EngineFit
 from gaitdisc.discovery.candidate import SIGNAL_ERRORS
-from gaitdisc.discovery.catalogue import ALL, Asked
+from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.spiked_samples import without_spikes
@@ -54,7 +54,7 @@ class EngineAnswer:
 def discover_engine(
     model: Path,
     measured: Callable[[Simulation], Measured],
-    asked: Asked = ALL,
+    request: Request = ALL,
     files: dict[Path, str] | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> EngineAnswer:
@@ -73,12 +73,12 @@ def discover_engine(
     linear, driven = expanded(mapping, engine, data, states)
     read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now
     fit = EngineFit(mapping, engine, data, states)
-    found, answer = discovered(linear, driven, asked, read, progress, refitted=fit.refitted)
+    found, answer = discovered(linear, driven, request, read, progress, refitted=fit.refitted)
     moved = {name: value for name, value in _moved(mapping, answer).items() if engine.as_force(name) is None}
     if moved and (len(found.effects) > 1 or not fit.done):  # one number alone rests on the engine's own runs
         progress(f"expanding again where {' and '.join(moved)} came to lie")
         linear, driven = expanded(mapping, engine, data, states, moved)
-        found, answer = discovered(linear, driven, asked, read, progress, refitted=fit.refitted)
+        found, answer = discovered(linear, driven, request, read, progress, refitted=fit.refitted)
     augmented = in_mapping(mapping, answer, found)
     progress("writing it into the model")
     written = written_model(engine, augmented)
@@ -124,11 +124,11 @@ def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
 
 
 def discover_model_file(
-    model: Path, measured: Path, asked: Asked = ALL, progress: Callable[[str], None] = lambda _: None
+    model: Path, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
 ) -> EngineAnswer:
     """Find what a model lacks against a file of measured trials."""
     files = {measured: "measured table"}
-    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), asked, files, progress)
+    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), request, files, progress)
 
 
 def measured_of_file(file: Path, mapping: Simulation) -> Measured:

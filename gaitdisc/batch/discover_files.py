@@ -13,7 +13,7 @@ import numpy as np
 from gaitdisc.batch.public_words import PublicWords
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.catalogue import ALL, Asked
+from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.errors import SamplingError
@@ -31,34 +31,34 @@ from gaitdisc.simulation.writing import simulation_text
 
 
 def discover_files(
-    simulation: Path, measured: Path, asked: Asked = ALL, progress: Callable[[str], None] = lambda _: None
+    simulation: Path, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Discovery, Simulation]:
     """Find what a simulation file lacks against a table of measured trials."""
     progress(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
     data = read_measured(measured, model)
     files = {simulation: "simulation", measured: "measured table"}
-    return discovered(model, data, asked, files, progress)
+    return discovered(model, data, request, files, progress)
 
 
 def discover_model(
     model: PythonSimulation,
     measured: Path,
-    asked: Asked = ALL,
+    request: Request = ALL,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Discovery, PythonSimulation]:
     """Find what a simulation that is a Python object lacks against a table of measured trials."""
     progress(f"reading {measured.name}")
     simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
     data = read_measured(measured, simulation)
-    found, augmented = discovered(simulation, data, asked, {measured: "measured table"}, progress)
+    found, augmented = discovered(simulation, data, request, {measured: "measured table"}, progress)
     return found, cast("PythonSimulation", augmented)
 
 
 def discover_study(
     study: Path,
     participant: str,
-    asked: Asked = ALL,
+    request: Request = ALL,
     progress: Callable[[str], None] = lambda _: None,
     joint: str = "ankle_angle",
 ) -> tuple[Discovery, Simulation]:
@@ -85,12 +85,12 @@ def discover_study(
     except NoMomentsError as lacking:
         progress("comparing the motion alone")
         model, data = nominal_and_trials(read, participant, joint)
-        found, augmented = discovered(model, data, asked, walks, progress)
+        found, augmented = discovered(model, data, request, walks, progress)
         said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
         return replace(found, sentence=said + found.sentence), augmented
     model = tracked_joint(both.device, both.both_walks_model)
     data = tracked_trials(both.device, both.both_walks_model, model)
-    found, augmented = discovered(model, data, asked, walks, progress, both.weighed)
+    found, augmented = discovered(model, data, request, walks, progress, both.weighed)
     found, augmented = both.with_model_error(found), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
@@ -104,7 +104,7 @@ def discover_study(
 def discovered(
     model: Simulation,
     data: Measured,
-    asked: Asked,
+    request: Request,
     files: dict[Path, str],
     progress: Callable[[str], None],
     weighed: Callable[[Candidate], bool] = lambda _: True,
@@ -121,7 +121,7 @@ def discovered(
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
-            found, augmented = discover(model, data, asked, progress, weighed, refitted)
+            found, augmented = discover(model, data, request, progress, weighed, refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "a simulation must be predictable from each sample to the next",
@@ -129,7 +129,7 @@ def discovered(
             "Write times in seconds, not in milliseconds; or record at a higher rate.",
         ) from error
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
-    files = {**files, **({asked.catalogue: "catalogue"} if asked.catalogue else {})}
+    files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, SIMULATION)
     listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check

@@ -21,7 +21,7 @@ from gaitdisc.batch.tracked_pass import (
     refuse_other_motion,
     tracked_pass,
 )
-from gaitdisc.discovery.catalogue import ALL, Asked
+from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.prescribed import JointFinding
 from gaitdisc.engines.mapping import drafted
 from gaitdisc.engines.opensim_tracked import OpensimTracked
@@ -57,11 +57,11 @@ class TrackedAnswer:
 def discover_tracked(
     tracked: Tracked,
     kinematics: Path,
-    asked: Asked = ALL,
+    request: Request = ALL,
     progress: Callable[[str], None] = lambda _: None,
 ) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
-    if asked.effects:
+    if request.effects:
         raise SchemaError(
             "effects are given for a simulation, a function or a model that runs forward",
             f"{kinematics.name} is a walk that is tracked",
@@ -73,7 +73,7 @@ def discover_tracked(
     refuse_other_motion(walk)
     progress("computing what noise of the angles makes of them")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, angle_noise, asked.shapes, progress)
+    base, joints = joints_of(walk, angle_noise, request.shapes, progress)
     found = discovery_of(base, joints)
     progress("writing it into the model")
     augmented = _augmented(engine, found)

@@ -63,11 +63,11 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
 
     from gaitdisc.batch.discover_files import discover_files, discover_study
-    from gaitdisc.discovery.catalogue import Asked
+    from gaitdisc.discovery.catalogue import Request
     from gaitdisc.engines.mapping import names_engine
     from gaitdisc.simulation.writing import write_simulation
 
-    asked = Asked.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()))
+    request = Request.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()))
     if measured is not None and names_engine(simulation):
         from gaitdisc.batch.discover_engine import discover_model_file, write_answer
         from gaitdisc.engines.tracked_mapping import read_tracked
@@ -76,11 +76,11 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         if walk is not None:
             from gaitdisc.batch.discover_tracked import discover_tracked, write_tracked
 
-            answered = discover_tracked(walk, measured, asked, progress)
+            answered = discover_tracked(walk, measured, request, progress)
             said = (*answered.written.notes, *answered.said)
             _write(answered.found, out, draw, progress, lambda: write_tracked(answered, out), said)
             return
-        answer = discover_model_file(simulation, measured, asked, progress)
+        answer = discover_model_file(simulation, measured, request, progress)
         said = (*answer.written.notes, answer.runs.said)
         _write(answer.found, out, draw, progress, lambda: write_answer(answer, out), said)
         return
@@ -89,13 +89,13 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         _write(found, folder, draw, progress, lambda: [write_simulation(augmented, folder / "augmented.toml").name])
 
     if measured is not None:
-        with_model(*discover_files(simulation, measured, asked, progress), out)
+        with_model(*discover_files(simulation, measured, request, progress), out)
         return
     whose, _, joint = participant.partition(":")
 
     def discovered(person: str, folder: Path) -> Discovery:
         claim_folder(folder, *FILES)
-        found, augmented = discover_study(simulation, person, asked, progress, joint or ANKLE)
+        found, augmented = discover_study(simulation, person, request, progress, joint or ANKLE)
         with_model(found, augmented, folder)
         return found
 

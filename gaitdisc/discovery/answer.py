@@ -23,13 +23,13 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.discovery.wrong_start import begun_at
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import Account, Correction, Discovery, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.results.discovery import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import amount, spoken, with_unit
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 HALF = 0.5
-MOST_ACCOUNTS = 5
+MOST_EXPLANATIONS = 5
 DRAWN = 200  # samples of a run
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
 
@@ -60,7 +60,7 @@ def answer(
     effects = effects_of(problem, stated, 1 - held_out.unexplained, gained)
     if verdict.given:
         effects = tuple(replace(one, small=idle) for one, idle in zip(effects, verdict.given, strict=True))
-    named = (Account(effects, held_out, *first_run(problem, held.after, held_out)),) if effects else ()
+    named = (Explanation(effects, held_out, *first_run(problem, held.after, held_out)),) if effects else ()
     agrees = verdict.word != "no_gap" or not grows_along_runs(problem, as_read)
     discovery = Discovery(
         verdict.word if agrees else "unexplained",
@@ -78,7 +78,7 @@ def answer(
         drawn_runs(problem, held.before, held.after),
         (*problem.measured.findings, *nearly_off(effects, problem.measured.source), *exact_inputs(problem, now)),
         corrections=moved,
-        accounts=(*named, *accounts_of(problem, verdict, held, held_out, rivals))[:MOST_ACCOUNTS],
+        explanations=(*named, *list_explanations(problem, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
     augmented = begun_at(augmented_of(corrected(base, moved), parts), verdict.starts)
@@ -158,23 +158,23 @@ def reported_rival(problem: Problem, rival: Rival, part: int = -1) -> FoundEffec
     )
 
 
-def accounts_of(
+def list_explanations(
     problem: Problem, verdict: Verdict, held: Proof, size: GapSize, rivals: tuple[Rival, ...]
-) -> list[Account]:
+) -> list[Explanation]:
     """List what else was weighed by what it leaves of the held-out data, the least first.
 
     held, size: held-out runs of the simulation as read and of what was found, and their gap
     """
-    found: list[tuple[float, Account]] = []
+    found: list[tuple[float, Explanation]] = []
     for one in rivals:
         after = runs_of(problem, one.scored, problem.held_out, verdict.found)
         effects = tuple(reported_rival(problem, one, number) for number in range(len(one.scored.model.parts)))
         floor = np.array([floor for _, _, floor in size.channels.values()])
         test = tested(problem, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
-        account = Account(effects, replace(left, of=size.of), *first_run(problem, after, size))
-        found.append((float(np.nan_to_num(left.after, nan=np.inf)), account))
-    return [account for _, account in sorted(found, key=lambda one: one[0])]
+        explanation = Explanation(effects, replace(left, of=size.of), *first_run(problem, after, size))
+        found.append((float(np.nan_to_num(left.after, nan=np.inf)), explanation))
+    return [explanation for _, explanation in sorted(found, key=lambda one: one[0])]
 
 
 def first_run(problem: Problem, after: Trial, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -71,20 +71,20 @@ class Shape:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a user asks for: effects of their own beside those that come along, or exactly some and no search."""
+class Request:
+    """What a user requests: effects of their own beside those that come along, or exactly some and no search."""
 
     shapes: tuple[Shape, ...] = ()
     effects: tuple[str, ...] = ()  # `name@place`; nothing is searched where there are any
     catalogue: Path | None = None  # the file of the shapes
 
     @classmethod
-    def read(cls, catalogue: Path | None, effects: tuple[str, ...] = ()) -> Asked:
+    def read(cls, catalogue: Path | None, effects: tuple[str, ...] = ()) -> Request:
         """Read a catalogue, if there is one, and note the effects."""
         return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue)
 
 
-ALL = Asked()  # the effects that come along
+ALL = Request()  # the effects that come along
 
 
 def with_names(expression: str, names: Mapping[str, str]) -> str:

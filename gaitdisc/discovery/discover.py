@@ -11,7 +11,7 @@ from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.catalogue import ALL, Asked
+from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide
 from gaitdisc.discovery.given_effects import fit_given, refuse_unknown
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
@@ -35,7 +35,7 @@ CLOSE = 0.3  # of its range, moved from one sample to the next: ten samples in a
 def discover(
     simulation: Simulation,
     measured: Measured,
-    asked: Asked = ALL,
+    request: Request = ALL,
     progress: Callable[[str], None] = lambda _: None,
     possible: Callable[[Candidate], bool] = lambda _: True,
     refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
@@ -45,17 +45,17 @@ def discover(
     refitted: fits the numbers of what was found once more, where its runs stand for those of another program
     """
     measured = without_spikes(measured)
-    begun = partial(set_up_problem, simulation, shapes=asked.shapes, progress=progress, possible=possible)
+    begun = partial(set_up_problem, simulation, shapes=request.shapes, progress=progress, possible=possible)
     problem = begun(measured)
-    refuse_unknown(problem.search, asked.effects)
+    refuse_unknown(problem.search, request.effects)
     agreeing = agreeing_trials(problem, measured)
     if agreeing is not measured:
         measured, problem = agreeing, begun(agreeing)
     progress("fitting the simulation as it was read")
     as_read = problem.as_read()
-    if asked.effects:
-        progress(f"fitting {' and '.join(asked.effects)}")
-        verdict = fit_given(problem, as_read, asked.effects)
+    if request.effects:
+        progress(f"fitting {' and '.join(request.effects)}")
+        verdict = fit_given(problem, as_read, request.effects)
     else:
         problem, as_read, verdict = weigh_explanations(problem, as_read, measured, begun)
     progress("showing it on what was held out")

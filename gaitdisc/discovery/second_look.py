@@ -114,7 +114,7 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
     """
     if verdict.word == "process_noise" or verdict.starts or not problem.spans_a_period(as_read):
         return as_read, verdict
-    base, named = fitted_on_whole_runs(problem, as_read), verdict.found
+    base, named = fit_whole_runs(problem, as_read), verdict.found
     if not named.model.parts:
         return base, replace(verdict, found=base)
     scale = scale_of(problem)
@@ -123,14 +123,14 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
         if not one.model.parts or free_run_error(problem, one) > most:
             continue
         if one is named:
-            return base, completed(problem, as_read, verdict)
+            return base, complete_on_whole_runs(problem, as_read, verdict)
         proof = held_out_proof(problem, as_read, one)
         if proof.bears_out:
             return base, replace(verdict, word=one.word, found=one, rivals=(named, *verdict.rivals), proof=proof)
     return base, Verdict("no_gap", base, (named, *verdict.rivals), proof=verdict.proof)
 
 
-def fitted_on_whole_runs(problem: Problem, now: ScoredModel) -> ScoredModel:
+def fit_whole_runs(problem: Problem, now: ScoredModel) -> ScoredModel:
     """Return a model fitted to the learned trials whole, where a small error of a number shows; else as it was.
 
     All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
@@ -142,12 +142,12 @@ def fitted_on_whole_runs(problem: Problem, now: ScoredModel) -> ScoredModel:
     return ScoredModel(model, shooting.with_past(model.fit.states)) if problem.search.sensible(model) else now
 
 
-def completed(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict with one explanation more, where this takes half of what free runs of the others leave."""
     found, search = verdict.found, problem.search
     if verdict.word == "unnamed" or not grows_along_runs(problem, found):
         return verdict
-    whole = fitted_on_whole_runs(problem, found)
+    whole = fit_whole_runs(problem, found)
     whole = scored(whole.shooting, search.base, whole.model)
     if leaves_noise(problem, whole):
         return verdict

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaitdisc.batch.discover_files import discovered
-from gaitdisc.discovery.catalogue import Asked
+from gaitdisc.discovery.catalogue import Request
 from gaitdisc.engines.mapping import names_engine
 from gaitdisc.errors import SchemaError
 from gaitdisc.library.models import ModelLike, model_of
@@ -78,9 +78,9 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
-    asked = Asked.read(None if catalogue is None else Path(catalogue), tuple(effects))
+    request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects))
     if isinstance(model, Path | str) and names_engine(model):
-        return _of_engine(Path(model), data, asked, progress or _to_the_terminal)
+        return _of_engine(Path(model), data, request, progress or _to_the_terminal)
     simulation = model_of(model)
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
@@ -89,14 +89,14 @@ def discover(
     report = progress or (_to_the_terminal if slow else lambda _: None)
     if slow:
         report(slow)
-    return discovered(simulation, measured, asked, files, report)
+    return discovered(simulation, measured, request, files, report)
 
 
 def _to_the_terminal(step: str) -> None:
     print(step, file=sys.stderr, flush=True)
 
 
-def _of_engine(model: Path, data: Any, asked: Asked, report: Callable[[str], None]) -> tuple[Discovery, Simulation]:
+def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str], None]) -> tuple[Discovery, Simulation]:
     from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
     from gaitdisc.engines.tracked_mapping import read_tracked
 
@@ -110,7 +110,7 @@ def _of_engine(model: Path, data: Any, asked: Asked, report: Callable[[str], Non
             )
         from gaitdisc.batch.discover_tracked import discover_tracked
 
-        answered = discover_tracked(walk, Path(data), asked, report)
+        answered = discover_tracked(walk, Path(data), request, report)
         return answered.found, answered.augmented
 
     files: dict[Path, str] = {}
@@ -121,7 +121,7 @@ def _of_engine(model: Path, data: Any, asked: Asked, report: Callable[[str], Non
             return measured_of_file(Path(data), mapping)
         return _measured(data, mapping)[0]
 
-    answer = discover_engine(model, read, asked, files, report)
+    answer = discover_engine(model, read, request, files, report)
     return answer.found, answer.augmented
 
 

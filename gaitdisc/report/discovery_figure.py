@@ -37,16 +37,16 @@ def discovery_figures(discovery: Discovery) -> list[Figure]:
 
 
 @in_style
-def accounts_figure(discovery: Discovery) -> list[Figure]:
+def explanations_figure(discovery: Discovery) -> list[Figure]:
     """Draw what each explanation leaves of one held-out run, side by side; nothing where there is but one."""
-    accounts = [one for one in discovery.accounts if one.time]
-    if len(accounts) < 2:
+    explanations = [one for one in discovery.explanations if one.time]
+    if len(explanations) < 2:
         return []
     channel = discovery.held_out.ranked[0]
     unit, floor = noise_floor(discovery, channel)
     factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])[1]
-    drawn, (cells,) = panels(1, len(accounts), 1.1, Room(left=0.6, top=0.3, across=0.12))
-    for number, (axes, one) in enumerate(zip(cells, accounts, strict=True), 1):
+    drawn, (cells,) = panels(1, len(explanations), 1.1, Room(left=0.6, top=0.3, across=0.12))
+    for number, (axes, one) in enumerate(zip(cells, explanations, strict=True), 1):
         axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
         axes.plot(one.time, factor * np.array(one.left), color=MODELS["augmented"].colour, linewidth=0.9)
         axes.set_title(str(number))
@@ -54,13 +54,13 @@ def accounts_figure(discovery: Discovery) -> list[Figure]:
         axes.tick_params(labelleft=number == 1)
         axes.set_xlabel("time [s]", labelpad=1)
     cells[0].set_ylabel(f"[{unit}]", labelpad=1)
-    columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(accounts, 1)}
+    columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(explanations, 1)}
     caption = (
         f"What each explanation of the table leaves of {channel}: measured minus its run, over the first held-out run. "
         "Grey band: two standard deviations of the noise."
     )
-    table = pd.DataFrame({"time": accounts[0].time} | columns)
-    return [Figure("accounts", caption, caption, table, drawn)]
+    table = pd.DataFrame({"time": explanations[0].time} | columns)
+    return [Figure("explanations", caption, caption, table, drawn)]
 
 
 def shown_runs(discovery: Discovery) -> pd.DataFrame:

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.discovery_figure import accounts_figure, discovery_figures
+from gaitdisc.report.discovery_figure import discovery_figures, explanations_figure
 from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
-from gaitdisc.results.discovery import Account, Discovery, Estimate, FoundEffect
+from gaitdisc.results.discovery import Discovery, Estimate, Explanation, FoundEffect
 from gaitdisc.results.effect_words import (
     amount,
     at_place,
@@ -163,11 +163,11 @@ def corrections_table(discovery: Discovery) -> Table:
     return Table("corrections", caption, headings, tuple(rows), _frame(records, columns))
 
 
-def accounts_table(discovery: Discovery) -> Table:
+def explanations_table(discovery: Discovery) -> Table:
     """What explains the gap, what was named first, and what would distinguish the others from it."""
     named = discovery.effects[:1]
-    weighed = discovery.accounts or tuple(Account((one,)) for one in discovery.rivals)
-    small = [Account((one,)) for one in discovery.rivals if one.small and discovery.accounts]
+    weighed = discovery.explanations or tuple(Explanation((one,)) for one in discovery.rivals)
+    small = [Explanation((one,)) for one in discovery.rivals if one.small and discovery.explanations]
     rows, records = [], []
     for number, one in enumerate((*weighed, *small), 1):
         first, size = one.effects[0], one.held_out
@@ -176,8 +176,8 @@ def accounts_table(discovery: Discovery) -> Table:
         closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
         numbers = "; ".join(_numbers(each) for each in one.effects)
-        rows.append((str(number), one.asked_as, numbers, _percent(closed), _bic(first.bic), tied, apart))
-        records.append((number, one.asked_as, closed, size.p if size else math.nan, first.bic, tied, apart))
+        rows.append((str(number), one.as_given, numbers, _percent(closed), _bic(first.bic), tied, apart))
+        records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
         f"What explains the gap, {counted(len(rows), 'explanation')}. Closed: of the squared gap above the noise, on "
         "held-out data. Evidence: fall of the Bayesian criterion from the simulation as read; the larger the better. "
@@ -236,7 +236,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "trials": trials_table(discovery),
         "corrections": corrections_table(discovery),
         "where": where_table(discovery),
-        "accounts": accounts_table(discovery),
+        "explanations": explanations_table(discovery),
         "findings": data_findings(discovery),
     }
     if made:
@@ -248,7 +248,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "verdict": VERDICTS[discovery.verdict],
         "terms": [effect for effect in discovery.effects if effect.term],
         "figures": save_figures(discovery_figures(discovery), folder),
-        "left": save_figures(accounts_figure(discovery), folder),
+        "left": save_figures(explanations_figure(discovery), folder),
         "tables": tables,
         "method": how.sentences,
         "added_to": how.added_to,

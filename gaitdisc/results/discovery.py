@@ -124,7 +124,7 @@ class GapSize:
 
 
 @dataclass(frozen=True)
-class Account:
+class Explanation:
     """An explanation of the whole gap, one effect or several together, and what it leaves of held-out data."""
 
     effects: tuple[FoundEffect, ...]
@@ -134,7 +134,7 @@ class Account:
     left: tuple[float, ...] = ()
 
     @property
-    def asked_as(self) -> str:
+    def as_given(self) -> str:
         """What `--effects` takes to fit exactly this."""
         return ", ".join(f"{one.name}@{one.place}" for one in self.effects)
 
@@ -203,7 +203,7 @@ class Discovery(Saved, file="discovery.json"):
         Numbers that moved within their own bounds.
     beside : mapping of str to float
         Of a device walk: model -> its held-out error [unit of the last channel].
-    accounts : tuple of Account
+    explanations : tuple of Explanation
         The first five explanations of the whole gap, sets among them: what was named, then what closes most on held-out
         data.
     given : str
@@ -224,7 +224,7 @@ class Discovery(Saved, file="discovery.json"):
     provenance: Provenance | None = None
     corrections: tuple[Correction, ...] = ()
     beside: Mapping[str, float] = field(default_factory=dict)
-    accounts: tuple[Account, ...] = ()
+    explanations: tuple[Explanation, ...] = ()
     given: str = ""
 
     def __post_init__(self) -> None:
@@ -263,13 +263,13 @@ class Discovery(Saved, file="discovery.json"):
             "corrections": [_correction(one) for one in self.corrections],
             "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
-            "accounts": [
+            "explanations": [
                 {
                     "effects": [_effect(each) | {"tied": each.tied} for each in one.effects],
                     "held_out": _gap(one.held_out) if one.held_out else None,
                     "left": {"time": [*map(_number, one.time)], "measured_minus_run": [*map(_number, one.left)]},
                 }
-                for one in self.accounts
+                for one in self.explanations
             ],
             **({"given": self.given} if self.given else {}),
             "sentence": self.sentence,

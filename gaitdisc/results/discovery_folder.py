@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaitdisc.results.discovery import (
-    Account,
     Correction,
     Discovery,
     Estimate,
+    Explanation,
     FoundEffect,
     GapSize,
     Runs,
@@ -71,7 +71,7 @@ def load_discovery(folder: Path) -> Discovery:
             corrections=tuple(
                 Correction(one["parameter"], _number(one["from"]), _estimate(one, "to")) for one in data["corrections"]
             ),
-            accounts=tuple(map(_account, data.get("accounts", ()))),
+            explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
             beside={name: _number(one) for name, one in data.get("beside", {}).items()},
         )
@@ -116,9 +116,11 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
     )
 
 
-def _account(row: Mapping[str, Any]) -> Account:
+def _explanation(row: Mapping[str, Any]) -> Explanation:
     time, left = (tuple(map(_number, row["left"][name])) for name in ("time", "measured_minus_run"))
-    return Account(tuple(map(_effect, row["effects"])), _gap(row["held_out"]) if row["held_out"] else None, time, left)
+    return Explanation(
+        tuple(map(_effect, row["effects"])), _gap(row["held_out"]) if row["held_out"] else None, time, left
+    )
 
 
 def _gap(row: Mapping[str, Any]) -> GapSize:

@@ -8,6 +8,7 @@ from hidden_in_a_mass import MASS, Experiment, record, with_load
 from made_simulation import system
 
 from gaitdisc.batch.discover_files import discover_files, discover_model
+from gaitdisc.discovery.catalogue import Request
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.report.discovery_page import write_discovery_report
@@ -45,7 +46,7 @@ def test_the_answer_carries_what_it_rests_on(files):
 def test_a_catalogue_is_read_before_anything_is_computed(files):
     (files / "mine.toml").write_text('[[shape]]\nname = "mine"\npieces = ["q**2"]\n')
     with pytest.raises(SchemaError, match=r"mine.toml.*1.*'q\*\*2'.*'q'"):
-        discover_files(files / "mass.toml", files / "walk.csv", files / "mine.toml")
+        Request.read(files / "mine.toml")
 
 
 def with_leak(term: str):

@@ -9,7 +9,7 @@ from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two
 from made_simulation import system
 from texts import says
 
-from gaitdisc.discovery.catalogue import Asked, Shape
+from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.drive import Drive, Rows
@@ -57,7 +57,7 @@ QUICK = {"cubic_stiffness", "coulomb_friction", "one_sided_spring", "periodic_fo
 
 
 def _found(truth, how=None, shapes=(), nominal=None, seed=SEED):
-    return discover(nominal or mass(), record(truth, seed, how), Asked(shapes))
+    return discover(nominal or mass(), record(truth, seed, how), Request(shapes))
 
 
 def _named(discovery):
@@ -301,7 +301,7 @@ def test_where_it_blows_up_and_what_drives_it_is_told(short):
 def test_effects_that_are_given_are_fitted_and_nothing_is_searched():
     """The true one is borne out; one that is not there is said to be idle beside it."""
     measured = record(with_load("-14*x**3"), SEED)
-    discovery, augmented = discover(mass(), measured, Asked(effects=("cubic_stiffness@load", "constant_load@load")))
+    discovery, augmented = discover(mass(), measured, Request(effects=("cubic_stiffness@load", "constant_load@load")))
     assert _named(discovery)[1] == [("cubic_stiffness", "load"), ("constant_load", "load")]
     assert [one.small for one in discovery.effects] == [False, True]
     assert discovery.given == "proven"
@@ -311,21 +311,21 @@ def test_effects_that_are_given_are_fitted_and_nothing_is_searched():
 
 
 def test_a_given_effect_that_is_not_there_is_refuted():
-    discovery, _ = discover(mass(), record(mass(), SEED), Asked(effects=("coulomb_friction@load",)))
+    discovery, _ = discover(mass(), record(mass(), SEED), Request(effects=("coulomb_friction@load",)))
     assert discovery.given == "refuted"
     assert says(discovery.sentence, "do not bear it out", "p = ")
 
 
 def test_a_given_effect_that_does_not_exist_is_refused_with_the_nearest():
     with pytest.raises(SchemaError) as refused:
-        discover(mass(), record(mass(), SEED), Asked(effects=("cubic_stifness@load",)))
+        discover(mass(), record(mass(), SEED), Request(effects=("cubic_stifness@load",)))
     assert says(str(refused.value), "'cubic_stifness@load'", "cubic_stiffness@load")
 
 
 def test_accounts_are_of_the_whole_gap_and_what_was_named_comes_first():
     discovery, _ = _found(with_load("-14*x**3"))
-    first, *others = discovery.accounts
-    assert first.asked_as == "cubic_stiffness@load"
+    first, *others = discovery.explanations
+    assert first.as_given == "cubic_stiffness@load"
     assert others
     assert first.held_out is not None
     assert all(one.held_out.after > first.held_out.after for one in others)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
-from gaitdisc.discovery.catalogue import Asked, Shape
+from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.problem import set_up_problem
@@ -112,7 +112,7 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
 )
 def test_delays_of_the_users_own_effects_are_refused_as_those_of_the_file(measured, piece, words):
     with pytest.raises(SimulationError, match=words):
-        discover(mass(), measured, Asked((Shape("mine", (piece,)),)))
+        discover(mass(), measured, Request((Shape("mine", (piece,)),)))
     discover_begins = set_up_problem(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
     assert any(one.name == "mine" for one in discover_begins.search.candidates)
 

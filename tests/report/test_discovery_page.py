@@ -10,11 +10,11 @@ from texts import says
 
 from gaitdisc.report.discovery_page import (
     VERDICTS,
-    accounts_table,
     closed_share,
     corrections_table,
     data_findings,
     estimates_table,
+    explanations_table,
     gap_table,
     models_table,
     trials_table,
@@ -22,7 +22,7 @@ from gaitdisc.report.discovery_page import (
     write_discovery_report,
 )
 from gaitdisc.results import discovery as noun
-from gaitdisc.results.discovery import Account, Correction, Estimate, FoundEffect, GapSize
+from gaitdisc.results.discovery import Correction, Estimate, Explanation, FoundEffect, GapSize
 
 
 def test_an_angle_is_given_in_degrees_too():
@@ -62,15 +62,15 @@ def test_where_has_share_stride_and_region():
 
 
 def test_a_rival_is_listed_with_what_would_distinguish_it():
-    table = accounts_table(manufactured(rivals=(replace(CUBIC, tied=True),)))
+    table = explanations_table(manufactured(rivals=(replace(CUBIC, tied=True),)))
     assert table.rows[0][1] == "cubic_stiffness@ankle_moment"
     assert table.rows[0][4:6] == ("640", "yes") and says(table.rows[0][6], "wider range", "both sides")
 
 
 def test_accounts_are_listed_with_what_each_closes_of_the_held_out_gap():
     named, other = (GapSize(0.3, after, 0.05, 0.01) for after in (0.06, 0.2))
-    found = manufactured(accounts=(Account((SPRING,), named), Account((CUBIC, SPRING), other)))
-    table = accounts_table(found)
+    found = manufactured(explanations=(Explanation((SPRING,), named), Explanation((CUBIC, SPRING), other)))
+    table = explanations_table(found)
     assert [row[5] for row in table.rows] == ["named", "no"]
     assert table.rows[1][1] == "cubic_stiffness@ankle_moment, one_sided_spring@ankle_moment"
     assert table.numbers["closed"].tolist() == pytest.approx([864 / 875, 500 / 875])
@@ -91,7 +91,7 @@ def test_what_moved_within_its_bounds_has_a_table_of_its_own():
 def test_a_rival_outside_its_bounds_is_said_to_lie_there():
     found = {"value": Estimate(1.817, 1.7, 1.9, "N m/rad")}
     rival = FoundEffect("parameter", "strength", "wrong_parameter", "", found, bounds=(0.3, 1.7))
-    (row,) = accounts_table(manufactured(rivals=(rival,))).rows
+    (row,) = explanations_table(manufactured(rivals=(rival,))).rows
     assert says(row[2], "0.3", "1.7 N m/rad")
 
 
@@ -115,7 +115,7 @@ def test_every_held_out_trial_has_its_errors():
 
 def test_a_small_rival_is_said_to_be_small():
     small = FoundEffect("port", "load", "constant_load", "0.1", small=True)
-    table = accounts_table(manufactured(rivals=(small,)))
+    table = explanations_table(manufactured(rivals=(small,)))
     assert table.rows[0][5] == "small"
 
 
