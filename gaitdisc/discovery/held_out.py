@@ -57,11 +57,11 @@ def runs_of(problem: Problem, now: ScoredModel, trials: tuple[int, ...], like: S
 
 def free_run_error(problem: Problem, now: ScoredModel) -> float:
     """Mean square that free runs of the held-out trials err by, over each channel's variance."""
-    return float(np.mean([error for error, _ in _free_runs(problem, now)]))
+    return free_runs(problem, now)[0]
 
 
-def _free_runs(problem: Problem, now: ScoredModel) -> list[tuple[float, float]]:
-    """Return what each held-out trial's free run errs by, and what the doubt about its start alone would make of it.
+def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
+    """Return what free runs of the held-out trials err by, and what the doubt about their starts alone makes of it.
 
     A run begins with what its first samples say, a period or a third of the trial, and errs over the others: a start
     that is fitted to the whole run absorbs an offset. A run that has left the data errs by `LOST`.
@@ -87,8 +87,9 @@ def _free_runs(problem: Problem, now: ScoredModel) -> list[tuple[float, float]]:
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
             * (scale.size / scale.spread) ** 2
         )
-        found.append((float(np.fmin(error, LOST)[late].mean()), float(np.fmin(doubt, LOST)[late].mean())))
-    return found
+        found.append([np.fmin(error, LOST)[late].mean(), np.fmin(doubt, LOST)[late].mean()])
+    error, doubt = np.mean(found, axis=0)
+    return float(error), float(doubt)
 
 
 def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:
@@ -100,8 +101,8 @@ def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:
     """
     if not problem.spans_a_period(now):
         return False
-    error, doubt = np.mean(_free_runs(problem, now), axis=0)
-    return bool(error > GROWN**2 * (max(scale_of(problem).relative(now.model.fit), MODEL_ERROR) ** 2 + doubt))
+    error, doubt = free_runs(problem, now)
+    return error > GROWN**2 * (max(scale_of(problem).relative(now.model.fit), MODEL_ERROR) ** 2 + doubt)
 
 
 def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:

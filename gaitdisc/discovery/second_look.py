@@ -12,9 +12,9 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.decision import HALF, MOST_NEAR, NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
-from gaitdisc.discovery.gap_share import AGREES, cross_validated
+from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import by_size, free_run_error, grows_along_runs, proof_of
+from gaitdisc.discovery.held_out import GROWN, by_size, free_run_error, free_runs, grows_along_runs, proof_of
 from gaitdisc.discovery.paired_test import LEVEL
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.ranking import MARGIN, ranked
@@ -117,10 +117,11 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
     base, named = fit_whole_runs(problem, as_read), verdict.found
     if not named.model.parts:
         return base, replace(verdict, found=base)
-    scale = scale_of(problem)
-    most = max(free_run_error(problem, base), AGREES**2 * float(np.mean((scale.size / scale.spread) ** 2)))
+    scale, most = scale_of(problem), free_run_error(problem, base)
+    least = float(np.mean((scale.size / scale.spread) ** 2))
     for one in (named, *verdict.rivals):
-        if not one.model.parts or free_run_error(problem, one) > most:
+        error, doubt = free_runs(problem, one)
+        if not one.model.parts or error > max(most, GROWN**2 * (least + doubt)):
             continue
         if one is named:
             return base, complete_on_whole_runs(problem, as_read, verdict)

@@ -267,7 +267,11 @@ def _goes(size: tuple[float, float, float], channel_unit: str) -> str:
 def _few(discovery: Discovery) -> str:
     """Say on how many pieces it rests, where these are few."""
     size = discovery.held_out
-    return f", p = {_chance(size.p)} over {size.pieces} pieces" if 0 < size.pieces < FEW else ""
+    return (
+        f", p = {_chance(size.p)} over {size.pieces} pieces"
+        if 0 < size.pieces < FEW and size.after < size.before
+        else ""
+    )
 
 
 def _chance(p: float) -> str:
