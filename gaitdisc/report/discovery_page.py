@@ -75,9 +75,9 @@ def gap_table(discovery: Discovery) -> Table:
     held, fitted = (counted(size.pieces, "piece") for size in (discovery.held_out, discovery.train))
     caption = (
         f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
-        "would leave. Closed: of the squared gap above the noise. p: one-sided test of the errors before and after, all "
-        f"channels together, over pieces of the runs (held out: {held}, fitted: {fitted}): signed ranks (Wilcoxon), or, "
-        "where these show nothing, each by its size, with its autocorrelation (Bartlett)."
+        "would leave. Closed: of the squared gap above the noise. p: one-sided test of the errors before and after, "
+        f"all channels together, over pieces of the runs (held out: {held}, fitted: {fitted}): signed ranks "
+        "(Wilcoxon), or, where these show nothing, each by its size, with its autocorrelation (Bartlett)."
         f"{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
