@@ -269,7 +269,7 @@ def _few(discovery: Discovery) -> str:
     size = discovery.held_out
     return (
         f", p = {_chance(size.p)} over {size.pieces} pieces"
-        if 0 < size.pieces < FEW and size.after < size.before
+        if 0 < size.pieces < FEW and size.after <= size.before
         else ""
     )
 
