@@ -35,7 +35,7 @@ def test_numbers_put_off_hold_the_true_ones_within_their_bounds(study):
     [
         "leg",
         "exo ankle",
-        pytest.param("elbow", marks=pytest.mark.xfail(reason="issue 29: not named since the decision was mended")),
+        "elbow",
         "standing",
         "chain",
     ],
