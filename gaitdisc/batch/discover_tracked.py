@@ -31,7 +31,7 @@ from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import TRACKED, Discovery
+from gaitdisc.results.discovery import ALPHA, TRACKED, Discovery
 from gaitdisc.results.effect_words import amount
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.parts import Term
@@ -61,11 +61,11 @@ def discover_tracked(
     progress: Callable[[str], None] = lambda _: None,
 ) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
-    if request.effects:
+    if request.effects or request.alpha != ALPHA:
         raise SchemaError(
-            "effects are given for a simulation, a function or a model that runs forward",
+            "effects and alpha are given for a simulation, a function or a model that runs forward",
             f"{kinematics.name} is a walk that is tracked",
-            "Leave the effects out: each joint is searched.",
+            "Leave them out: each joint is searched.",
         )
     progress(f"reading {kinematics.name} and the forces")
     walk = tracked_pass(tracked, kinematics, progress)

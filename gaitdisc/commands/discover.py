@@ -43,6 +43,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     effects: Annotated[
         str, typer.Option(help="Search nothing: fit exactly these, effect@place, with commas between them.")
     ] = "",
+    alpha: Annotated[float, typer.Option(help="The greatest rate of false finds.")] = 0.05,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
     quiet: Quiet = False,
 ) -> None:
@@ -67,7 +68,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.engines.mapping import names_engine
     from gaitdisc.simulation.writing import write_simulation
 
-    request = Request.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()))
+    request = Request.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()), alpha)
     if measured is not None and names_engine(simulation):
         from gaitdisc.batch.discover_engine import discover_model_file, write_answer
         from gaitdisc.engines.tracked_mapping import read_tracked

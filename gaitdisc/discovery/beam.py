@@ -14,10 +14,11 @@ import numpy as np
 from gaitdisc.discovery.candidate import Identity
 from gaitdisc.discovery.candidate_model import Explanations, Part
 from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
-from gaitdisc.discovery.paired_test import LEVEL, differing, signed_rank_p
+from gaitdisc.discovery.paired_test import differing, signed_rank_p
 from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.search import Search
+from gaitdisc.results.discovery import ALPHA
 
 WIDTH = 5  # sets that are extended side by side
 MOST = 4  # explanations
@@ -137,7 +138,7 @@ class Beam:
                 fewer = self.without(now, part.candidate.identity)
                 share = (fewer.gap - now.gap) / self.as_read.gap
                 worth = max(MATTERS, ABOVE_PENALTY * penalty_of(part.candidate, part.values))
-                if share < worth or errs_more(fewer, now) >= LEVEL:
+                if share < worth or errs_more(fewer, now) >= ALPHA:
                     losses.append((share, part, fewer))
             if not losses:
                 break
@@ -154,7 +155,7 @@ class Beam:
             if 0 < len(one.model.explanations) <= len(now.model.explanations)
             and one.model.penalty < now.model.penalty - 1e-9
             and self.as_read.gap - one.gap > AS_MUCH * closed
-            and errs_more(one, now) >= LEVEL
+            and errs_more(one, now) >= ALPHA
         ]
         return min(equal, key=lambda one: (round(one.model.penalty, 3), one.gap)) if equal else now
 

@@ -95,7 +95,7 @@ def closing_most(problem: Problem, scale: GapScale, also: tuple[tuple[Part, ...]
     near, others = (tuple(one.scored for one in beam.near(now, within)) for within in (TIED, np.inf))
     closed = 1 - now.gap / beam.as_read.gap
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
-    test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()))
+    test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), problem.alpha)
     return Outcome(beam.as_read.scored, now.scored, closed, test, tuple(small), near, others[:LISTED])
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.regular_file import check_regular
+from gaitdisc.results.discovery import ALPHA
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.refusal import SimulationError
@@ -77,11 +78,16 @@ class Request:
     shapes: tuple[Shape, ...] = ()
     effects: tuple[str, ...] = ()  # `name@place`; nothing is searched where there are any
     catalogue: Path | None = None  # the file of the shapes
+    alpha: float = ALPHA  # the greatest rate of false finds
 
     @classmethod
-    def read(cls, catalogue: Path | None, effects: tuple[str, ...] = ()) -> Request:
-        """Read a catalogue, if there is one, and note the effects."""
-        return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue)
+    def read(cls, catalogue: Path | None, effects: tuple[str, ...] = (), alpha: float = ALPHA) -> Request:
+        """Read a catalogue, if there is one, and note the effects and the rate of false finds."""
+        if not 0 < alpha < 1:
+            raise SchemaError(
+                "the rate of false finds, alpha, lies between 0 and 1", f"found {alpha:g}", "Give .05, say."
+            )
+        return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha)
 
 
 ALL = Request()  # the effects that come along

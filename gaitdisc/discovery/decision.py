@@ -13,7 +13,6 @@ from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
 from gaitdisc.discovery.held_out import Proof, by_size, proof_of
-from gaitdisc.discovery.paired_test import LEVEL
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import MARGIN, ranked
@@ -157,7 +156,7 @@ def prefer_on_held_out(problem: Problem, now: ScoredModel, near: tuple[ScoredMod
     better = [
         (proof.test.fall, one)
         for proof, one in zip(proofs, equal, strict=True)
-        if proof.bears_out and proof.test.p < LEVEL / len(equal)
+        if proof.bears_out and proof.test.p < problem.alpha / len(equal)
     ]
     return max(better, key=lambda one: one[0])[1] if better else now
 

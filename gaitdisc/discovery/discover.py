@@ -45,7 +45,14 @@ def discover(
     refitted: fits the numbers of what was found once more, where its runs stand for those of another program
     """
     measured = without_spikes(measured)
-    begun = partial(set_up_problem, simulation, shapes=request.shapes, progress=progress, possible=possible)
+    begun = partial(
+        set_up_problem,
+        simulation,
+        shapes=request.shapes,
+        progress=progress,
+        possible=possible,
+        alpha=request.alpha,
+    )
     problem = begun(measured)
     refuse_unknown(problem.search, request.effects)
     agreeing = agreeing_trials(problem, measured)

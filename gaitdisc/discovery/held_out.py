@@ -202,13 +202,14 @@ def proof_of(problem: Problem, before: ScoredModel, now: ScoredModel, like: Scor
 def tested(problem: Problem, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
     """Compare the squared errors of the same runs of two models."""
     period = int(problem.rhythm.samples / like.shooting.segments.every) + 1
-    return paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
+    test = paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
+    return replace(test, alpha=problem.alpha)
 
 
 def by_size(proof: Proof, like: ScoredModel) -> Proof:
     """Return a proof whose pieces count by the size of what they gain."""
     test = projected_test(proof.before.fit.residual, proof.after.fit.residual, like.noise.size)
-    return replace(proof, test=test)
+    return replace(proof, test=replace(test, alpha=proof.test.alpha))
 
 
 def gap_size(
@@ -224,7 +225,7 @@ def gap_size(
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
     whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
-    return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces)
+    return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces, alpha=test.alpha)
 
 
 def drawn_runs(problem: Problem, before: Trial, after: Trial) -> Runs:

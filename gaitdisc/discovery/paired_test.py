@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.estimates import NORMAL_95
+from gaitdisc.results.discovery import ALPHA
 
-LEVEL = 0.05
 WANTED = 12  # pieces; where pieces of a period are fewer, they are cut shorter, not below the residuals' correlation
 ALIKE_BELOW = 0.05  # of the greatest difference
 FEWEST_DIFFERING = 6  # pieces
@@ -25,11 +25,12 @@ class PairedTest:
     p: float  # chance of so clear a fall if each piece could as well rise; NaN where a run failed
     pieces: int
     fall: float  # of the summed squared error over that of the noise; negative where it rises
+    alpha: float = ALPHA  # the greatest rate of false finds
 
     @property
     def bears_out(self) -> bool:
         """Whether the error falls, and not by chance."""
-        return self.fall > 0 and self.p < LEVEL
+        return self.fall > 0 and self.p < self.alpha
 
 
 def paired_test(

@@ -25,6 +25,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.results.discovery import ALPHA
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
@@ -53,6 +54,7 @@ class Problem:
     held_out: tuple[int, ...]  # trials that nothing but a start is fitted to
     guess: StateGuess
     record_filter: RecordFilter
+    alpha: float = ALPHA  # the greatest rate of false finds
 
     @property
     def rhythm(self) -> Rhythm:
@@ -165,6 +167,7 @@ def set_up_problem(
     shapes: tuple[Shape, ...] = (),
     progress: Callable[[str], None] = lambda _: None,
     possible: Callable[[Candidate], bool] = lambda _: True,
+    alpha: float = ALPHA,
 ) -> Problem:
     """Prepare a problem: split the trials, list places and explanations, guess the states.
 
@@ -184,7 +187,8 @@ def set_up_problem(
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
     passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
-    problem = Problem(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess, passed)
+    learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
+    problem = Problem(search, measured, learned, held_out, guess, passed, alpha)
     return _less_idle(problem)
 
 

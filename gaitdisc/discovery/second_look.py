@@ -15,11 +15,11 @@ from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
 from gaitdisc.discovery.held_out import GROWN, by_size, free_run_error, free_runs, grows_along_runs, proof_of
-from gaitdisc.discovery.paired_test import LEVEL
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
+from gaitdisc.results.discovery import ALPHA
 
 AT_ONCE, LATE = "linear_stiffness", "delayed_feedback"
 NEARLY = 0.01  # of a free run's squared error: too little to distinguish explanations by
@@ -209,4 +209,4 @@ def is_needed(problem: Problem, relative: ScoredModel, general: ScoredModel) -> 
         return True
     scale, base = scale_of(problem), problem.search.base
     left = [cross_validated(scale, one.shooting, base, one.model.parts, one.model) for one in (first, second)]
-    return proof.test.fall > 0 and errs_more(*left) < LEVEL
+    return proof.test.fall > 0 and errs_more(*left) < ALPHA

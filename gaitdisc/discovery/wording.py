@@ -9,7 +9,6 @@ from dataclasses import replace
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.gap_share import AGREES, MODEL_ERROR
 from gaitdisc.discovery.held_out import STRONG_SUPPORT
-from gaitdisc.discovery.paired_test import LEVEL
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import (
     amount,
@@ -99,7 +98,7 @@ def _nothing(discovery: Discovery) -> str:
     pieces = discovery.held_out.pieces
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} pieces)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
-    if discovery.held_out.p < LEVEL:
+    if discovery.held_out.p < discovery.held_out.alpha:
         return (
             f"Nothing is named: several things are missing at a time; {for_what} would explain the most, but less than "
             "half of the held-out error. Trials in which fewer things act would decide."

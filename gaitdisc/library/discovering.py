@@ -31,6 +31,7 @@ def discover(
     catalogue: Path | str | None = None,
     progress: Callable[[str], None] | None = None,
     effects: Sequence[str] = (),
+    alpha: float = 0.05,
 ) -> tuple[Discovery, Simulation]:
     """Find where a model and measured trials disagree, name what is missing with its numbers, and add it.
 
@@ -54,6 +55,9 @@ def discover(
     effects : sequence of str, optional
         Search nothing, and fit exactly these, each ``"effect@place"`` (``"viscous_damping@air"``): data that were held
         out prove or refute them together.
+    alpha : float, optional
+        The greatest rate of false finds: the p of what is named, on held-out data, is below it. Of a recorded walk
+        that is tracked it is .05.
 
     Returns
     -------
@@ -66,7 +70,8 @@ def discover(
     ------
     GaitdiscError
         If a file cannot be read, a column is missing, trials are too short or uneven, the model as given leaves all
-        bounds, or an effect or place of `effects` does not exist: the nearest are said.
+        bounds, an effect or place of `effects` does not exist: the nearest are said, or `alpha` does
+        not lie between 0 and 1.
 
     References
     ----------
@@ -78,7 +83,7 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
-    request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects))
+    request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects), alpha)
     if isinstance(model, Path | str) and names_engine(model):
         return _of_engine(Path(model), data, request, progress or _to_the_terminal)
     simulation = model_of(model)

@@ -77,7 +77,8 @@ def gap_table(discovery: Discovery) -> Table:
         f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
         "would leave. Closed: of the squared gap above the noise. p: one-sided test of the errors before and after, "
         f"all channels together, over pieces of the runs (held out: {held}, fitted: {fitted}): signed ranks "
-        "(Wilcoxon), or, where these show nothing, each by its size, with its autocorrelation (Bartlett)."
+        "(Wilcoxon), or, where these show nothing, each by its size, with its autocorrelation (Bartlett). A name needs "
+        f"a p on held-out data below {discovery.held_out.alpha:g}, the rate of false finds that is allowed."
         f"{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")

@@ -17,6 +17,7 @@ from gaitdisc.results.provenance import Provenance
 if TYPE_CHECKING:
     import pandas as pd
 
+ALPHA = 0.05  # the greatest rate of false finds, unless a user sets another
 VERDICTS = (
     "no_gap",
     "missing_physics",
@@ -106,6 +107,7 @@ class GapSize:
     pieces: int = 0
     # which data these are: `trial 4`, `trial 1, last quarter`; empty where all that was fitted is meant
     of: str = ""
+    alpha: float = ALPHA  # the greatest rate of false finds, which p has to be below for a name
 
     @property
     def ranked(self) -> list[str]:
@@ -322,6 +324,7 @@ def _gap(one: GapSize) -> dict[str, Any]:
         "unexplained": _number(one.unexplained),
         "p": _number(one.p),
         "pieces": one.pieces,
+        "alpha": one.alpha,
         **({"of": one.of} if one.of else {}),
         "channels": {name: named(sizes) for name, sizes in one.channels.items()},
     }

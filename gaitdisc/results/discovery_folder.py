@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaitdisc.results.discovery import (
+    ALPHA,
     Correction,
     Discovery,
     Estimate,
@@ -125,7 +126,8 @@ def _explanation(row: Mapping[str, Any]) -> Explanation:
 
 def _gap(row: Mapping[str, Any]) -> GapSize:
     channels = {name: _sizes(size) for name, size in row["channels"].items()}
-    return GapSize(*_sizes(row), p=_number(row["p"]), channels=channels, pieces=row["pieces"], of=row.get("of", ""))
+    p, alpha = _number(row["p"]), row.get("alpha", ALPHA)
+    return GapSize(*_sizes(row), p=p, channels=channels, pieces=row["pieces"], of=row.get("of", ""), alpha=alpha)
 
 
 def _sizes(row: Mapping[str, Any]) -> tuple[float, float, float]:

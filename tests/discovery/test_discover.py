@@ -344,3 +344,18 @@ def test_the_answer_says_how_large_an_error_of_an_input_would_explain_it_as_well
     assert says(exact.what, "'push'", "Coulomb friction", " N (rms)")
     size = float(exact.what.split(", ")[1].split(" ")[0])
     assert size == pytest.approx(1.5, rel=0.03)
+
+
+def test_the_rate_of_false_finds_is_the_users():
+    measured = record(with_load("-8*v*abs(v)"), SEED)
+    strict, _ = discover(mass(), measured, Request(effects=("quadratic_drag@load",), alpha=1e-300))
+    usual, _ = discover(mass(), measured, Request(effects=("quadratic_drag@load",)))
+    assert (strict.given, strict.held_out.alpha) == ("refuted", 1e-300)
+    assert (usual.given, usual.held_out.alpha) == ("proven", 0.05)
+    assert strict.held_out.p == usual.held_out.p
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1.0, -0.1, float("nan")])
+def test_a_rate_that_is_none_is_refused(alpha):
+    with pytest.raises(SchemaError, match=f"alpha.*{alpha:g}"):
+        Request.read(None, (), alpha)
