@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import named_estimates
 from gaitdisc.discovery.prescribed import JointFinding, LeftMoment, Named
-from gaitdisc.discovery.ranking import TIE
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.results.discovery import Discovery, FoundEffect, GapSize, Runs, Whereabouts
 from gaitdisc.simulation.simulation import Simulation
@@ -27,7 +27,8 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
         parts.append(best.part)
         where.append(Whereabouts(best.part.candidate.kind, best.part.candidate.place, 1.0 / len(named)))
         rivals += [
-            replace(_effect(base, one, float("nan")), tied=best.gained - one.gained < TIE) for one in others[1:4]
+            replace(_effect(base, one, float("nan")), tied=best.gained - one.gained < CRITERIA.tie)
+            for one in others[1:4]
         ]
     if not named and joints:
         strongest = max(joints, key=lambda one: one.rivals[0].gained if one.rivals else -np.inf)

@@ -10,10 +10,20 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
 from gaitdisc.discovery.estimates import NORMAL_95, estimates_of
-from gaitdisc.discovery.held_out import Proof, Trial, drawn_runs, gap_size, grows_along_runs, proof_of, runs_of, tested
+from gaitdisc.discovery.held_out import (
+    Proof,
+    Trial,
+    compare_runs,
+    drawn_runs,
+    gap_size,
+    grows_along_runs,
+    proof_of,
+    runs_of,
+)
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.problem import Problem
@@ -28,7 +38,6 @@ from gaitdisc.results.effect_words import amount, spoken, with_unit
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
-HALF = 0.5
 MOST_EXPLANATIONS = 5
 DRAWN = 200  # samples of a run
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
@@ -49,7 +58,7 @@ def answer(
     channels = tuple(name for name, _ in base.observations)
     floor, proof = problem.noise_floor(now.noise.size), verdict.proof
     before, after = (runs_of(problem, one, problem.learned, now) for one in (as_read, now))
-    train = gap_size(before, after, floor, channels, tested(problem, before, after, now))
+    train = gap_size(before, after, floor, channels, compare_runs(problem, before, after, now))
     held = proof if proof and now.model.parts else proof_of(problem, as_read, now, now)
     of = f"trial {', '.join(problem.measured.trials[one] for one in problem.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
@@ -170,7 +179,7 @@ def list_explanations(
         after = runs_of(problem, one.scored, problem.held_out, verdict.found)
         effects = tuple(reported_rival(problem, one, number) for number in range(len(one.scored.model.parts)))
         floor = np.array([floor for _, _, floor in size.channels.values()])
-        test = tested(problem, held.before, after, verdict.found)
+        test = compare_runs(problem, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
         explanation = Explanation(effects, replace(left, of=size.of), *first_run(problem, after, size))
         found.append((float(np.nan_to_num(left.after, nan=np.inf)), explanation))
@@ -245,7 +254,7 @@ def phase_of(problem: Problem, now: ScoredModel, part: Part) -> tuple[float, ...
     phase = now.shooting.segments.of(problem.measured.drive.inputs)[:, :, names.index("phase")].ravel()
     bins = np.minimum((phase * 100).astype(int), 99)
     mean = np.bincount(bins, push.ravel(), 100) / np.maximum(np.bincount(bins, minlength=100), 1)
-    strong = np.flatnonzero(mean > HALF * mean.max())
+    strong = np.flatnonzero(mean > CRITERIA.half * mean.max())
     return (float(strong[0] / 100), float((strong[-1] + 1) / 100)) if strong.size else ()
 
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Identity
 from gaitdisc.discovery.candidate_model import Explanations, Part
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
-from gaitdisc.discovery.paired_test import differing, signed_rank_p
+from gaitdisc.discovery.paired_test import errors_rise_p
 from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.search import Search
@@ -23,14 +24,7 @@ from gaitdisc.results.discovery import ALPHA
 WIDTH = 5  # sets that are extended side by side
 MOST = 4  # explanations
 FIRST, NEXT = 12, 6  # that are fitted beside nothing, and beside each set
-LEAST_FALL = 0.02  # of the misfit, to first order
-SLACK = 0.03  # of the gap: by how much a first-order promise may be beaten by the fit
-MATTERS = 0.05  # of the gap: what an explanation must close to be named
-ABOVE_PENALTY = 1.5  # times its penalty
-STOPS = 0.03  # of the gap: a step that costs so much more than it closes is the last
 EXCHANGES = 2
-DONE = 1.1  # times what a simulation that lacks nothing may leave
-AS_MUCH = 0.8  # of what the best closes, a simpler set must close to stand in its place
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +55,9 @@ class Beam:
             longer = self._extended(beam)
             if not longer:
                 break
-            least, cheapest = min(one.gap for one in beam), min(map(self.cost, beam))
+            least = min(one.gap for one in beam)
             beam = sorted(longer, key=self.cost)[:WIDTH]
-            closes = least - beam[0].gap > 0.5 * MATTERS * self.as_read.gap
-            if not closes or self.cost(beam[0]) > cheapest + STOPS:
-                break
-            if self.scale.mean_square(beam[0].model.fit) < DONE * self.scale.least:
+            if least - beam[0].gap <= 0.5 * CRITERIA.matters * self.as_read.gap:
                 break
         for _ in range(EXCHANGES):
             best = self.best
@@ -92,12 +83,12 @@ class Beam:
             return []
         scores = self.search.scorer(now.shooting, model).scores(self.search.open_beside(model))
         whole = float((fit.projected[0] ** 2).sum())
-        wanted = self.cost(self.best) + SLACK
+        wanted = self.cost(self.best) + CRITERIA.plain
         promising = []
         for score in scores:
             left = math.sqrt(max(1 - score.gain / whole, 0.0))
             promised = now.gap / self.as_read.gap * left + model.penalty + penalty_of(score.candidate, score.values)
-            if score.gain > LEAST_FALL * whole and promised < wanted:
+            if promised < wanted:
                 promising.append(score)
         return promising[:most]
 
@@ -137,7 +128,7 @@ class Beam:
             for part in now.model.parts:
                 fewer = self.without(now, part.candidate.identity)
                 share = (fewer.gap - now.gap) / self.as_read.gap
-                worth = max(MATTERS, ABOVE_PENALTY * penalty_of(part.candidate, part.values))
+                worth = max(CRITERIA.matters, penalty_of(part.candidate, part.values))
                 if share < worth or errs_more(fewer, now) >= ALPHA:
                     losses.append((share, part, fewer))
             if not losses:
@@ -154,7 +145,7 @@ class Beam:
             for one in self.known.values()
             if 0 < len(one.model.explanations) <= len(now.model.explanations)
             and one.model.penalty < now.model.penalty - 1e-9
-            and self.as_read.gap - one.gap > AS_MUCH * closed
+            and self.as_read.gap - one.gap > CRITERIA.as_much * closed
             and errs_more(one, now) >= ALPHA
         ]
         return min(equal, key=lambda one: (round(one.model.penalty, 3), one.gap)) if equal else now
@@ -176,4 +167,4 @@ def errs_more(one: CrossValidated, other: CrossValidated) -> float:
     """Chance of so much greater left-out errors of one set if it were no worse than another (Wilcoxon, one-sided)."""
     if not np.isfinite(one.errors).all() or len(one.errors) != len(other.errors):
         return 0.0
-    return signed_rank_p(differing(np.sqrt(one.errors) - np.sqrt(other.errors)))
+    return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))

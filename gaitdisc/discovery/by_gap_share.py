@@ -8,6 +8,7 @@ import numpy as np
 
 from gaitdisc.discovery.beam import Beam, errs_more
 from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import leaves
 from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapScale, cross_validated
 from gaitdisc.discovery.noise import sensor_noise, white_noise
@@ -17,15 +18,11 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.discovery.unnamed_terms import unnamed_terms
 
-MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
-INEXACT_LEAVES = 0.05  # of a channel's spread, which a simulation that itself errs may leave beside the noise
 LISTED = 6  # sets beside the answer
 TIED = 0.02  # of the gap, by which another set may cost more
-NEAR = 0.25  # of a channel's spread
 WORTH_HALVING = 0.7  # of the error, which shorter runs must leave at most
 HALF_PERIOD = 0.5
 FEWEST = 12  # samples
-MOST_ERROR = 2.0  # of the squared spread, which a run that has left the data counts as
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,12 +55,12 @@ def leaves_noise(problem: Problem, now: ScoredModel) -> bool:
     Where this is not known (a filtered record whose file does not say it), whether it is autocorrelated no further than
     by the filter; where the simulation itself errs, and its errors with it, whether it is a small share of the spread.
     """
-    if problem.search.base.inexact and scale_of(problem).relative(now.model.fit) < INEXACT_LEAVES:
+    if problem.search.base.inexact and scale_of(problem).relative(now.model.fit) < CRITERIA.inexact:
         return True
     known = np.isfinite(problem.sensor_noise)
     if not known.all():
         return not now.noise.is_autocorrelated
-    return leaves(now, problem.sensor_noise) < MERE_NOISE
+    return leaves(now, problem.sensor_noise) < CRITERIA.mere_noise
 
 
 def closing_most(problem: Problem, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
@@ -110,7 +107,7 @@ def near_runs(problem: Problem, scale: GapScale) -> CrossValidated:
         shooting = problem.learned_runs(samples)
         now = cross_validated(scale, shooting, problem.search.base, (), _as_read(problem, scale, shooting))
         tried.append((scale.relative(now.model.fit), now))
-        if tried[-1][0] < NEAR or samples / 2 < max(FEWEST, HALF_PERIOD * period):
+        if tried[-1][0] < CRITERIA.near or samples / 2 < max(FEWEST, HALF_PERIOD * period):
             break
         samples //= 2
     least = min(error for error, _ in tried)
@@ -136,7 +133,7 @@ def on_longer_runs(problem: Problem, scale: GapScale, now: CrossValidated) -> Cr
         starts = guess.starts(shooting.segments)
         begun = fit_model(shooting, problem.search.base, before.model.parts, starts, TURNS, like=before.model)
         longer = cross_validated(scale, shooting, problem.search.base, begun.parts, begun)
-        if not scale.relative(longer.model.fit) < NEAR:
+        if not scale.relative(longer.model.fit) < CRITERIA.near:
             break
         found = longer
     return found
@@ -150,7 +147,7 @@ def as_read_on(problem: Problem, scale: GapScale, as_read: CrossValidated, longe
     shooting = longer.shooting.with_noise(scale.error_of(as_read.model.fit))
     starts = longer.model.fit.starts
     model = fit_model(shooting, problem.search.base, (), starts, TURNS, like=as_read.model)
-    most = MOST_ERROR * (scale.spread / scale.size) ** 2
+    most = CRITERIA.lost * (scale.spread / scale.size) ** 2
     square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())
     return CrossValidated(model, shooting, np.full(len(longer.errors), mean), scale.gap_above(mean))

@@ -9,25 +9,21 @@ import numpy as np
 from gaitdisc.discovery.beam import MOST
 from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
-from gaitdisc.discovery.held_out import Proof, by_size, proof_of
+from gaitdisc.discovery.held_out import Proof, proof_of
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import ProcessNoise, rank_process_noise
-from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wrong_start import wrong_starts
 from gaitdisc.results.discovery import Estimate
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
-NEAR = 40.0  # by which a rival's criterion may be worse and still be tried on long runs
 MOST_NEAR = 4
-REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
-PUSHED = 0.03  # by which process noise must be likelier than a sensor's autocorrelated noise, for each number
-HALF = 0.5  # of the held-out squared error, which names must take where more were found than are named
-WORTH = 0.05  # of what was named, which a shape without a name must explain beyond it
 
 
 @dataclass(frozen=True)
@@ -79,8 +75,7 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
     elif kept is not longer:
         longer = scored(kept.shooting, problem.search.base, kept.model)
     proof = held_out_proof(problem, as_read, longer)
-    proof = proof if proof.bears_out else by_size(proof, longer)
-    if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < HALF):
+    if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     return Verdict(longer.word, longer, tuple(rivals), proof=proof)
 
@@ -129,15 +124,15 @@ def plainest(problem: Problem, scale: GapScale, named: ScoredModel) -> Verdict |
     named: the simulation with what the search selected, which leaves more than noise
     """
     found = closing_most(problem, scale, (named.model.parts,) if named.model.parts else ())
-    if found is None or found.closed < HALF:
+    if found is None or found.closed < CRITERIA.half:
         return None
     found = replace(found, now=prefer_on_held_out(problem, found.now, found.near))
     plain, likelier = compared([found.as_read, found.now], problem.search.base)
-    if plain.bic - likelier.bic < MARGIN:
+    if plain.bic - likelier.bic < CRITERIA.margin:
         return None
     now = needed(problem, found.as_read, found.now)
     proof = held_out_proof(problem, found.as_read, now)
-    if now is found.now and proof.closed > HALF and not proof.bears_out:  # few pieces are held out
+    if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
         proof = replace(proof, test=found.test)
     if not proof.bears_out:
         return None
@@ -152,7 +147,7 @@ def prefer_on_held_out(problem: Problem, now: ScoredModel, near: tuple[ScoredMod
     """
     parts, size = len(now.model.parts), now.model.size
     equal = [one for one in near if len(one.model.parts) == parts and one.model.size <= size]
-    proofs = [by_size(proof_of(problem, now, one, one), one) for one in equal]
+    proofs = [proof_of(problem, now, one, one) for one in equal]
     better = [
         (proof.test.fall, one)
         for proof, one in zip(proofs, equal, strict=True)
@@ -189,7 +184,7 @@ def kept_on_longer_runs(problem: Problem, as_read: ScoredModel, named: ScoredMod
     if len(named.model.parts) < 2 or problem.spans_a_period(as_read):
         return named
     longer = problem.lengthened(named)
-    kept = pruned(problem.search, longer, MARGIN).model.parts
+    kept = pruned(problem.search, longer, CRITERIA.margin).model.parts
     if len(kept) == len(named.model.parts):
         return named
     model = fit_model(named.shooting, problem.search.base, kept, named.model.fit.starts, like=named.model)
@@ -205,14 +200,13 @@ def with_autocorrelation(
     """
     plain, *found = compared([as_read, named, *([shape] if shape else [])], problem.search.base)
     process_noise = random_push(problem, as_read)
-    ordered = [one for one in found if explains(problem, plain, one, process_noise)]
+    ordered = [one for one in found if explains(problem, plain, one)]
     if process_noise and not ordered:
         term = None
         if not scale_of(problem).agrees(as_read.model.fit):
             term = find_term_before(problem, as_read, named, rivals, process_noise)
         return term or Verdict("process_noise", as_read, tuple(rivals), process_noise)
-    worth = WORTH * (plain.bic - found[0].bic) + MARGIN
-    if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
+    if shape and found[1] in ordered and found[1].bic < found[0].bic - CRITERIA.margin:
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(problem, plain, found[1]))
     return None
 
@@ -230,15 +224,15 @@ def find_term_before(
     pushes: beside the simulation as read
     """
     among = len(problem.search.candidates)
-    others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + NEAR]
+    others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
         before, now = compared([as_read, one], problem.search.base)
         beside = rank_process_noise(now.shooting, now.model, problem.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
-        proof = by_size(held_out_proof(problem, before, now), now)
+        proof = held_out_proof(problem, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
-        if one.model.parts and likelier > MARGIN and left_out_errors_fall(problem, before, now):
+        if one.model.parts and likelier > CRITERIA.margin and left_out_errors_fall(problem, before, now):
             borne.append((likelier, now, proof))
     if not borne:
         return None
@@ -261,7 +255,7 @@ def says_more(problem: Problem, shape: ScoredModel, named: ScoredModel) -> bool:
     shape, named: the simulation with a fitted shape, and with what the search selected
     """
     named, shape = compared([named, shape], problem.search.base)
-    return shape.bic < named.bic - MARGIN
+    return shape.bic < named.bic - CRITERIA.margin
 
 
 def decided(problem: Problem, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
@@ -272,7 +266,7 @@ def decided(problem: Problem, named: ScoredModel, rivals: list[ScoredModel]) -> 
     longer = problem.lengthened(named)
     if len(named.model.parts) > 1:
         return longer, rivals
-    near = [one for one in rivals if one is not named and one.bic < named.bic + NEAR][:MOST_NEAR]
+    near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
     near = [problem.lengthened(one, longer.shooting.segments.span) for one in near]
     near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
     first, *others = ranked(compared([longer, *near], problem.search.base), problem.search.candidates)
@@ -284,21 +278,16 @@ def decided(problem: Problem, named: ScoredModel, rivals: list[ScoredModel]) -> 
 def random_push(problem: Problem, as_read: ScoredModel) -> ProcessNoise | None:
     """Return the random push that explains the gap better than noise of the sensors, if there is one."""
     best = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)[0]
-    return best if best.rival - best.bic > PUSHED * best.numbers + MARGIN else None
+    return best if best.rival - best.bic > CRITERIA.margin else None
 
 
-def explains(problem: Problem, as_read: ScoredModel, now: ScoredModel, process_noise: ProcessNoise | None) -> bool:
+def explains(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
     """Whether something that repeats itself explains the gap, also on held-out trials.
 
     as_read, now: the simulation as read and with what was found, under one noise
-    process_noise: random pushes that would explain it as well; they leave nothing for anything that repeats itself
     """
-    if not now.model.parts or as_read.bic - now.bic < MARGIN:
-        return False
-    share = REPEATS if process_noise else 0.0
-    if 1 - now.model.fit.misfit / as_read.model.fit.misfit <= share:
-        return False
-    return held_out_proof(problem, as_read, now).bears_out
+    likelier = bool(now.model.parts) and as_read.bic - now.bic >= CRITERIA.margin
+    return likelier and held_out_proof(problem, as_read, now).bears_out
 
 
 def held_out_proof(

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
-from gaitdisc.discovery.gap_share import PER_INDEPENDENT, CrossValidated, GapScale, cross_validated
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
@@ -28,8 +29,6 @@ SHARE_OF_SPEED = 0.2  # at which friction that depends on place has risen
 _RISE = re.compile(r"\*tanh\((.+)/(\S+)\)")
 _ONE_BUMP = re.compile(r"exp\(-\(\(\((\w+|\(.*?\)) - (\S+?)\)/(\S+?)\)\*\*2\)\)(.*)")
 FITTED = 8  # shapes, of those that promise most
-EACH_NUMBER = 0.004  # of the gap
-SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
 
 
 def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]:
@@ -98,7 +97,7 @@ def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
 
     one, plain: with a shape or its reading, and the simulation as read
     """
-    return one.gap / plain.gap + EACH_NUMBER * one.model.size if plain.gap > 0 else np.inf
+    return one.gap / plain.gap + CRITERIA.each_number * one.model.size if plain.gap > 0 else np.inf
 
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
@@ -113,7 +112,7 @@ def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[
     """Shapes that promise most, to first order, with the factors that they promise it with."""
     scorer = search.scorer(plain.shooting, plain.model)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
-    penalty = float(np.log(plain.shooting.known.sum() / PER_INDEPENDENT))
+    penalty = float(np.log(plain.shooting.known.sum() / CRITERIA.independent))
     scores = sorted(scorer.scores(shapes), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
     return [Part(one.candidate, one.values) for one in scores[:FITTED]]
 
@@ -123,7 +122,7 @@ def _thinned(model: CandidateModel) -> Iterator[Part]:
     (part,) = model.parts
     error = np.sqrt(np.diag(model.fit.covariance))[: model.size]
     value = np.array([part.values[slot] for slot in part.candidate.slots])
-    keep = np.abs(value) > SIGNIFICANT * error
+    keep = np.abs(value) > CRITERIA.certain * error
     if not keep.all() and keep.any():
         pieces = tuple(piece for piece, stays in zip(part.candidate.pieces, keep, strict=True) if stays)
         fewer = replace(part.candidate, pieces=pieces)

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import Explanations
-from gaitdisc.discovery.ranking import ALIKE, MARGIN, ranked
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared
 from gaitdisc.discovery.search import Search, is_certain
 
-MATERIAL = (0.0, 0.001, 0.01)  # of what is explained already, which the first, second, third explanation must explain
-MATERIAL_INEXACT = 0.02  # of it, where the simulation itself errs: its errors are no explanation
 MOST_TURNS = 5  # explanations added, those that were eliminated again included
 FIRST_PLACES = 5  # that a second explanation is sought beside
 SAME = 0.1  # difference of the criterion
@@ -34,15 +33,14 @@ def select_forward(
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
-    explained, turns, inexact = 0.0, 0, search.base.inexact > 0
+    explained, turns = 0.0, 0
     while len(now.model.parts) < most and turns < MOST_TURNS:
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
         number = len(now.model.parts) + 1
-        share = MATERIAL_INEXACT if inexact else MATERIAL[min(number, len(MATERIAL)) - 1]
-        worth = max(MARGIN, share * explained)
-        if not more or before.bic - more[0].bic < (worth if number > 2 or inexact else MARGIN):
+        worth = max(CRITERIA.margin, CRITERIA.material * explained if search.base.inexact else 0.0)
+        if not more or before.bic - more[0].bic < worth:
             break
         better = more[0]
         if number == 2:
@@ -119,7 +117,7 @@ def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> 
         if others:
             now, *others = compared([now, *others], search.base)
             best = ranked(others, search.candidates)[0]
-            if best.bic < now.bic - ALIKE:
+            if best.bic < now.bic - SAME:
                 now = best
     return now
 

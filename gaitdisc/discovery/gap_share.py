@@ -13,15 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.noise import Noise, white_noise
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.simulation import Simulation
 
-MODEL_ERROR = 0.01  # of a channel's spread: no simulation of hardware is exact
-AGREES = 1.5  # times the root mean square that a simulation that lacks nothing may leave
-PER_INDEPENDENT = 20.0  # samples of what a wrong simulation leaves say as much as one independent number
 CONVERGED = 1e-4  # of a number's share of the misfit
 TURNS, AGAIN = 15, 6
 FOLDS = 6
@@ -42,7 +40,7 @@ class GapScale:
     @property
     def size(self) -> NDArray[np.float64]:
         """What a simulation that lacks nothing may leave (channel,): noise, and a model error of a hundredth."""
-        return np.sqrt(self.noise**2 + (MODEL_ERROR * self.spread) ** 2)
+        return np.sqrt(self.noise**2 + (CRITERIA.model_error * self.spread) ** 2)
 
     @property
     def floor(self) -> float:
@@ -52,7 +50,7 @@ class GapScale:
     @property
     def least(self) -> float:
         """Mean square that a simulation that lacks nothing may leave, in squares of `size`."""
-        return float(np.mean((np.maximum(self.noise, MODEL_ERROR * self.spread) / self.size) ** 2))
+        return float(np.mean((np.maximum(self.noise, CRITERIA.model_error * self.spread) / self.size) ** 2))
 
     def mean_square(self, fit: Fitted) -> float:
         """Mean square of a residual, in squares of `size`."""
@@ -64,7 +62,7 @@ class GapScale:
 
     def agrees(self, fit: Fitted) -> bool:
         """Whether a residual is no more than noise and a hundredth of the measurement's spread explain."""
-        return self.mean_square(fit) < AGREES**2 * self.least
+        return self.mean_square(fit) < CRITERIA.agrees**2 * self.least
 
     def gap_above(self, mean_square: float) -> float:
         """Return the root of a mean square above what the sensors' noise leaves."""
@@ -72,7 +70,7 @@ class GapScale:
 
     def error_of(self, fit: Fitted) -> Noise:
         """Return white noise as large as an autocorrelated residual weighs against a prior."""
-        return white_noise(self.size * np.sqrt(PER_INDEPENDENT * max(self.mean_square(fit), 1e-12)))
+        return white_noise(self.size * np.sqrt(CRITERIA.independent * max(self.mean_square(fit), 1e-12)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +95,7 @@ def cross_validated(
 
     like: of the same segments: where start states and numbers with bounds begin
     """
-    enough = CONVERGED * shooting.seen.size / PER_INDEPENDENT
+    enough = CONVERGED * shooting.seen.size / CRITERIA.independent
     shooting = shooting.with_noise(scale.error_of(like.fit))
     model = fit_model(shooting, base, parts, like.fit.starts, TURNS, enough, like)
     if not np.isfinite(model.fit.misfit):

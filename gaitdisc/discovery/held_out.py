@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.by_gap_share import scale_of
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.own_states import with_own_states
-from gaitdisc.discovery.paired_test import PairedTest, paired_test, projected_test
+from gaitdisc.discovery.paired_test import PairedTest, paired_test
 from gaitdisc.discovery.problem import LENGTHENED, Problem
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
@@ -21,10 +21,6 @@ from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
 
 TURNS = 30
-GROWN = 2.0  # standard deviations of what noise and the doubt about the start make of a run
-LOST = 4.0  # squared standard deviations, which a run that has left the data errs by
-INFORMATIVE = 36.0  # how far two runs are apart, in variances of the noise, for trials to show which is true
-STRONG_SUPPORT = 50.0  # fall of the criterion on the trials that were learned from
 
 
 @dataclass(frozen=True)
@@ -64,7 +60,7 @@ def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
     """Return what free runs of the held-out trials err by, and what the doubt about their starts alone makes of it.
 
     A run begins with what its first samples say, a period or a third of the trial, and errs over the others: a start
-    that is fitted to the whole run absorbs an offset. A run that has left the data errs by `LOST`.
+    that is fitted to the whole run absorbs an offset. A run that has left the data errs by `lost`.
 
     returns: mean squares, over each channel's variance
     """
@@ -79,7 +75,7 @@ def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
         begun = replace(shooting, measured=replace(problem.measured, observed=seen))
         run = _started(begun, now, problem.guess.starts(segments))
         whole = shooting.at(now.model.machine, (), run.values, run.starts)
-        error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, LOST)
+        error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
         slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
         late = (segments.samples[:, segments.compared] >= first)[..., None] & shooting.known
         early = slopes[~late & shooting.known]
@@ -87,7 +83,7 @@ def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
             * (scale.size / scale.spread) ** 2
         )
-        found.append([np.fmin(error, LOST)[late].mean(), np.fmin(doubt, LOST)[late].mean()])
+        found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
     error, doubt = np.mean(found, axis=0)
     return float(error), float(doubt)
 
@@ -102,7 +98,9 @@ def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:
     if not problem.spans_a_period(now):
         return False
     error, doubt = free_runs(problem, now)
-    return error > GROWN**2 * (max(scale_of(problem).relative(now.model.fit), MODEL_ERROR) ** 2 + doubt)
+    return error > CRITERIA.grown**2 * (
+        max(scale_of(problem).relative(now.model.fit), CRITERIA.model_error) ** 2 + doubt
+    )
 
 
 def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
@@ -113,9 +111,11 @@ def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -
 
     as_read, now: the simulation as read and with what trials that were learned from speak for
     """
-    if not now.model.parts or now.gained < STRONG_SUPPORT:
+    if not now.model.parts or now.gained < CRITERIA.support:
         return False
-    return _apart(problem, as_read, now, problem.held_out) <= INFORMATIVE and bool(_informative(problem, as_read, now))
+    return _apart(problem, as_read, now, problem.held_out) <= CRITERIA.support and bool(
+        _informative(problem, as_read, now)
+    )
 
 
 def holding_out_others(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> Problem:
@@ -138,7 +138,7 @@ def noted(before: Problem, now: Problem) -> Problem:
 
 def _informative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> tuple[int, ...]:
     """Return the learned trials on which the two runs are apart."""
-    return tuple(one for one in problem.learned if _apart(problem, as_read, now, (one,)) > INFORMATIVE)
+    return tuple(one for one in problem.learned if _apart(problem, as_read, now, (one,)) > CRITERIA.support)
 
 
 def _apart(problem: Problem, as_read: ScoredModel, now: ScoredModel, trials: tuple[int, ...]) -> float:
@@ -194,22 +194,14 @@ class Proof:
 
 
 def proof_of(problem: Problem, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
-    """Run two models over the held-out trials and compare their squared errors piece by piece."""
+    """Run two models over the held-out trials and test what they err by."""
     first, second = (runs_of(problem, one, problem.held_out, like) for one in (before, now))
-    return Proof(first, second, tested(problem, first, second, like))
+    return Proof(first, second, compare_runs(problem, first, second, like))
 
 
-def tested(problem: Problem, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
-    """Compare the squared errors of the same runs of two models."""
-    period = int(problem.rhythm.samples / like.shooting.segments.every) + 1
-    test = paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
-    return replace(test, alpha=problem.alpha)
-
-
-def by_size(proof: Proof, like: ScoredModel) -> Proof:
-    """Return a proof whose pieces count by the size of what they gain."""
-    test = projected_test(proof.before.fit.residual, proof.after.fit.residual, like.noise.size)
-    return replace(proof, test=replace(test, alpha=proof.test.alpha))
+def compare_runs(problem: Problem, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
+    """Test whether the same runs of two models err less in the second."""
+    return replace(paired_test(before.fit.residual, after.fit.residual, like.noise.size), alpha=problem.alpha)
 
 
 def gap_size(

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_toeplitz
 
 from gaitdisc.compiled import compiled
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.signals.derivatives import savgol_filter
 
 MOST_LAGS = 16
-AUTOCORRELATED = 1.03  # in standard deviations before and after the past is taken off
 WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right to the last decimal at high frequency
 WINDOW, ORDER = 7, 3  # samples, and the order of the polynomial through them
 FEWEST = 12  # samples of a trial
@@ -58,7 +58,8 @@ class Noise:
         """Whether what went before says more than next to nothing of what comes, the record's filter apart."""
         filtered = self.filtered or (1.0,) * len(self.spread)
         return any(
-            all_of[0] > AUTOCORRELATED * by * all_of[-1] for all_of, by in zip(self.spread, filtered, strict=True)
+            all_of[0] > CRITERIA.autocorrelated * by * all_of[-1]
+            for all_of, by in zip(self.spread, filtered, strict=True)
         )
 
     def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:

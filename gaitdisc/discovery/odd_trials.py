@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.forward_selection import leaves
-from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
 from gaitdisc.discovery.problem import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Problem
@@ -32,16 +32,12 @@ from gaitdisc.simulation.running import compile_simulation
 KIND = "odd trial"
 SIGN = "the sign of "
 FEWEST_OTHERS = 2
-BETTER = 2.0  # times smaller the error of a trial has to be once it is changed
-WORSE = 1.3  # times greater the error of the others (median) has to be if they are changed alike
-LIKE_OTHERS = 1.8  # times the error of the others (median) that a trial has at most once shifted: many shifts are tried
 PROMISING = 0.5  # of the mean square, to first order, that a shift has to leave at most for it to be tried
 SHIFTS_TRIED = 3  # of each trial
 SMALLEST_SHIFT = 2  # samples
 LONGEST_SHIFT = 1.0  # periods of the motion
 AS_GOOD = 1.1  # times the least error; of changes that serve alike, the first is named
 FEWEST_TRIALS, MOST_TRIALS = 4, 8
-APART = 2.0  # times the error must stay whichever other trial is left out
 
 
 @dataclass(frozen=True)
@@ -103,8 +99,8 @@ def odd_trials(problem: Problem) -> tuple[Odd, ...]:
         for trial in range(count):
             then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
             errors = (float(before[trial]), float(after[trial]), then, now)
-            likely = change.words.startswith(SIGN) or errors[1] < LIKE_OTHERS * errors[2]
-            if BETTER * errors[1] < errors[0] and errors[3] > WORSE * errors[2] and likely:
+            likely = change.words.startswith(SIGN) or errors[1] < CRITERIA.apart * errors[2]
+            if CRITERIA.apart * errors[1] < errors[0] and errors[3] > CRITERIA.unlike * errors[2] and likely:
                 found.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
     clear = count - len(found) >= max(FEWEST_OTHERS, len(found) + 1)
     return tuple(_either(found[trial]) for trial in sorted(found)) if clear else ()
@@ -237,7 +233,7 @@ def without_trial_apart(problem: Problem) -> Measured:
     as_read = replace(problem, learned=tuple(range(count))).as_read()
     trial, other = np.argsort(_promised(problem, as_read))[:2].tolist()
     least = _left_without(problem, trial, spread)
-    wanted = max(APART * least, MODEL_ERROR)
+    wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
     if _as_read_left(as_read, other, spread) < wanted:  # what a search leaves of the same trials is no more
         return measured
     next_least = _left_without(problem, other, spread)

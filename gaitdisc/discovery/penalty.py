@@ -5,32 +5,34 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.criteria import CRITERIA
 
-PLAIN = 0.03  # of the gap
-PENALTIES = {
-    "input_gain": 0.04,
-    "input_delay": 0.04,
-    "input_lag": 0.05,
-    "sensor_gain": 0.04,
-    "sensor_offset": 0.04,
-    "sensor_lag": 0.05,
-    "sensor_drift": 0.05,
-    "quadratic_stiffness": 0.05,
-    "linear_coupling": 0.05,
-    "one_sided_spring": 0.05,
-    "dead_zone_spring": 0.05,
-    "one_sided_damper": 0.06,
-    "contact_damper": 0.08,
-    "hysteresis": 0.08,
-    "series_elasticity": 0.08,
-    "phase_locked_moment": 0.08,
-    "unnamed": 0.08,
-    "input_saturation": 0.08,
-    "input_product": 0.10,
-    "periodic_forcing": 0.10,
-    "delayed_feedback": 0.10,
-    "product_coupling": 0.10,
-}
+BENT = (
+    "input_gain",
+    "input_delay",
+    "input_lag",
+    "sensor_gain",
+    "sensor_offset",
+    "sensor_lag",
+    "sensor_drift",
+    "quadratic_stiffness",
+    "linear_coupling",
+    "one_sided_spring",
+    "dead_zone_spring",
+    "one_sided_damper",
+)
+FLEXIBLE = (
+    "contact_damper",
+    "hysteresis",
+    "series_elasticity",
+    "phase_locked_moment",
+    "unnamed",
+    "input_saturation",
+    "input_product",
+    "periodic_forcing",
+    "delayed_feedback",
+    "product_coupling",
+)
 LOSSES = (
     "viscous_damping",
     "coulomb_friction",
@@ -39,7 +41,6 @@ LOSSES = (
     "hysteresis",
     "series_elasticity",
 )
-DRIVES = 0.05  # more, for a friction that drives the motion
 
 
 def penalty_of(candidate: Candidate, values: Mapping[str, float]) -> float:
@@ -48,4 +49,6 @@ def penalty_of(candidate: Candidate, values: Mapping[str, float]) -> float:
     values: its numbers: a friction that drives costs more than one that resists
     """
     drives = candidate.name in LOSSES and values.get("factor", 0.0) > 0
-    return PENALTIES.get(candidate.name, PLAIN) + DRIVES * drives
+    flexible, bent = candidate.name in FLEXIBLE, candidate.name in BENT
+    price = CRITERIA.flexible if flexible else CRITERIA.bent if bent else CRITERIA.plain
+    return price + CRITERIA.drives * drives

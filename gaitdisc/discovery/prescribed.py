@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.gap_share import MODEL_ERROR
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
 from gaitdisc.discovery.penalty import penalty_of
-from gaitdisc.discovery.ranking import MARGIN, TIE
 
 Values = NDArray[np.float64]
 LATEST_S, DELAYS = 0.12, 25
@@ -49,7 +48,7 @@ class LeftMoment:
     @property
     def floor(self) -> float:
         """Size of what the noise of angles and a hundredth of the moment make [N m]."""
-        return float(np.hypot(np.sqrt(np.mean(self.angle_noise**2)), MODEL_ERROR * np.std(self.demanded)))
+        return float(np.hypot(np.sqrt(np.mean(self.angle_noise**2)), CRITERIA.model_error * np.std(self.demanded)))
 
     @property
     def blocks(self) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
@@ -86,7 +85,7 @@ class JointFinding:
     def least(self, column: Values) -> float:
         """Smallest factor of a column (sample,) that would be named here."""
         samples = len(self.joint.time)
-        wanted = (MARGIN + _price(1, samples, self.open_ones)) * SAMPLES_A_NUMBER / samples
+        wanted = (CRITERIA.margin + _price(1, samples, self.open_ones)) * SAMPLES_A_NUMBER / samples
         size = float(np.linalg.norm(_white(self.noise, column[:, None])))
         return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
 
@@ -94,7 +93,7 @@ class JointFinding:
 def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
     open_ones = len(candidates) * joints
-    floor = MODEL_ERROR * float(np.std(joint.demanded))
+    floor = CRITERIA.model_error * float(np.std(joint.demanded))
     noise = noise_of(joint.angle_noise[:, :, None], least=floor)
     ordered: list[Named] = []
     for _ in range(ROUNDS):
@@ -105,7 +104,7 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: 
         if np.sqrt(np.mean(rest**2)) <= noise.size[0]:
             break
         noise = noise_of(rest[None, :, None], used=2, least=floor)
-    near = [one for one in ordered if one.gained > max(ordered[0].gained - MARGIN, MARGIN)]
+    near = [one for one in ordered if one.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = [_proven(joint, noise, one) for one in near]
     ordered = [*_simple_first(proven, candidates), *ordered[len(near) :]]
     first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
@@ -126,7 +125,7 @@ def _simple_first(proven: list[Named], candidates: tuple[Candidate, ...]) -> lis
     candidates: of two with one penalty the one that stands first in the catalogue is the simpler
     """
     ordered = sorted(proven, key=lambda one: -one.held_out)
-    alike = [one for one in ordered if one.held_out > ordered[0].held_out - TIE]
+    alike = [one for one in ordered if one.held_out > ordered[0].held_out - CRITERIA.tie]
     order = [one.identity for one in candidates]
     alike.sort(
         key=lambda one: (
@@ -174,9 +173,8 @@ def _proven(joint: LeftMoment, noise: Noise, one: Named) -> Named:
         values = _numbers(joint, noise, one.part.candidate, learned)
         if values is not None:
             predicted[held] = _explained(joint, one.part.candidate, values)[held]
-    rate = (len(joint.time) - 1) / (joint.time[-1] - joint.time[0])
     errors = [each[None, :, None] for each in (joint.left, joint.left - predicted)]
-    test = paired_test(errors[0], errors[1], np.array([joint.floor or 1.0]), max(round(rate / 2), 1))
+    test = paired_test(errors[0], errors[1], np.array([joint.floor or 1.0]))
     before, after = (float((_white(noise, each[0]) ** 2).sum()) for each in errors)
     return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
 

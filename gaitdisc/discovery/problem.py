@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.candidate import Candidate, candidates_of
 from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import record_filter_of
 from gaitdisc.discovery.first_states import StateGuess, guess_states
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
@@ -34,12 +35,9 @@ from gaitdisc.simulation.simulation import Simulation
 FEWEST_SAMPLES = 16  # of a segment
 FEWEST_COMPARED = 8  # samples of a segment that went through a filter
 SHORT = 6  # margins in a trial, at least
-GROWTH = 5.0  # of a small change of the start, by which a run is cut
-CHAOTIC_GROWTH = 300.0  # growth at which the likelihood has too many local maxima
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 WHOLE_PERIOD = 0.8
-FOLLOWED = 1.08  # times the noise of the shorter runs before any filter, beyond which a run does not follow the data
 SUBSTEPS = 2
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
@@ -119,12 +117,12 @@ class Problem:
         return scored(shooting.with_past(model.fit.states), self.search.base, model)
 
     def predictable_periods(self) -> float:
-        """Return how long a run may be, in periods, before a change of its start has grown by `GROWTH`."""
+        """Return how long a run may be, in periods, before a change of its start has grown by `growth`."""
         shooting = self.shooting(self.segments(self.learned).spread(MOST_SEARCHED))
         states = shooting.segments.of(self.guess.states)
         machine = compile_simulation(self.search.base)
         line = linearise_along(shooting, self.search.base, (), states, machine.defaults)
-        step = line.first_growth(GROWTH, states)
+        step = line.first_growth(CRITERIA.growth, states)
         return 1.0 if step is None else step / self.rhythm.samples
 
     def spans_a_period(self, now: ScoredModel) -> bool:
@@ -137,7 +135,7 @@ class Problem:
         most: longest run wanted [samples]
         """
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
-        followed = np.sqrt(1 + (FOLLOWED**2 - 1) / self.record_filter.gains**2)
+        followed = np.sqrt(1 + (CRITERIA.follows**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
             guess = self.guess.with_run(now.shooting.segments, now.model.fit.states)
             samples = min(LENGTHENED * now.shooting.segments.span, longest)
@@ -153,7 +151,7 @@ class Problem:
                 break
             fit = longer.model.fit
             if (
-                linearise(longer.shooting, longer.model.simulation, (), fit).first_growth(CHAOTIC_GROWTH, fit.states)
+                linearise(longer.shooting, longer.model.simulation, (), fit).first_growth(CRITERIA.chaotic, fit.states)
                 is not None
             ):
                 break

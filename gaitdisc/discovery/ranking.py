@@ -13,15 +13,11 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.scored_model import ScoredModel
 
-MARGIN = 10.0  # by which the criterion must fall for one more explanation
 # Where two explanations fit equally well, the simpler statement first.
 PREFERENCE = ("wrong_parameter", "input_error", "sensor_error", "missing_physics")
-ALIKE = 1.0
-TIE = 6.0  # fall of the criterion below which two explanations are distinguished by nothing
-PLAINER = 0.02  # of the gap, by which the penalty of one of them must be less for it to stand first
-NEARLY = 4.0  # between shapes of one kind: the one that stands first in the catalogue is the simpler
 
 
 def ranked(models: list[ScoredModel], candidates: tuple[Candidate, ...]) -> list[ScoredModel]:
@@ -29,7 +25,7 @@ def ranked(models: list[ScoredModel], candidates: tuple[Candidate, ...]) -> list
 
     A kind of explanation with many members (a missing term: any shape at any place) is more likely to have one that
     fits by chance than a kind with few (a wrong parameter): each kind is penalised for the number of its
-    members. A simpler statement stands before one that is hardly better.
+    members. Of what the criterion does not distinguish the simplest statement stands first.
     """
     models = [one for one in models if np.isfinite(one.bic)]
     if not models:
@@ -39,23 +35,17 @@ def ranked(models: list[ScoredModel], candidates: tuple[Candidate, ...]) -> list
     models.sort(key=penalised)
     least = min(models, key=lambda one: one.bic)
     fewer = [one for one in models if one.model.size < least.model.size]
-    simple = [one for one in fewer if one.bic < least.bic + MARGIN]
+    simple = [one for one in fewer if one.bic < least.bic + CRITERIA.margin]
     first = simple[0] if simple else models[0]
-    equal = [one for one in models if one.model.size == first.model.size]
-    alike = [one for one in equal if abs(penalised(one) - penalised(first)) < ALIKE]
-    alike.sort(key=lambda one: [PREFERENCE.index(verdict) for verdict in one.verdicts])
-    first = alike[0]
-    plainer = [
-        one
-        for one in equal
-        if penalised(one) <= penalised(first) + TIE and one.model.penalty < first.model.penalty - PLAINER
-    ]
-    first = min(plainer, key=penalised) if plainer else first
-    near = [one for one in equal if penalised(one) <= penalised(first) + NEARLY and one.verdicts == first.verdicts]
     order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
-    near.sort(key=lambda one: [order.get(part.candidate.name, len(order)) for part in one.model.parts])
-    head = [near[0], *(one for one in alike if one is not near[0])]
-    return head + [one for one in models if all(one is not other for other in head)]
+
+    def complexity(one: ScoredModel) -> tuple[list[int], float, list[int]]:
+        names = [order.get(part.candidate.name, len(order)) for part in one.model.parts]
+        return [PREFERENCE.index(verdict) for verdict in one.verdicts], round(one.model.penalty, 6), names
+
+    tied = [one for one in models if one.model.size == first.model.size]
+    first = min((one for one in tied if penalised(one) <= penalised(first) + CRITERIA.tie), key=complexity)
+    return [first, *(one for one in models if one is not first)]
 
 
 def _penalised(one: ScoredModel, members: Counter[str]) -> float:

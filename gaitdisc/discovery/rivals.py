@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.ranking import TIE
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import TURNS, Search
 
@@ -50,7 +50,7 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
     for one in listed:
         best = _fitted(search, now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
         fitted.setdefault(tuple(sorted(best.labels)), best)
-    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < TIE) for one in fitted.values()]
+    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Explanations, Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Score, Scorer
@@ -28,12 +29,10 @@ LIMITS = {
 }
 VANISHING = ("half widths of x", "delays")  # constants at whose zero a shape is a simpler one
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
-WIDEST = 2.0  # times how far a state goes, beyond which no half width shows
 TURNS = 15
 FEW_TURNS = 4
 DECADES = (0.1, 0.3, 3.0, 10.0)  # of the file's value, where a number without bounds is sought as well
 NEARLY = 0.5  # off the misfit: too little to distinguish explanations by
-CERTAIN = 2.5  # standard errors
 EVERY = 5.0  # seconds between two lines about a round that lasts
 
 
@@ -180,7 +179,7 @@ class Search:
     def _widest(self, model: CandidateModel, role: str) -> float:
         """Return the half width that a run can show; of an input, one that it never reaches does nothing anyway."""
         driven = any(each.name == role for each in self.base.inputs)
-        return np.inf if driven else WIDEST * max(map(abs, self._visited(model, role)))
+        return np.inf if driven else CRITERIA.widest * max(map(abs, self._visited(model, role)))
 
     def without(self, now: ScoredModel, number: int) -> ScoredModel:
         """Return the model less one explanation."""
@@ -204,7 +203,7 @@ def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) ->
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
     errors = dict(zip(model.fit.free, error, strict=True))
     return all(
-        _off(part, slot, none) > CERTAIN * errors[names[slot]]
+        _off(part, slot, none) > CRITERIA.certain * errors[names[slot]]
         for part, names in list(zip(model.parts, model.names, strict=True))[first:end]
         if len(part.candidate.idle) == 1
         for slot, none in part.candidate.idle.items()
@@ -216,7 +215,7 @@ def may_vanish(model: CandidateModel, number: int) -> bool:
     part, names = model.parts[number], model.names[number]
     variance = dict(zip(model.fit.free, np.diag(model.fit.covariance), strict=True))
     return any(
-        not part.values[slot] ** 2 > CERTAIN**2 * variance[names[slot]]
+        not part.values[slot] ** 2 > CRITERIA.certain**2 * variance[names[slot]]
         for slot, kind in (part.candidate.constants or {}).items()
         if kind in VANISHING
     )

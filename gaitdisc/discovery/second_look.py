@@ -10,19 +10,19 @@ from gaitdisc.discovery.beam import errs_more
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.decision import HALF, MOST_NEAR, NEAR, Verdict, held_out_proof
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import GROWN, by_size, free_run_error, free_runs, grows_along_runs, proof_of
+from gaitdisc.discovery.held_out import free_run_error, free_runs, grows_along_runs, proof_of
 from gaitdisc.discovery.problem import Problem
-from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
 from gaitdisc.results.discovery import ALPHA
 
 AT_ONCE, LATE = "linear_stiffness", "delayed_feedback"
-NEARLY = 0.01  # of a free run's squared error: too little to distinguish explanations by
 STEP = 4  # of the delays that a search begins with
 # What a shape is where one of its constants vanishes or has no end, or where the motion shows but one side of it
 RELATIVES = {
@@ -53,11 +53,10 @@ def prefer_relatives(problem: Problem, as_read: ScoredModel, verdict: Verdict) -
         for now in sorted((one for one in tried if one), key=lambda one: one.bic):
             idle = not shows(found.model) or may_vanish(found.model, number)
             if found.model.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
-                idle = idle or free_run_error(problem, found) > HALF * free_run_error(problem, now)
+                idle = idle or free_run_error(problem, found) > CRITERIA.half * free_run_error(problem, now)
             if not idle and is_needed(problem, now, found):
                 continue
             proof = held_out_proof(problem, as_read, now)
-            proof = proof if proof.bears_out else by_size(proof, now)
             if proof.bears_out:
                 verdict = replace(verdict, word=now.word, found=now, rivals=(found, *verdict.rivals), proof=proof)
                 break
@@ -99,7 +98,7 @@ def prefer_delay(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Ve
     now = ScoredModel(min(tried, key=lambda one: one.bic), found.shooting, found.gained)
     _, now = compared([found, now], search.base)
     proof = held_out_proof(problem, as_read, now)
-    if not by_size(proof_of(problem, found, now, now), now).bears_out or not proof.bears_out:
+    if not proof_of(problem, found, now, now).bears_out or not proof.bears_out:
         return verdict
     return replace(verdict, found=now, rivals=(found, *verdict.rivals), proof=proof)
 
@@ -121,7 +120,7 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
     least = float(np.mean((scale.size / scale.spread) ** 2))
     for one in (named, *verdict.rivals):
         error, doubt = free_runs(problem, one)
-        if not one.model.parts or error > max(most, GROWN**2 * (least + doubt)):
+        if not one.model.parts or error > max(most, CRITERIA.grown**2 * (least + doubt)):
             continue
         if one is named:
             return base, complete_on_whole_runs(problem, as_read, verdict)
@@ -155,12 +154,13 @@ def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verd
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
         return verdict
-    tried = [one for one in rivals if one.bic < named.bic + NEAR and len(one.model.parts) == len(named.model.parts)]
-    left = {id(one): free_run_error(problem, one) for one in (named, *tried[:MOST_NEAR])}
-    alike = [one for one in (named, *tried[:MOST_NEAR]) if left[id(one)] <= (1 + NEARLY) * min(left.values())]
-    more = ranked(alike, search.candidates)[0]
-    if left[id(more)] > HALF * free_run_error(problem, found):
+    near = [one for one in rivals if one.bic < named.bic + CRITERIA.support]
+    tried = [one for one in near if len(one.model.parts) == len(named.model.parts)]
+    left = [(free_run_error(problem, one), one) for one in (named, *tried[:MOST_NEAR])]
+    least = min(error for error, _ in left)
+    if least > CRITERIA.half * free_run_error(problem, found):
         return verdict
+    more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
     beside, proof = held_out_proof(problem, whole, more, as_read), held_out_proof(problem, as_read, more)
     if not beside.bears_out or not proof.bears_out:
         return verdict
@@ -203,8 +203,8 @@ def is_needed(problem: Problem, relative: ScoredModel, general: ScoredModel) -> 
     """Whether data show that a general shape explains more than its relative."""
     first, second = compared([relative, general], problem.search.base)
     if leaves_noise(problem, second):
-        return first.bic - second.bic > MARGIN
-    proof = by_size(proof_of(problem, first, second, second), second)
+        return first.bic - second.bic > CRITERIA.margin
+    proof = proof_of(problem, first, second, second)
     if proof.bears_out:
         return True
     scale, base = scale_of(problem), problem.search.base

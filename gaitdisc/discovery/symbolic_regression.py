@@ -19,6 +19,7 @@ from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.fitted_shape import cost_of, fitted_shape
 from gaitdisc.discovery.gap_share import cross_validated
@@ -35,7 +36,6 @@ PAIRS_BEYOND = 40  # pairs, to which a third piece is sought
 TRIED = (4, 4, 2)  # readings of one, two and three pieces that are fitted
 ALIKE = 0.98  # correlation of two pieces, beyond which they are one
 FEWEST_NUMBERS = 3  # of several names at one place, for a reading to be sought that has fewer
-AS_MUCH = 0.95  # of what the shape closes of the held-out squared error, which its reading must close
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def read_shape(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verd
     for one in sorted(readings, key=lambda one: cost_of(one, plain)):
         found = scored(shape.shooting, search.base, one.model)
         proof = held_out_proof(problem, as_read, found)
-        if proof.bears_out and proof.closed >= AS_MUCH * verdict.proof.closed:
+        if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
             reads_as = effect_of(search, one.model.parts[0].candidate)
             return replace(verdict, found=found, proof=proof, read=True, reads_as=reads_as)
     return verdict

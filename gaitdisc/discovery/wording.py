@@ -7,8 +7,7 @@ import re
 from dataclasses import replace
 
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.gap_share import AGREES, MODEL_ERROR
-from gaitdisc.discovery.held_out import STRONG_SUPPORT
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import (
     amount,
@@ -23,7 +22,7 @@ from gaitdisc.results.effect_words import (
 )
 from gaitdisc.simulation.simulation import Simulation
 
-FEW = 12  # pieces of held-out data
+FEW = 12  # independent samples of held-out data
 SMALL = 0.05  # of the squared error
 UNIT_SLACK = 0.05
 OTHER_UNITS = (  # gains of a sensor that another convention makes
@@ -75,7 +74,8 @@ def _given(discovery: Discovery) -> str:
         return ""
     size = discovery.held_out
     bear = "bear it out" if discovery.given == "proven" else "do not bear it out"
-    said = f"It was given, not searched: the held-out data {bear} (p = {_chance(size.p)} over {size.pieces} pieces)."
+    worth = f"p = {_chance(size.p)} over {size.pieces} independent samples"
+    said = f"It was given, not searched: the held-out data {bear} ({worth})."
     idle = [f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in discovery.effects if one.small]
     return f"{said} They do without {' and without '.join(idle)} beside the others." if idle else said
 
@@ -83,7 +83,7 @@ def _given(discovery: Discovery) -> str:
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
     first = discovery.rivals[0] if discovery.rivals else None
-    if first is None or not first.bic >= STRONG_SUPPORT:
+    if first is None or not first.bic >= CRITERIA.support:
         if may_be_left(discovery.held_out.before, discovery.held_out):
             return "Simulation and data agree to within the noise: nothing is missing that these data could show."
         if discovery.verdict == "no_gap":
@@ -96,7 +96,7 @@ def _nothing(discovery: Discovery) -> str:
             "explains it beyond chance."
         )
     pieces = discovery.held_out.pieces
-    tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} pieces)" if pieces else ""
+    tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} independent samples)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
@@ -111,7 +111,7 @@ def _nothing(discovery: Discovery) -> str:
 
 def may_be_left(error: float, size: GapSize) -> bool:
     """Whether an error is no more than the sensors' noise and a hundredth of the measurement's spread explain."""
-    return error < AGREES * math.hypot(size.noise_floor, MODEL_ERROR)
+    return error < CRITERIA.agrees * math.hypot(size.noise_floor, CRITERIA.model_error)
 
 
 def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
@@ -264,10 +264,10 @@ def _goes(size: tuple[float, float, float], channel_unit: str) -> str:
 
 
 def _few(discovery: Discovery) -> str:
-    """Say on how many pieces it rests, where these are few."""
+    """Say on how many independent samples it rests, where these are few."""
     size = discovery.held_out
     return (
-        f", p = {_chance(size.p)} over {size.pieces} pieces"
+        f", p = {_chance(size.p)} over {size.pieces} independent samples"
         if 0 < size.pieces < FEW and size.after <= size.before
         else ""
     )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import NORMAL_95
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
-
-WRONG = 5.0  # standard errors from the file's number
 
 
 def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Estimate]:
@@ -27,7 +26,7 @@ def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Esti
     return {
         state.name: Estimate(float(at), float(at - NORMAL_95 * off), float(at + NORMAL_95 * off), state.unit)
         for state, at, off in zip(simulation.states, mean, error, strict=True)
-        if state.initial is not None and abs(at - state.initial) > WRONG * off
+        if state.initial is not None and abs(at - state.initial) > CRITERIA.start * off
     }
 
 

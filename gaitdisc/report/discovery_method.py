@@ -27,9 +27,9 @@ SHORT_RUNS = (
     WEIGHED,
     EVIDENCE,
     "What was found had to make the squared error fall on the held-out data, of which nothing was fitted but the start "
-    "of each run: p < .05 in a one-sided signed-rank test over pieces of these data, each a period long or, where "
-    "these are few, no shorter than what is left remembers; beside another effect, too. The intervals follow from the "
-    "curvature of the likelihood under that noise.",
+    "of each run, beside another effect too: what it changes there has to go along with what was left (one-sided test, "
+    "each sample by its size, with the autocorrelation of what is left: Newey and West 1987). The intervals follow "
+    "from the curvature of the likelihood under that noise.",
     "The noise floor is the noise of the sensors, estimated from the record without any model: what a cubic over seven "
     "samples leaves. Where up to four explanations leave no more, they are the answer. Where all leave more, sets of "
     "them were weighed by the share of the gap that they close on runs left out of the fit, less a price for each: 3 % "
@@ -76,7 +76,7 @@ OF_A_DEVICE = (
     WEIGHED,
     EVIDENCE,
     "What was found had to make the squared error of the moment fall on the last quarter of the walk: p < .05 in a "
-    "one-sided signed-rank test over pieces of it. The interval joins the noise, strides of both walks drawn anew, and "
+    "one-sided test, each sample by its size. The interval joins the noise, strides of both walks drawn anew, and "
     "what another speed at which muscles lose their force, another lag, gains that are less alike and a degree of the "
     "usual stride make of the number.",
     "Where the ankle lacks nothing, a mass at the foot is weighed at the knee, and named where the hip bears it out.",

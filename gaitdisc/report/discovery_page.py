@@ -72,13 +72,13 @@ def gap_table(discovery: Discovery) -> Table:
             amounts = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
             rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
-    held, fitted = (counted(size.pieces, "piece") for size in (discovery.held_out, discovery.train))
+    held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
     caption = (
         f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
-        "would leave. Closed: of the squared gap above the noise. p: one-sided test of the errors before and after, "
-        f"all channels together, over pieces of the runs (held out: {held}, fitted: {fitted}): signed ranks "
-        "(Wilcoxon), or, where these show nothing, each by its size, with its autocorrelation (Bartlett). A name needs "
-        f"a p on held-out data below {discovery.held_out.alpha:g}, the rate of false finds that is allowed."
+        "would leave. Closed: of the squared gap above the noise. p: one-sided test that what was added goes along "
+        "with what was left, each sample by its size, with its autocorrelation (Newey and West 1987); all channels "
+        f"together (held out: {held}, fitted: {fitted}). A name needs a p on held-out data below "
+        f"{discovery.held_out.alpha:g}, the rate of false finds that is allowed."
         f"{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")

@@ -99,12 +99,12 @@ class GapSize:
     before: float
     after: float
     noise_floor: float  # what the sensors' noise alone would leave
-    # chance of so clear a fall of the squared error without any effect (Wilcoxon's signed ranks over pieces of the
-    # runs, one-sided). Where nothing is named: of what the data that were fitted spoke for most
+    # chance of so clear a fall of the squared error without any effect (discovery/paired_test.py). Where nothing is
+    # named: of what the data that were fitted spoke for most
     p: float = float("nan")
     # for each channel: before, after, noise floor [the channel's unit]
     channels: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    pieces: int = 0
+    pieces: int = 0  # independent samples that the runs are worth
     # which data these are: `trial 4`, `trial 1, last quarter`; empty where all that was fitted is meant
     of: str = ""
     alpha: float = ALPHA  # the greatest rate of false finds, which p has to be below for a name

@@ -8,6 +8,7 @@ from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed, strongest
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
@@ -83,7 +84,7 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(
     three = _with(problem, as_read, parts)
     monkeypatch.setattr("gaitdisc.discovery.decision.searched", lambda *_: (as_read, three, []))
     monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
-    monkeypatch.setattr("gaitdisc.discovery.decision.HALF", half)
+    monkeypatch.setattr("gaitdisc.discovery.decision.CRITERIA", replace(CRITERIA, half=half))
     monkeypatch.setattr("gaitdisc.discovery.decision.leaves_noise", lambda *_: False)
     monkeypatch.setattr("gaitdisc.discovery.decision.plainest", lambda *_: None)
     verdict = decide(problem, as_read)

@@ -5,9 +5,10 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import beside_others, exchanged, pruned, select_forward, settled
 from gaitdisc.discovery.problem import set_up_problem
-from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel
 
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
@@ -37,7 +38,9 @@ def _wrong_and_idle(problem, as_read):
 
 
 def test_an_explanation_that_earns_nothing_is_thrown_out(problem, as_read, cubic):
-    assert pruned(problem.search, _idle_and_true(problem, as_read, cubic), MARGIN).labels == ("cubic_stiffness@load",)
+    assert pruned(problem.search, _idle_and_true(problem, as_read, cubic), CRITERIA.margin).labels == (
+        "cubic_stiffness@load",
+    )
 
 
 def test_a_wrong_explanation_is_exchanged_for_the_true_one(problem, as_read):
@@ -45,7 +48,7 @@ def test_a_wrong_explanation_is_exchanged_for_the_true_one(problem, as_read):
 
 
 def test_what_is_settled_holds_the_true_one_alone(problem, as_read):
-    now = settled(problem.search, _wrong_and_idle(problem, as_read), MARGIN, set())
+    now = settled(problem.search, _wrong_and_idle(problem, as_read), CRITERIA.margin, set())
     assert now.labels == ("cubic_stiffness@load",)
 
 

@@ -3,7 +3,8 @@ import pytest
 
 from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.gap_share import MODEL_ERROR, GapScale, cross_validated
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.gap_share import GapScale, cross_validated
 
 
 @pytest.fixture(scope="module")
@@ -13,7 +14,7 @@ def scale(problem):
 
 def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
     scale = GapScale(np.array([0.03, 0.0]), np.array([4.0, 1.0]))
-    assert scale.size == pytest.approx([0.05, MODEL_ERROR])
+    assert scale.size == pytest.approx([0.05, CRITERIA.model_error])
     assert scale.floor == pytest.approx((0.36 + 0.0) / 2)
     assert scale.least == pytest.approx((0.64 + 1.0) / 2)
 

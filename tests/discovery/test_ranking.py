@@ -2,7 +2,8 @@ from dataclasses import replace
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel
 
 SPRING = Candidate(
@@ -28,9 +29,9 @@ def test_the_better_explanation_stands_first(as_read):
 
 
 def test_a_simpler_statement_stands_before_one_that_is_hardly_better(as_read):
-    simple, wordy = _judged(as_read, DAMPER, 5e3 + MARGIN / 2, 1), _judged(as_read, SPRING, 5e3, 2)
+    simple, wordy = _judged(as_read, DAMPER, 5e3 + CRITERIA.margin / 2, 1), _judged(as_read, SPRING, 5e3, 2)
     assert ranked([wordy, simple], OPEN)[0] is simple
-    far = _judged(as_read, DAMPER, 5e3 + 2 * MARGIN, 1)
+    far = _judged(as_read, DAMPER, 5e3 + 2 * CRITERIA.margin, 1)
     assert ranked([wordy, far], OPEN)[0] is wordy
 
 

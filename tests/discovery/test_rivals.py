@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.rivals import TIE, bic_gain, rivals_of
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.rivals import bic_gain, rivals_of
 from gaitdisc.discovery.scored_model import scored
 
 
@@ -33,7 +34,7 @@ def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(problem,
     rivals = rivals_of(problem.search, shape, found, gained)
     assert rivals
     assert not any(one.tied for one in rivals)
-    assert all(one.gained < gained - TIE for one in rivals)
+    assert all(one.gained < gained - CRITERIA.tie for one in rivals)
 
 
 def test_a_rival_that_explains_as_much_is_tied(problem, shape, named):

@@ -1,7 +1,8 @@
 import numpy as np
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_gap_share import NEAR, as_read_on, near_runs, on_longer_runs, scale_of
+from gaitdisc.discovery.by_gap_share import as_read_on, near_runs, on_longer_runs, scale_of
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.problem import set_up_problem
 
 
@@ -39,4 +40,4 @@ def test_on_longer_runs_the_simulation_as_read_errs_by_the_spread_at_most():
     again = as_read_on(problem, scale, short, short)
     assert np.ptp(again.errors) == 0.0
     assert 0 < again.gap <= np.sqrt(2.0) * (scale.spread / scale.size).max()
-    assert NEAR == 0.25
+    assert CRITERIA.near == 0.25

@@ -179,14 +179,14 @@ def test_a_channel_whose_error_rises_is_not_passed_over():
 
 def test_few_pieces_are_counted_in_the_sentence():
     size = GapSize(1, 1, 1, 0.0313, {"theta": (0.054, 0.0105, 0.0087)}, 5)
-    assert says(sentence(held_out=size), "0.50", "p = 0.031", "5 pieces")
+    assert says(sentence(held_out=size), "0.50", "p = 0.031", "5 independent samples")
 
 
 def test_what_is_not_borne_out_says_by_which_test():
     rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
     said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert says(said, "not", "(p = 0.34", "9 pieces")
+    assert says(said, "not", "(p = 0.34", "9 independent samples")
 
 
 @pytest.mark.parametrize(

@@ -98,7 +98,7 @@ def test_a_rival_outside_its_bounds_is_said_to_lie_there():
 def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
     table = gap_table(manufactured(verdict="no_gap", effects=(), held_out=size))
-    assert says(table.caption, "9 pieces")
+    assert says(table.caption, "9 independent samples")
     assert says(table.caption, "nothing", "of cubic stiffness", "ankle_moment")
     assert "Where nothing is named" not in gap_table(manufactured()).caption
 
