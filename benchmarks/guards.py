@@ -179,7 +179,7 @@ def draw_trials(system: dict[str, Any], model: Model, count: int, rng: np.random
     for _ in range(count):
         drives = system.get("inputs", {}).items()
         inputs = {key: mean + spread * draw_wave(clock, low, high, rng) for key, (mean, spread, low, high) in drives}
-        start = model.begun + system["spread"] * rng.standard_normal(len(model.states))
+        start = system.get("start", model.begun) + system["spread"] * rng.standard_normal(len(model.states))
         trials.append(Trial(clock, inputs, start, np.zeros(len(clock))))
     return trials
 
