@@ -15,7 +15,7 @@ from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
 from gaitdisc.discovery.held_out import Proof, proof_of
 from gaitdisc.discovery.problem import Problem
-from gaitdisc.discovery.process_noise import ProcessNoise, rank_process_noise
+from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import Search
@@ -58,7 +58,7 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
     wanted = len(named.model.parts) > 1 or suspect
     shape = fitted_shape(as_read, problem.search, scale) if wanted else None
     autocorrelated = with_autocorrelation(problem, as_read, named, shape, rivals) if suspect else None
-    if autocorrelated and not (autocorrelated.word == "process_noise" and scale.agrees(as_read.model.fit)):
+    if autocorrelated:
         return autocorrelated
     names = len(named.model.parts)
     if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(problem, shape, named))):
@@ -199,12 +199,13 @@ def with_autocorrelation(
     as_read, named: the simulation as read and with what the search selected
     """
     plain, *found = compared([as_read, named, *([shape] if shape else [])], problem.search.base)
-    process_noise = random_push(problem, as_read)
+    moved = runs_that_pushes_move(problem, as_read)
+    process_noise = random_push(problem, moved)
     ordered = [one for one in found if explains(problem, plain, one)]
     if process_noise and not ordered:
-        term = None
-        if not scale_of(problem).agrees(as_read.model.fit):
-            term = find_term_before(problem, as_read, named, rivals, process_noise)
+        if scale_of(problem).excess(moved.model.fit) < CRITERIA.model_error:
+            return None
+        term = find_term_before(problem, as_read, named, rivals)
         return term or Verdict("process_noise", as_read, tuple(rivals), process_noise)
     if shape and found[1] in ordered and found[1].bic < found[0].bic - CRITERIA.margin:
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(problem, plain, found[1]))
@@ -212,7 +213,7 @@ def with_autocorrelation(
 
 
 def find_term_before(
-    problem: Problem, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel], pushes: ProcessNoise
+    problem: Problem, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]
 ) -> Verdict | None:
     """Return the verdict on the term that goes before random pushes; None where none does.
 
@@ -221,8 +222,8 @@ def find_term_before(
     weighed by its size, with its autocorrelation, and one term was picked among all that were open.
 
     as_read, named: the simulation as read and with what the search selected
-    pushes: beside the simulation as read
     """
+    pushes = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)[0]
     among = len(problem.search.candidates)
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     borne: list[tuple[float, ScoredModel, Proof]] = []
@@ -276,9 +277,28 @@ def decided(problem: Problem, named: ScoredModel, rivals: list[ScoredModel]) -> 
 
 
 def random_push(problem: Problem, as_read: ScoredModel) -> ProcessNoise | None:
-    """Return the random push that explains the gap better than noise of the sensors, if there is one."""
-    best = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)[0]
-    return best if best.rival - best.bic > CRITERIA.margin else None
+    """Return the random push that explains the gap better than noise of the sensors, if there is one.
+
+    as_read: on runs in which pushes add up
+    """
+    ranked_pushes = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)
+    best = ranked_pushes[0]
+    return best if best.rival - best.bic > CRITERIA.margin + 2 * np.log(len(ranked_pushes)) else None
+
+
+def runs_that_pushes_move(problem: Problem, as_read: ScoredModel) -> ScoredModel:
+    """Return the simulation as read on runs as long as pushes are weighed on: they add up, a start takes up few.
+
+    Where a small change of the start grows, the runs that the search began with.
+    """
+    fit = as_read.model.fit
+    samples = min(problem.longest, MOST_NUMBERS // fit.residual.shape[2])
+    if samples < 2 * as_read.shooting.segments.span or not problem.spans_a_period(as_read):
+        return as_read
+    guess = problem.guess.with_run(as_read.shooting.segments, fit.states)
+    shooting = problem.learned_runs(samples).with_noise(as_read.noise)
+    model = fit_model(shooting, problem.search.base, (), guess.starts(shooting.segments), like=as_read.model)
+    return ScoredModel(model, shooting) if np.isfinite(model.fit.misfit) else as_read
 
 
 def explains(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:

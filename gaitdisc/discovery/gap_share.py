@@ -60,6 +60,12 @@ class GapScale:
         """Root mean square of a residual over the spread of its channel."""
         return float(np.sqrt(np.nanmean((fit.residual / self.spread) ** 2)))
 
+    def excess(self, fit: Fitted) -> float:
+        """Root mean square of a residual above the sensors' noise, over the spread of its channel."""
+        return float(
+            np.sqrt(max(np.nanmean((fit.residual / self.spread) ** 2) - np.mean((self.noise / self.spread) ** 2), 0.0))
+        )
+
     def agrees(self, fit: Fitted) -> bool:
         """Whether a residual is no more than noise and a hundredth of the measurement's spread explain."""
         return self.mean_square(fit) < CRITERIA.agrees**2 * self.least

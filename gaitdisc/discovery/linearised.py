@@ -19,6 +19,7 @@ from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
+ROUNDING = 1e-9  # of a state's size, below which it stands still
 NUDGE = 1e-5
 PUSH = 1e-4
 MOST_RUNS = 0.8  # of the segments, in which growth must stay below
@@ -36,14 +37,18 @@ class Linearised:
     def first_growth(self, factor: float, states: NDArray[np.float64]) -> int | None:
         """Return the first sample at which a small change of the start has grown so much in a fifth of the segments.
 
-        states (segment, sample, state): the run, for that spread
+        states (segment, sample, state): the run, for that spread; of a state that stands still (a guess that says
+            nothing of a hidden one) no change is small or large
         """
-        scale = np.maximum(states.std(axis=(0, 1)), 1e-9)
+        spread = states.std(axis=(0, 1))
+        still = spread <= ROUNDING * np.abs(states).max(axis=(0, 1))
+        scale = np.where(still, 1.0, spread)
+        moving = np.outer(~still, ~still)
         change = np.repeat(np.eye(len(scale))[None], len(states), axis=0)
         for step in range(states.shape[1] - 1):
             change = self.onward[:, step] @ change
             finite = np.asarray(np.isfinite(change).all(axis=(1, 2)))
-            scaled = np.where(finite[:, None, None], change * scale / scale[:, None], 0.0)
+            scaled = np.where(finite[:, None, None] & moving, change * scale / scale[:, None], 0.0)
             growth = np.where(finite, np.linalg.norm(scaled, 2, axis=(1, 2)), np.inf)
             if np.quantile(growth, MOST_RUNS, method="lower") > factor:
                 return step + 1

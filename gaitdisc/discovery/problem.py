@@ -114,6 +114,8 @@ class Problem:
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
         model = fit_model(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
+        if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
+            model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
         return scored(shooting.with_past(model.fit.states), self.search.base, model)
 
     def predictable_periods(self) -> float:

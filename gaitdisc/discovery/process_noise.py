@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.fitted import Fitted, start_basis
 from gaitdisc.discovery.linearised import linearise, seen_change
-from gaitdisc.discovery.noise import noise_of, white_noise
+from gaitdisc.discovery.noise import noise_of, sensor_noise, white_noise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 
 SHARES = np.logspace(-3, 3, 19)  # of the process noise's variance in what is seen, against the sensor's
 MOST_SEGMENTS = 24
 MOST_NUMBERS = 400
+LEAST_NOISE = 0.01  # of a channel's residual, which its sensor's noise is at least: what rounding leaves is none
 ROUNDED = 1e-3  # of the variance is taken as white: what is left of a record above its filter's cut-off
 
 
@@ -52,13 +53,15 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
     plain = np.where(known, fit.residual[some, :length], 0.0)
     count = known.sum(axis=(0, 1))
     size = np.sqrt((plain**2).sum(axis=(0, 1)) / count - (plain.sum(axis=(0, 1)) / count) ** 2)
+    if not segments.margin:  # pushes move one channel more than another: what is left of it is no sensor's noise
+        size = np.clip(sensor_noise(shooting.measured.observed), LEAST_NOISE * size, size)
     starts = _raw_slopes(shooting, model)[some, :length] / size[:, None] * known[..., None]
     rival = _autoregressive(fit.residual, starts * size[:, None], some, known)
     sensors = _sensor_covariance(shooting, known)
     penalty = 2 * float(count @ np.log(size)) + np.log(count.sum())
     flat = (plain / size).reshape(len(some), -1), starts.reshape(len(some), plain[0].size, -1)
-    if segments.margin:  # the filter correlates the sensor's noise as well, in a known way
-        rival = min(rival, _likelihood(*flat, sensors, int(count.sum()))[0] + float(penalty))
+    # white noise by the same restricted likelihood; the filter correlates it in a known way
+    rival = min(rival, _likelihood(*flat, sensors, int(count.sum()))[0] + float(penalty))
     found = []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1

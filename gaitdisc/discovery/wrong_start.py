@@ -14,6 +14,9 @@ from gaitdisc.simulation.simulation import Simulation
 def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Estimate]:
     """Find the states that begin elsewhere than the file says.
 
+    Where trials begin at unlike places, no number of the file can be where they all begin: the error of the mean holds
+    their spread (the ratio of Birge 1932, Phys. Rev. 40, 207).
+
     returns: state -> where the trials begin on average, weighted by how well each shows it, with its 95 % interval
     """
     fit, segments = as_read.model.fit, as_read.shooting.segments
@@ -22,7 +25,8 @@ def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Esti
     variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])
     weight = 1 / np.maximum(variance, 1e-300)
     mean = (weight * fit.starts[first]).sum(axis=0) / weight.sum(axis=0)
-    error = np.sqrt(1 / weight.sum(axis=0))
+    unlike = (weight * (fit.starts[first] - mean) ** 2).sum(axis=0) / max(len(first) - 1, 1)
+    error = np.sqrt(np.maximum(unlike, 1.0) / weight.sum(axis=0))
     return {
         state.name: Estimate(float(at), float(at - NORMAL_95 * off), float(at + NORMAL_95 * off), state.unit)
         for state, at, off in zip(simulation.states, mean, error, strict=True)
