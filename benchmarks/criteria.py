@@ -1,6 +1,6 @@
 """Which criteria of `gaitdisc discover` decide anything: each is moved alone, over made cases and real records.
 
-    python benchmarks/criteria.py CASE [CASE ...] [--out criteria.jsonl] [--limit 60]
+    python benchmarks/criteria.py CASE [CASE ...] [--out criteria.jsonl] [--limit 120]
 
 CASE is a folder with simulation.toml and measured.csv. Each criterion (gaitdisc/discovery/criteria.py) is doubled and
 halved; of a factor above 1, its excess. What is fitted is kept within a case, so that deciding once more costs little.
@@ -21,7 +21,7 @@ GIVEN = command_line(
     __doc__,
     argument("cases", "folders of cases", [Path("cases")]),
     argument("--out", "one line a case", Path("criteria.jsonl")),
-    argument("--limit", "seconds for one answer", 60),
+    argument("--limit", "seconds for one answer", 120),
 )  # before the slow imports
 
 import hashlib

@@ -70,10 +70,12 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
     longer, rivals = decided(problem, named if exact else strongest(problem.search, named), rivals)
     kept = needed(problem, as_read, longer)
-    if len(kept.model.parts) == 1 < len(longer.model.parts) and rivals:
-        longer, rivals = decided(problem, rivals[0], rivals)
-    elif kept is not longer:
-        longer = scored(kept.shooting, problem.search.base, kept.model)
+    if kept is not longer:  # named anew: the best of fewer is not the best less a part
+        alone = decided(problem, rivals[0], rivals) if rivals else (kept, rivals)
+        if alone[0] is kept or (len(kept.model.parts) > 1 and proof_of(problem, alone[0], kept, kept).bears_out):
+            longer = scored(kept.shooting, problem.search.base, kept.model)
+        else:
+            longer, rivals = alone
     proof = held_out_proof(problem, as_read, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
@@ -164,13 +166,13 @@ def searched(
     returns as_read, named: the simulation as read and with what was selected, on the same runs
     returns rivals: what else stood for the first place, best first
     """
-    named, rivals = select_forward(problem.search, as_read, MOST, scale.noise)
+    named, rivals = select_forward(problem.search, as_read, MOST, scale)
     if named.model.parts or not problem.spans_a_period(as_read):
         return as_read, named, rivals
     longer = problem.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = select_forward(problem.search, longer, MOST, scale.noise)
+    named, rivals = select_forward(problem.search, longer, MOST, scale)
     return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
 
 
@@ -207,7 +209,8 @@ def with_autocorrelation(
             return None
         term = find_term_before(problem, as_read, named, rivals)
         return term or Verdict("process_noise", as_read, tuple(rivals), process_noise)
-    if shape and found[1] in ordered and found[1].bic < found[0].bic - CRITERIA.margin:
+    worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
+    if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(problem, plain, found[1]))
     return None
 

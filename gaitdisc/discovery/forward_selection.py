@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import Explanations
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared
 from gaitdisc.discovery.search import Search, is_certain
@@ -23,18 +24,21 @@ SETTLED = 3  # turns of exchange and elimination
 
 
 def select_forward(
-    search: Search, now: ScoredModel, most: int, noise: NDArray[np.float64] | None = None
+    search: Search, now: ScoredModel, most: int, scale: GapScale | None = None
 ) -> tuple[ScoredModel, list[ScoredModel]]:
     """Add explanations while the information criterion falls by enough.
 
-    noise (channel,): standard deviation of the sensors' noise: two explanations that leave far more of an error are
-        not refined, for no set of names is exact then
+    scale: what is left is measured against: two explanations that leave far more than the sensors' noise are not
+        refined, for no set of names is exact then; beside one that leaves less than a simulation's own error above that
+        noise, no other is sought
     returns rivals: what else stood for the first place, best first
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
     explained, turns = 0.0, 0
     while len(now.model.parts) < most and turns < MOST_TURNS:
+        if scale and now.model.parts and scale.excess(now.model.fit) < CRITERIA.model_error:
+            break
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
@@ -45,7 +49,7 @@ def select_forward(
         better = more[0]
         if number == 2:
             better = beside_others(search, better, [one for one in rivals if one is not now], explored)
-        far = noise is not None and number > 1 and leaves(better, noise) > FAR
+        far = scale is not None and number > 1 and leaves(better, scale.noise) > FAR
         if number > 1:
             better = better if far else settled(search, better, worth, explored)
             before, better = compared([before, better], search.base)
