@@ -1,11 +1,10 @@
-"""`gaitdisc discover`, stock PySINDy and a plain grey-box fit on the same blind cases, side by side.
+"""`gaitdisc discover`, three regressions of the residual and a grey-box fit on the same blind cases, side by side.
 
     python benchmarks/discover.py BENCH [OUT] [--seed 21] [--cases 30] [--noise 0.05] [--jobs 2] [--made OPTIONS]
 
 BENCH is the folder of make_cases.py and score.py (../shared/bench/hidden_effects), which are run as they are: cases
 are made there, every tool is run as a command on them, and score.py alone reads the answers. PySINDy is not among the
-package's dependencies (pip install pysindy); stock_pysindy.py says what it is given. grey_box.py refits every number
-of the model and can name no effect: beside it stands what of the gap numbers alone close.
+package's dependencies (pip install pysindy); regress_residual.py and grey_box.py say what each tool is given.
 """
 
 from __future__ import annotations
@@ -37,8 +36,11 @@ import pandas as pd
 
 OURS = "gaitdisc discover {simulation} {measured} --out {out} --no-report --quiet"
 BESIDE = f"{sys.executable} {Path(__file__).parent}/{{tool}}.py {{{{simulation}}}} {{{{measured}}}} --out {{{{out}}}}"
-TOOLS = {"gaitdisc": OURS, "grey box": BESIDE.format(tool="grey_box")} | {
-    f"PySINDy, {how}": f"{BESIDE.format(tool='stock_pysindy')} --how {how}" for how in ("sweep", "ensemble", "weak")
+REGRESSIONS = {"PySINDy, weak": "weak", "SINDy-PI": "implicit", "regression with BIC": "forward"}
+TOOLS = {
+    **{name: f"{BESIDE.format(tool='regress_residual')} --how {how}" for name, how in REGRESSIONS.items()},
+    "grey box with AIC": BESIDE.format(tool="grey_box"),
+    "gaitdisc": OURS,
 }
 LIMIT_S = 300
 
