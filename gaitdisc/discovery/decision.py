@@ -12,7 +12,7 @@ from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import MODEL_ERROR, GapScale, cross_validated
-from gaitdisc.discovery.held_out import Proof, by_size, proof_of
+from gaitdisc.discovery.held_out import Proof, by_size, free_run_error, proof_of
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import MARGIN, ranked
@@ -224,7 +224,8 @@ def find_term_before(
 
     Random pushes explain anything, so that a term that is likelier than these goes before them: with noise of the
     sensors, or with pushes beside it, over the same numbers by the same criterion, and over what is held out. All is
-    weighed by its size, with its autocorrelation, and one term was picked among all that were open.
+    weighed by its size, with its autocorrelation, and one term was picked among all that were open. A term with states
+    of its own begins each held-out run where it suits: free runs must err less with it as well.
 
     as_read, named: the simulation as read and with what the search selected
     """
@@ -238,7 +239,8 @@ def find_term_before(
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
         proof = by_size(held_out_proof(problem, before, now), now)
         likelier += proof.gained - 2 * float(np.log(among))
-        if one.model.parts and likelier > MARGIN and left_out_errors_fall(problem, before, now):
+        stays = not problem.spans_a_period(as_read) or free_run_error(problem, now) < free_run_error(problem, before)
+        if one.model.parts and likelier > MARGIN and stays and left_out_errors_fall(problem, before, now):
             borne.append((likelier, now, proof))
     if not borne:
         return None
