@@ -13,7 +13,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
-from gaitdisc.discovery.held_out import Proof, proof_of
+from gaitdisc.discovery.held_out import Proof, free_run_error, proof_of
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
@@ -222,7 +222,8 @@ def find_term_before(
 
     Random pushes explain anything, so that a term that is likelier than these goes before them: with noise of the
     sensors, or with pushes beside it, over the same numbers by the same criterion, and over what is held out. All is
-    weighed by its size, with its autocorrelation, and one term was picked among all that were open.
+    weighed by its size, with its autocorrelation, and one term was picked among all that were open. A term with states
+    of its own begins each held-out run where it suits: free runs must err less with it as well.
 
     as_read, named: the simulation as read and with what the search selected
     """
@@ -236,7 +237,8 @@ def find_term_before(
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
         proof = held_out_proof(problem, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
-        if one.model.parts and likelier > CRITERIA.margin and left_out_errors_fall(problem, before, now):
+        stays = not problem.spans_a_period(as_read) or free_run_error(problem, now) < free_run_error(problem, before)
+        if one.model.parts and likelier > CRITERIA.margin and stays and left_out_errors_fall(problem, before, now):
             borne.append((likelier, now, proof))
     if not borne:
         return None
