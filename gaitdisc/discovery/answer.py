@@ -266,7 +266,7 @@ def exact_inputs(problem: Problem, now: ScoredModel) -> tuple[Finding, ...]:
         if push is None:
             continue
         unit = places_unit(base, candidate.kind, candidate.place)
-        like = [repr(one.name) for one in base.driving if one.unit == unit]
+        like = [repr(one.name) for one in base.driving if one.unit == unit and not (one.sd or one.gain)]
         if like:
             size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
             what = (

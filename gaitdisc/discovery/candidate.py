@@ -194,7 +194,8 @@ def candidates_of(
     ]
     for name in (one.name for one in simulation.driving):
         if _occurs(name, used):
-            found += [Candidate("input_error", "input", name, error) for error in ("input_delay", "input_gain")]
+            scaled = () if f"gain_of_{name}" in simulation.values() else ("input_gain",)  # a number of the file
+            found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
     if isinstance(simulation, Simulation):
         found += [
             _lagged(simulation, each.name) for each in simulation.driving if _occurs(each.name, used) and not each.wraps

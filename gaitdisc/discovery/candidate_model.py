@@ -72,6 +72,17 @@ class CandidateModel:
         """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better."""
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
 
+    def with_estimates(self, values: NDArray[np.float64], covariance: NDArray[np.float64]) -> CandidateModel:
+        """Return the model with other numbers, and their covariance; its runs stay as they are.
+
+        values (parameter,): all parameters
+        """
+        fit = replace(self.fit, values=values, stated=covariance)
+        found = dict(zip(self.machine.parameters, values.tolist(), strict=True))
+        pairs = zip(self.parts, self.names, strict=True)
+        parts = tuple(Part(one.candidate, {slot: found[name] for slot, name in own.items()}) for one, own in pairs)
+        return replace(self, parts=parts, fit=fit)
+
 
 def with_parts(base: Simulation, parts: tuple[Part, ...]) -> tuple[Simulation, tuple[dict[str, str], ...]]:
     """Return a simulation with explanations in it, their numbers as parameters, and for each its slots' parameters."""

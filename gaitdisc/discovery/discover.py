@@ -21,6 +21,7 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
+from gaitdisc.discovery.uncertain_inputs import weigh_input_errors
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
@@ -98,7 +99,9 @@ def weigh_explanations(
         verdict = decide(problem, as_read)
     verdict = prefer_delay(problem, as_read, prefer_relatives(problem, as_read, verdict))
     verdict = read_instead(problem, as_read, read_shape(problem, as_read, verdict))
-    return problem, *look_at_whole_runs(problem, as_read, verdict)
+    as_read, verdict = look_at_whole_runs(problem, as_read, verdict)
+    problem, verdict = weigh_input_errors(problem, verdict)
+    return problem, as_read, verdict
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:

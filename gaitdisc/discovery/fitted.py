@@ -24,6 +24,8 @@ class Fitted:
     # zero where a run failed
     slopes: NDArray[np.float64]
     prior: Prior = field(default_factory=Prior)  # of those of the constants that have bounds; they stand last in `free`
+    # (free, free), covariance of the constants where they were estimated otherwise than by the misfit
+    stated: NDArray[np.float64] | None = None
 
     @property
     def misfit(self) -> float:
@@ -85,6 +87,8 @@ class Fitted:
     @property
     def covariance(self) -> NDArray[np.float64]:
         """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
+        if self.stated is not None:
+            return self.stated
         if not self.free:
             return np.zeros((0, 0))
         n = self.starts.shape[1]

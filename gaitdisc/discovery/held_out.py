@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
@@ -21,6 +22,7 @@ from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
 
 TURNS = 30
+DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ def free_run_error(problem: Problem, now: ScoredModel) -> float:
 
 
 def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
-    """Return what free runs of the held-out trials err by, and what the doubt about their starts alone makes of it.
+    """Return what free runs of the held-out trials err by, and what the doubt about starts and inputs makes of it.
 
     A run begins with what its first samples say, a period or a third of the trial, and errs over the others: a start
     that is fitted to the whole run absorbs an offset. A run that has left the data errs by `lost`.
@@ -83,9 +85,20 @@ def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
             * (scale.size / scale.spread) ** 2
         )
+        doubt = doubt + spread_by_inputs(problem, whole, shooting, now) / scale.spread**2
         found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
     error, doubt = np.mean(found, axis=0)
     return float(error), float(doubt)
+
+
+def spread_by_inputs(problem: Problem, run: Fitted, shooting: Shooting, now: ScoredModel) -> NDArray[np.float64]:
+    """Mean square that the stated errors of inputs move a run by (run, sample, channel); 0 where none wanders."""
+    base, moved = problem.search.base, np.zeros_like(run.residual)
+    for seed in range(DRAWN if wandering(base) else 0):
+        drawn = with_drawn_errors(problem.measured, base, seed)
+        _, seen = replace(shooting, measured=drawn).run(now.model.machine, run.starts[None], run.values[None])
+        moved += (shooting.seen - run.residual - seen[0]) ** 2 / DRAWN
+    return moved
 
 
 def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:

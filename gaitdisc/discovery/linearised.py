@@ -119,7 +119,10 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
     """Compile a simulation with a push, zero at first, at every place."""
     for number, place in enumerate(places):
         simulation = simulation.with_parameter(Parameter(f"push_{number}", 0.0))
-        simulation = simulation.with_effect(Term(place.name, place.kind, "push", f"push_{number}"))
+        if place.kind == "input":
+            simulation = simulation.with_input(place.name, f"{place.name} + push_{number}")
+        else:
+            simulation = simulation.with_effect(Term(place.name, place.kind, "push", f"push_{number}"))
     return compile_simulation(simulation)
 
 
@@ -138,6 +141,19 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDAr
     seen = shooting.unfiltered(machine, versions, np.repeat(fit.values[None], n + 1, axis=0))
     slopes = np.moveaxis((seen[1:] - seen[0]) / spans[:, None, None, None], 0, -1)
     return shooting.filtered(slopes @ change, 1)
+
+
+def seen_push(
+    shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted
+) -> NDArray[np.float64]:
+    """Return what a unit push changes at once in what the sensors see (segment, sample, channel, place).
+
+    Before any filter, states as they are: an input may stand in what is measured.
+    """
+    pushed = np.concatenate([np.zeros((1, len(places))), PUSH * np.eye(len(places))])
+    many = np.concatenate([np.repeat(fit.values[None], len(pushed), axis=0), pushed], axis=1)
+    seen = shooting.unfiltered(pushable(simulation, places), np.repeat(fit.states[None], len(pushed), axis=0), many)
+    return np.moveaxis(seen[1:] - seen[0], 0, -1) / PUSH
 
 
 def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ from gaitdisc.discovery.estimated_filter import record_filter_of
 from gaitdisc.discovery.first_states import StateGuess, guess_states
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
+from gaitdisc.discovery.input_errors import with_constant_errors
 from gaitdisc.discovery.linearised import linearise, linearise_along
 from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import sensor_noise, white_noise
@@ -174,7 +175,7 @@ def set_up_problem(
     measured: its trials; of four, one is held out, of one, the last quarter of its time
     possible: whether an explanation is possible here; all are by default
     """
-    simulation = matched(simulation, measured, shapes)
+    simulation = with_constant_errors(matched(simulation, measured, shapes))
     if len(measured.trials) == 1:
         measured = split_in_time(measured)
     machine = compile_simulation(simulation)

@@ -57,7 +57,7 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
         size = np.clip(sensor_noise(shooting.measured.observed), LEAST_NOISE * size, size)
     starts = _raw_slopes(shooting, model)[some, :length] / size[:, None] * known[..., None]
     rival = _autoregressive(fit.residual, starts * size[:, None], some, known)
-    sensors = _sensor_covariance(shooting, known)
+    sensors = sensor_covariance(shooting, known)
     penalty = 2 * float(count @ np.log(size)) + np.log(count.sum())
     flat = (plain / size).reshape(len(some), -1), starts.reshape(len(some), plain[0].size, -1)
     # white noise by the same restricted likelihood; the filter correlates it in a known way
@@ -93,7 +93,7 @@ def _seen_in(
     return seen_change(few, model.machine, part, change)
 
 
-def _sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Covariance of noise that was white before the filter (segment, number, number), of unit size.
 
     What was not measured is taken for independent of all else.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parsed, unknown_name
-from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.parts import Input, Sensor, Term
 from gaitdisc.simulation.refusal import SimulationError
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def check(simulation: Simulation) -> None:
     _check_size(simulation)
     _check_names(simulation)
     _check_numbers(simulation)
+    _check_inputs(simulation)
     _check_equations(simulation)
     _check_expressions(simulation)
     _check_ports(simulation)
@@ -226,10 +227,24 @@ def _check_sensors(simulation: Simulation) -> None:
         if sensor.channel not in observed:
             known = f"Known: {', '.join(observed)}."
             raise SimulationError("a sensor records an observation", f"{sensor.channel!r} is none", known, place)
-        for key, unit in (("sd", sensor.unit or "the column's unit"), ("lowpass", "Hz")):
-            number = getattr(sensor, key)
-            if number is not None and not (math.isfinite(number) and number > 0):
-                found = f"found {key} = {number:g}"
-                raise SimulationError(
-                    f"{key} is a number above 0 [{unit}]", found, "Correct it, or leave it out.", place
-                )
+        _check_positive(sensor, {"sd": sensor.unit or "the column's unit", "lowpass": "Hz"}, place)
+
+
+def _check_inputs(simulation: Simulation) -> None:
+    for one in simulation.inputs:
+        place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
+        _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)
+        if one.wander is not None and not errors:
+            found, remedy = f"found wander = {one.wander:g} alone", "Write gain or sd beside it, or take it out."
+            raise SimulationError("wander says how fast an error of gain or sd changes", found, remedy, place)
+        if errors and one.wraps:
+            found, remedy = "it has gain or sd", "Take them out."
+            raise SimulationError("the phase of the stride is taken as exact", found, remedy, place)
+
+
+def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[str, ...]) -> None:
+    for key, unit in units.items():
+        number = getattr(part, key)
+        if number is not None and not (math.isfinite(number) and number > 0):
+            found = f"found {key} = {number:g}"
+            raise SimulationError(f"{key} is a number above 0 [{unit}]", found, "Correct it, or leave it out.", place)

@@ -25,6 +25,9 @@ class Input:
     # whether an engine computed it along the record (gaitdisc/engines): then it is part of the equations, and no
     # explanation of a gap changes it
     computed: bool = False
+    gain: float | None = None  # standard deviation of what it errs by, as a share of it; exact where nothing is said
+    sd: float | None = None  # the same, whatever its size [its unit]
+    wander: float | None = None  # correlation time of these [s]; they stay as they are through the record where absent
 
     @property
     def wraps(self) -> bool:

@@ -21,9 +21,10 @@ from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
 MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
+ERRORS = ("gain", "sd", "wander")  # of an input
 _TABLES = {
     "states": ("unit", "meaning", "initial"),
-    "inputs": ("unit", "meaning"),
+    "inputs": ("unit", "meaning", *ERRORS),
     "parameters": ("value", "unit", "low", "high", "meaning"),
     "ports": ("unit", "meaning"),
 }
@@ -128,7 +129,14 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         for n, e in parts["states"].items()
     )
     inputs = tuple(
-        Input(n, _unit(e, ("inputs", n)), _text(e, "meaning", ("inputs", n))) for n, e in parts["inputs"].items()
+        Input(
+            n,
+            _unit(e, ("inputs", n)),
+            _text(e, "meaning", ("inputs", n)),
+            False,
+            *(_number(e, key, ("inputs", n)) for key in ERRORS),
+        )
+        for n, e in parts["inputs"].items()
     )
     parameters = tuple(_parameter(n, e) for n, e in parts["parameters"].items())
     ports = tuple(Port(n, _unit(e, ("ports", n)), _text(e, "meaning", ("ports", n))) for n, e in parts["ports"].items())

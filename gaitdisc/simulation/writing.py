@@ -10,11 +10,11 @@ from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.own_files import guarded
-from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Lines, Simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import ERRORS, simulation_of
 from gaitdisc.toml_text import quoted
 from gaitdisc.whole_file import write_whole
 
@@ -235,7 +235,8 @@ def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", 
     for state in simulation.states:
         lines += ["", *_state(state)]
     for each in simulation.inputs:
-        lines += ["", f"[inputs.{each.name}]", f"unit = {quoted(each.unit)}", *_meaning(each.meaning)]
+        unit = f"unit = {quoted(each.unit)}"
+        lines += ["", f"[inputs.{each.name}]", unit, *_numbers(each, ERRORS), *_meaning(each.meaning)]
     for parameter in simulation.parameters:
         lines += ["", *_parameter(parameter)]
     for port in simulation.ports:
@@ -252,22 +253,19 @@ def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", 
 
 
 def _state(state: State) -> list[str]:
-    initial = [] if state.initial is None else [f"initial = {state.initial!r}"]
-    return [f"[states.{state.name}]", f"unit = {quoted(state.unit)}", *_meaning(state.meaning), *initial]
+    unit = f"unit = {quoted(state.unit)}"
+    return [f"[states.{state.name}]", unit, *_meaning(state.meaning), *_numbers(state, ("initial",))]
 
 
 def _parameter(parameter: Parameter) -> list[str]:
-    bounds = [
-        f"{key} = {bound!r}" for key, bound in (("low", parameter.low), ("high", parameter.high)) if bound is not None
-    ]
     unit = f"unit = {quoted(parameter.unit)}"
-    meaning = _meaning(parameter.meaning)
+    bounds, meaning = _numbers(parameter, ("low", "high")), _meaning(parameter.meaning)
     return [f"[parameters.{parameter.name}]", f"value = {parameter.value!r}", unit, *bounds, *meaning]
 
 
 def _observation(expression: str, sensor: Sensor) -> list[str]:
     unit = [f"unit = {quoted(sensor.unit)}"] if sensor.unit else []
-    numbers = [f"{key} = {value!r}" for key in ("sd", "lowpass") if (value := getattr(sensor, key)) is not None]
+    numbers = _numbers(sensor, ("sd", "lowpass"))
     return [f"[observations.{_key(sensor.channel)}]", f"expression = {quoted(expression)}", *unit, *numbers]
 
 
@@ -286,6 +284,10 @@ def _expressions(lines: Iterable[tuple[str, str]]) -> list[str]:
 
 def _key(name: str) -> str:
     return name if re.match(r"[A-Za-z0-9_-]+$", name) else quoted(name)
+
+
+def _numbers(part: State | Input | Parameter | Sensor, keys: tuple[str, ...]) -> list[str]:
+    return [f"{key} = {value!r}" for key in keys if (value := getattr(part, key)) is not None]
 
 
 def _meaning(text: str) -> list[str]:

@@ -1,12 +1,16 @@
 """Reading: every part arrives, every fault is told with its file and line."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_simulation import effect_text
 
-from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.simulation.parts import Parameter, Sensor, Term
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.simulation.parts import Input, Parameter, Sensor, Term
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
+from gaitdisc.simulation.writing import simulation_text
 
 
 def test_every_part_is_read(ankle, ankle_text, tmp_path):
@@ -130,6 +134,53 @@ def test_an_exponent_without_end_is_a_row_without_end():
     from gaitdisc.simulation.running import compile_simulation
 
     assert np.isinf(compile_simulation(simulation_of(text)).rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))[0, 0])
+
+
+ERRING = """
+[inputs.motor]
+unit = "N m"
+gain = 0.1
+sd = 3.0
+wander = 0.5   # s
+"""
+
+
+def test_the_errors_of_an_input_are_read_and_written_back(ankle_text):
+    text = ankle_text.replace("[inputs.tau]", ERRING + "[inputs.tau]")
+    read = simulation_of(text)
+    assert read.inputs[0] == Input("motor", "N m", gain=0.1, sd=3.0, wander=0.5)
+    assert (read.inputs[1].gain, read.inputs[1].sd, read.inputs[1].wander) == (None, None, None)
+    assert simulation_text(read) == read.layout
+    assert simulation_of(simulation_text(replace(read, layout=""))) == read
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("gain = 0.1", "gain = -0.1", "[inputs] motor: gain is a number above 0 [1]; found gain = -0.1. Correct it"),
+        ("sd = 3.0", "sd = 0", "[inputs] motor: sd is a number above 0 [N m]; found sd = 0. Correct it"),
+        ("wander = 0.5", "wander = 0", "[inputs] motor: wander is a number above 0 [s]; found wander = 0"),
+        ("sd = 3.0", "sd = nan", "sd is a finite number; found nan"),
+        ("sd = 3.0", 'sd = "3 N m"', "sd is a finite number; found 3 N m. Write it without quotes"),
+        (
+            "gain = 0.1\nsd = 3.0",
+            "",
+            "[inputs] motor: wander says how fast an error of gain or sd changes; found wander",
+        ),
+        (
+            '[inputs.motor]\nunit = "N m"',
+            "[inputs.phase]",
+            "the phase of the stride is taken as exact; it has gain or sd",
+        ),
+        ("wander", "wanders", "Did you mean 'wander'?"),
+    ],
+)
+def test_a_fault_of_an_input_is_told_with_its_line(ankle_text, old, new, words):
+    text = ankle_text.replace('[inputs.phase]\nunit = "1"\n', ERRING.replace(old, new))
+    with pytest.raises(SchemaError) as refusal:
+        simulation_of(text, "ankle.toml")
+    assert words in str(refusal.value)
+    assert re.match(r"ankle.toml, line \d+, \[inputs\] (motor|phase): ", str(refusal.value))
 
 
 LONG = """

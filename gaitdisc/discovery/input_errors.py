@@ -1,0 +1,66 @@
+"""Stated errors of inputs: one that stays as it is is a number of the simulation, one that wanders is random."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.signal import lfilter
+
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import Parameter
+from gaitdisc.simulation.simulation import Simulation
+
+KIND = "stated errors"  # of the finding that they explain as well what was found
+BOUNDS = 2.0  # standard deviations, as of every number with bounds (prior.py)
+
+
+@dataclass(frozen=True)
+class Wandering:
+    """An input whose stated error changes in time."""
+
+    column: int
+    name: str
+    sd: float  # [the input's unit]
+    gain: float
+    seconds: float  # correlation time
+
+
+def wandering(simulation: Simulation) -> tuple[Wandering, ...]:
+    """List the inputs whose stated error changes in time."""
+    each = enumerate(simulation.inputs)
+    return tuple(Wandering(k, one.name, one.sd or 0.0, one.gain or 0.0, one.wander) for k, one in each if one.wander)
+
+
+def with_constant_errors(simulation: Simulation) -> Simulation:
+    """Return a simulation in which each stated error that stays as it is is a number with bounds.
+
+    >>> from gaitdisc.simulation.parts import Input, State
+    >>> fed = Simulation("fed", (State("x"),), (Input("u", "N", gain=0.1),), equations={"x": "u - x"})
+    >>> with_constant_errors(fed).equations, with_constant_errors(fed).parameters[0].high
+    ((('x', 'gain_of_u*u - x'),), 1.2)
+    """
+    for one in simulation.inputs:
+        told = one.name
+        for name, error, value, unit in (
+            (f"gain_of_{one.name}", one.gain, 1.0, "1"),
+            (f"offset_of_{one.name}", one.sd, 0.0, one.unit),
+        ):
+            if error and not one.wander and name not in simulation.values():  # a file that was written has it already
+                bounds = value - BOUNDS * error, value + BOUNDS * error
+                simulation = simulation.with_parameter(Parameter(name, value, unit, *bounds))
+                told = f"{name}*{told}" if value else f"{told} + {name}"
+        simulation = simulation.with_input(one.name, told) if told != one.name else simulation
+    return simulation
+
+
+def with_drawn_errors(measured: Measured, simulation: Simulation, seed: int) -> Measured:
+    """Return trials whose inputs err once more as stated: a stationary Markov process (Ornstein and Uhlenbeck)."""
+    rng, inputs = np.random.default_rng(seed), measured.drive.inputs.copy()
+    for one in wandering(simulation):
+        kept = float(np.exp(-1 / (measured.rate * one.seconds)))
+        for size in (one.sd, one.gain * measured.drive.inputs[..., one.column]):
+            new = rng.normal(size=inputs.shape[:2])
+            new[:, 1:] *= np.sqrt(1 - kept**2)
+            inputs[..., one.column] += size * np.asarray(lfilter([1.0], [1.0, -kept], new, axis=1))
+    return replace(measured, drive=replace(measured.drive, inputs=inputs))

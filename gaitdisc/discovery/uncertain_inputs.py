@@ -1,0 +1,247 @@
+"""Models weighed where inputs err as stated: what they leave, under the covariance that such errors make of it.
+
+To first order the errors enter where the input stands. The covariance is each model's own, so that one that hardly
+uses an input has no excuse by its errors. Numbers are estimated anew by what is left so (weighted orthogonal
+distances): else an input's errors pull its factors towards 0, and whatever goes along with it takes over.
+Source: Fuller 1987, Measurement Error Models; Boggs and Rogers 1990, Contemporary Mathematics 112, 183.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.decision import Verdict
+from gaitdisc.discovery.fitted import Fitted, start_basis, without
+from gaitdisc.discovery.held_out import Proof, proof_of
+from gaitdisc.discovery.input_errors import KIND, wandering
+from gaitdisc.discovery.linearised import linearise, seen_change, seen_push
+from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.problem import FEWEST_SAMPLES, Problem
+from gaitdisc.discovery.process_noise import MOST_NUMBERS, sensor_covariance
+from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.search import is_certain
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.discovery.unnamed_terms import NAME as UNNAMED
+from gaitdisc.recording import Finding
+from gaitdisc.results.effect_words import spoken
+from gaitdisc.words import listed
+
+PIECES = 12  # of held-out runs: their squares are all but independent under the covariance
+RIVALS = 3
+TURNS = 6
+NUDGE = 0.1  # standard errors
+ENOUGH = 0.1  # off the squares, a tenth of what one number of noise leaves
+HALVED = (1.0, 0.5, 0.25, 0.1)  # of a step that leaves more
+# correlation times, over which an input is averaged where its error is a share of it: else what reads low errs less,
+# and its factor is too large (three walks; errors of 25 %: by 21 and 17 %, so by 10 and 9; of 10 %: by 2.5, so by 1)
+SMOOTHED = 3.0
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """A model whose numbers were estimated under the stated errors of inputs."""
+
+    now: ScoredModel
+    learned: Array  # (run, sample, channel), what it leaves, as independent numbers of unit size
+    held_out: Array  # (run, sample, channel), the same where nothing but starts was fitted
+    plain: float  # mean square error there, over each channel's noise
+
+    @property
+    def squares(self) -> float:
+        """Sum of squares of what it was fitted to, and of the prior."""
+        fit = self.now.model.fit
+        return float((self.learned**2).sum() + (fit.prior.left(fit.values) ** 2).sum())
+
+    @property
+    def criterion(self) -> float:
+        """Information criterion (BIC) at the stated size of the errors."""
+        return self.squares + self.now.model.size * float(np.log(self.learned.size))
+
+    @property
+    def level(self) -> float:
+        """How many times the stated errors it leaves, in variance."""
+        return self.squares / (self.learned != 0).sum()
+
+
+def weigh_input_errors(problem: Problem, verdict: Verdict) -> tuple[Problem, Verdict]:
+    """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt.
+
+    returns problem: with a finding about what is not named
+    """
+    found, erring = verdict.found, [repr(one.name) for one in wandering(problem.search.base)]
+    if not erring or verdict.starts:
+        return problem, verdict
+    best = likeliest(problem, verdict)
+    if verdict.process_noise and best.level > CRITERIA.mere_noise:
+        return problem, verdict
+    now, proof = beyond_errors(problem, best)
+    named, kept = (Counter(part.candidate.label for part in one.model.parts) for one in (best.now, now))
+    dropped = ["random pushes"] * bool(verdict.process_noise)
+    dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (named - kept).elements()]
+    if dropped:
+        what = f"the errors that the simulation states of {listed(erring)} explain {listed(dropped)} as well"
+        finding = Finding("note", KIND, problem.measured.source, what, "the name; it is among the rivals")
+        measured = replace(problem.measured, findings=(*problem.measured.findings, finding))
+        problem = replace(problem, measured=measured)
+    same = now.labels == verdict.found.labels
+    verdict = replace(verdict, found=now, proof=proof or verdict.proof, read=verdict.read and same, process_noise=None)
+    verdict = replace(verdict, word=now.word if now.model.parts else "no_gap")
+    return problem, verdict if same else replace(verdict, rivals=(found, *verdict.rivals))
+
+
+def likeliest(problem: Problem, verdict: Verdict) -> Weighed:
+    """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
+    found = cut_short(problem, verdict.found)
+    tried = [one.model.parts for one in verdict.rivals[:RIVALS]]
+    tried += [
+        (Part(one, part.values),)  # what a shape reads as
+        for part in found.model.parts
+        for one in problem.search.candidates
+        if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
+    ]
+    tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
+    runs, starts, base = found.shooting, found.model.fit.starts, problem.search.base
+    models = [fit_model(runs, base, parts, starts, like=found.model) for parts in tried]
+    models = [ScoredModel(one, runs) for one in models if problem.search.sensible(one)]
+    ordered = sorted((weighed(problem, one) for one in (found, *models)), key=lambda one: one.criterion)
+    named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
+    return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
+
+
+def beyond_errors(problem: Problem, now: Weighed) -> tuple[ScoredModel, Proof | None]:
+    """Return a model less the explanations that are not borne out, each beside the others and all together."""
+    bare, proof = now.now, None
+    while bare.model.parts:
+        bare = problem.search.without(bare, 0)
+    base = weighed(problem, bare)
+    while now.now.model.parts:
+        parts = range(len(now.now.model.parts))
+        fewer = [weighed(problem, problem.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
+        tests = [tested(problem, one, now) for one in (*fewer, base)]
+        proof = replace(proof_of(problem, base.now, now.now, now.now), test=tests[-1])
+        if all(one.bears_out for one in tests):
+            break
+        now = fewer[int(np.argmax([one.p for one in tests[:-1]]))]
+    return now.now, proof
+
+
+def tested(problem: Problem, before: Weighed, now: Weighed) -> PairedTest:
+    """Test whether a model leaves less than another by more than chance, also of what it was not fitted to.
+
+    returns: of the held-out runs; p is 1 where the runs that it was fitted to say less than the criterion's margin,
+        where a number could as well be idle, or where the plain error rises: a model in which errors of inputs grow
+        beyond measure explains anything
+    """
+    pieces = -(-PIECES // len(now.held_out))
+    squares = [
+        np.array([(part**2).sum() for run in one.held_out for part in np.array_split(run, pieces)])
+        for one in (now, before)
+    ]
+    numbers = now.now.model.size - before.now.model.size
+    gained = (before.squares - now.squares) / max(now.level, 1.0) - numbers * np.log(now.learned.size)
+    worth = gained > CRITERIA.margin and now.plain < before.plain and is_certain(now.now.model)
+    p, fall = errors_rise_p(*squares) if worth else 1.0, float((squares[1] - squares[0]).sum())
+    return PairedTest(p, len(squares[0]), fall, problem.alpha)
+
+
+def cut_short(problem: Problem, now: ScoredModel) -> ScoredModel:
+    """Return a model fitted to runs of which a covariance can be made."""
+    samples = max(MOST_NUMBERS // len(problem.measured.channels), FEWEST_SAMPLES)
+    if now.shooting.segments.span <= samples:
+        return now
+    shooting = problem.learned_runs(samples).with_noise(now.noise)
+    starts = problem.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
+    model = fit_model(shooting, problem.search.base, now.model.parts, starts, like=now.model)
+    return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
+
+
+def weighed(problem: Problem, now: ScoredModel) -> Weighed:
+    """Estimate a model's numbers under the stated errors of inputs (Gauss-Newton), and weigh what it leaves."""
+    fit = now.model.fit
+    size = problem.noise_floor(now.noise.size)
+    left = whitener(problem, now, now.shooting, fit.starts, size)
+
+    def rows(values: Array) -> Array:
+        return np.concatenate([left(values).ravel(), fit.prior.left(values)])
+
+    columns = [now.model.machine.parameters.index(name) for name in fit.free]
+    error = np.sqrt(np.abs(np.diag(fit.covariance)))
+    steps = NUDGE * np.where(error > 0, error, 1.0)
+    values, here, slopes = fit.values, rows(fit.values), np.zeros((0, 0))
+    for _ in range(TURNS if columns else 0):
+        nudged = np.repeat(values[None], len(columns), axis=0)
+        nudged[range(len(columns)), columns] += steps
+        slopes = (np.array([rows(one) for one in nudged]) - here).T / steps
+        move = np.zeros(len(values))
+        move[columns] = -np.linalg.lstsq(slopes, here, rcond=None)[0]
+        tried = (fit.prior.within(values + share * move) for share in HALVED)
+        tried = (one for one in tried if problem.search.sensible(now.model.with_estimates(one, fit.covariance)))
+        better = next(((one, found) for one in tried if ((found := rows(one)) ** 2).sum() < (here**2).sum()), None)
+        if better is None:
+            break
+        gained, (values, here) = (here**2).sum() - (better[1] ** 2).sum(), better
+        if gained < ENOUGH:
+            break
+    level = max(float((here**2).sum()) / max(int((here != 0).sum()), 1), 1.0)
+    model = now.model.with_estimates(values, np.asarray(level * np.linalg.pinv(slopes.T @ slopes), float))
+    now = replace(now, model=model)
+    held = proof_of(problem, now, now, now).after
+    shooting = replace(problem.shooting(held.segments), past=now.shooting.past)
+    unseen = whitener(problem, now, shooting, held.fit.starts, size)(values)
+    return Weighed(now, left(values), unseen, float(np.nanmean((held.fit.residual / size) ** 2)))
+
+
+def whitener(
+    problem: Problem, now: ScoredModel, shooting: Shooting, starts: Array, size: Array
+) -> Callable[[Array], Array]:
+    """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers.
+
+    starts (run, state): where the runs begin, up to what is to first order
+    size (channel,): of the sensors' noise
+    """
+    shooting = shooting.with_noise(white_noise(np.ones(len(size))))
+    known = shooting.known
+    each = np.tile(size, known.shape[1])
+    sensors = sensor_covariance(shooting, known) * each[:, None] * each
+    measured = known.reshape(len(known), -1)
+
+    def left(values: Array) -> Array:
+        fit = shooting.at(now.model.machine, (), values, starts)
+        inputs = covariance_by_inputs(problem, now, shooting, fit) * measured[:, :, None] * measured[:, None]
+        columns = np.concatenate([np.nan_to_num(fit.residual).reshape(*measured.shape, 1), fit.slopes], axis=2)
+        white = np.asarray(np.linalg.solve(np.linalg.cholesky(sensors + inputs), columns), np.float64)
+        return without(start_basis(white[..., 1:]), white[..., :1]).reshape(known.shape)
+
+    return left
+
+
+def covariance_by_inputs(problem: Problem, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Array:
+    """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
+    base, segments = problem.search.base, shooting.segments
+    places = tuple(Place("input", one.name, (), (), (), False) for one in wandering(base))
+    line = linearise(shooting, now.model.simulation, places, fit)
+    direct = seen_push(shooting, now.model.simulation, places, fit)
+    unit = np.eye(segments.length)
+    held = 0.5 * (unit[:-1] + unit[1:])
+    late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / problem.measured.rate
+    total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
+    for number, one in enumerate(wandering(base)):
+        change = line.of_change(line.pushed[:, :, :, number, None] * held[:, None, :])
+        seen = seen_change(shooting, now.model.machine, fit, change)
+        seen = seen + shooting.filtered(direct[:, :, :, number, None] * unit[:, None, :], 1)
+        flat = seen.reshape(len(segments), -1, segments.length)
+        near = np.exp(-late / (SMOOTHED * one.seconds))
+        along = one.gain * (segments.of(problem.measured.drive.inputs)[..., one.column] @ near) / near.sum(axis=0)
+        own = (one.sd**2 + along[:, :, None] * along[:, None]) * np.exp(-late / one.seconds)
+        total += flat @ own @ np.swapaxes(flat, 1, 2)
+    return total

@@ -1,0 +1,95 @@
+"""Inputs whose errors are stated: what these explain is not named, what is hidden beside them is, with its number."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import RATE, mass, record, with_load
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.input_errors import with_constant_errors, with_drawn_errors
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.uncertain_inputs import covariance_by_inputs
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.writing import simulation_text
+
+SEED = 3
+
+
+def _driven(measured: Measured, inputs) -> Measured:
+    return replace(measured, drive=replace(measured.drive, inputs=inputs))
+
+
+def _wandering(measured: Measured, sd: float, seconds: float) -> Measured:
+    """Inputs with an error of a known size and memory, drawn sample by sample."""
+    kept, error = np.exp(-1 / (RATE * seconds)), np.random.default_rng(7).normal(size=measured.drive.inputs.shape)
+    for sample in range(1, error.shape[1]):
+        error[:, sample] = kept * error[:, sample - 1] + np.sqrt(1 - kept**2) * error[:, sample]
+    return _driven(measured, measured.drive.inputs + sd * error)
+
+
+def _stating(simulation: Simulation, **errors: float) -> Simulation:
+    return replace(simulation, inputs=tuple(replace(one, **errors) for one in simulation.inputs))
+
+
+def test_what_a_stated_error_explains_as_well_is_not_named():
+    measured = _wandering(record(mass(), SEED), 2.0, 0.3)
+    found, augmented = discover(_stating(mass(), sd=2.0, wander=0.3), measured)
+    assert (found.verdict, found.effects, augmented.effects) == ("no_gap", (), ())
+    (said,) = (one.what for one in found.findings if one.kind == "stated errors")
+    assert "states of 'push' explain" in said and said in found.sentence
+
+
+def test_a_term_beside_a_stated_error_is_named_with_its_number_in_its_interval():
+    measured = _wandering(record(with_load("-30*max(0, x - 0.25)"), SEED), 2.0, 0.3)
+    found, _ = discover(_stating(mass(), sd=2.0, wander=0.3), measured)
+    assert [(one.name, one.place) for one in found.effects] == [("one_sided_spring", "load")]
+    numbers = found.effects[0].estimates
+    assert numbers["stiffness"].low < 30 < numbers["stiffness"].high
+    assert numbers["engagement"].low < 0.25 < numbers["engagement"].high
+    assert not [one for one in found.findings if one.kind in ("stated errors", "exact inputs")]
+
+
+def test_a_gain_within_its_stated_error_is_corrected_and_not_named():
+    measured = record(mass(), SEED)
+    measured = _driven(measured, measured.drive.inputs / 1.12)
+    assert [(one.name, one.place) for one in discover(mass(), measured)[0].effects] == [("input_gain", "push")]
+    found, augmented = discover(_stating(mass(), gain=0.1), measured)
+    assert (found.verdict, found.effects) == ("no_gap", ())
+    (moved,) = found.corrections
+    assert moved.parameter == "gain_of_push" and moved.found.low < 1.12 < moved.found.high
+    again = simulation_of(simulation_text(augmented))
+    assert again.values()["gain_of_push"] == pytest.approx(1.12, rel=0.02)
+    assert with_constant_errors(again) == again
+
+
+def test_an_offset_is_a_number_with_bounds_of_two_standard_deviations():
+    made = with_constant_errors(_stating(mass(), sd=1.5))
+    (offset,) = made.parameters[-1:]
+    assert (offset.name, offset.value, offset.unit, offset.low, offset.high) == ("offset_of_push", 0, "N", -3, 3)
+    assert "push + offset_of_push" in dict(made.equations)["v"]
+
+
+def test_drawn_errors_have_the_stated_size_and_memory():
+    measured, stated = record(mass(), SEED), _stating(mass(), sd=2.0, gain=0.1, wander=0.4)
+    inputs = measured.drive.inputs
+    drawn = np.array([with_drawn_errors(measured, stated, seed).drive.inputs - inputs for seed in range(400)])
+    assert drawn.var(axis=0) == pytest.approx(4 + (0.1 * inputs) ** 2, rel=0.4)
+    later = (drawn[:, :, 20:] * drawn[:, :, :-20]).mean(axis=0)
+    assert (later / (4 + 0.01 * inputs[:, 20:] * inputs[:, :-20])).mean() == pytest.approx(np.exp(-1), abs=0.02)
+
+
+@pytest.mark.parametrize("seen", ["x", "push + 3*x"])
+def test_the_covariance_is_that_of_runs_with_drawn_errors(seen):
+    stated = _stating(mass().with_observation("x", seen), sd=2.0, wander=0.3)
+    problem = set_up_problem(stated, record(mass().with_observation("x", seen), SEED))
+    now = problem.as_read()
+    fit, shooting = now.model.fit, now.shooting
+    covariance = covariance_by_inputs(problem, now, shooting, fit)[0]
+    runs = []
+    for seed in range(600):
+        drawn = replace(shooting, measured=with_drawn_errors(problem.measured, stated, seed))
+        runs.append(drawn.run(now.model.machine, fit.starts[None], fit.values[None])[1][0, 0, :, 0])
+    assert np.cov(np.array(runs).T) == pytest.approx(covariance, abs=0.2 * covariance.max())
