@@ -34,7 +34,7 @@ def select_forward(
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
-    explained, turns, inexact = 0.0, 0, search.base.inexact > 0
+    explained, turns, inexact, begun = 0.0, 0, search.base.inexact > 0, len(now.model.parts)
     while len(now.model.parts) < most and turns < MOST_TURNS:
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
@@ -45,7 +45,7 @@ def select_forward(
         if not more or before.bic - more[0].bic < (worth if number > 2 or inexact else MARGIN):
             break
         better = more[0]
-        if number == 2:
+        if number == 2 and not begun:
             better = beside_others(search, better, [one for one in rivals if one is not now], explored)
         far = noise is not None and number > 1 and leaves(better, noise) > FAR
         if number > 1:
