@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from gaitdisc.discovery.beam import errs_more
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.decision import HALF, MOST_NEAR, NEAR, Verdict, held_out_proof
+from gaitdisc.discovery.decision import HALF, MOST_NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import GROWN, by_size, free_run_error, free_runs, grows_along_runs, proof_of
+from gaitdisc.discovery.held_out import by_size, free_run_error, grows_along_runs, proof_of, strays
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
@@ -117,11 +115,9 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
     base, named = fit_whole_runs(problem, as_read), verdict.found
     if not named.model.parts:
         return base, replace(verdict, found=base)
-    scale, most = scale_of(problem), free_run_error(problem, base)
-    least = float(np.mean((scale.size / scale.spread) ** 2))
+    most = free_run_error(problem, base)
     for one in (named, *verdict.rivals):
-        error, doubt = free_runs(problem, one)
-        if not one.model.parts or error > max(most, GROWN**2 * (least + doubt)):
+        if not one.model.parts or strays(problem, one, most):
             continue
         if one is named:
             return base, complete_on_whole_runs(problem, as_read, verdict)
@@ -155,11 +151,11 @@ def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verd
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
         return verdict
-    tried = [one for one in rivals if one.bic < named.bic + NEAR and len(one.model.parts) == len(named.model.parts)]
+    tried = [one for one in rivals if len(one.model.parts) == len(named.model.parts)]
     left = {id(one): free_run_error(problem, one) for one in (named, *tried[:MOST_NEAR])}
     alike = [one for one in (named, *tried[:MOST_NEAR]) if left[id(one)] <= (1 + NEARLY) * min(left.values())]
     more = ranked(alike, search.candidates)[0]
-    if left[id(more)] > HALF * free_run_error(problem, found):
+    if left[id(more)] > HALF * free_run_error(problem, whole):
         return verdict
     beside, proof = held_out_proof(problem, whole, more, as_read), held_out_proof(problem, as_read, more)
     if not beside.bears_out or not proof.bears_out:
