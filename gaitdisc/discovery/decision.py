@@ -13,7 +13,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
-from gaitdisc.discovery.held_out import Proof, free_run_error, proof_of
+from gaitdisc.discovery.held_out import Proof, free_run_error, proof_of, strays
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
@@ -79,15 +79,20 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
     proof = held_out_proof(problem, as_read, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
-    return Verdict(longer.word, longer, tuple(rivals), proof=proof)
+    verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
+    refuted = None if leaves_noise(problem, longer) else shape_that_leaves_noise(problem, as_read, scale, verdict)
+    return refuted or verdict
 
 
 def shape_that_leaves_noise(problem: Problem, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
-    """Return the verdict on one shape without a name that leaves mere noise where several names together do not."""
-    if len(names.found.model.parts) < 2:
-        return None
+    """Return the verdict on one shape without a name that leaves mere noise where names do not.
+
+    A single name, which is plainer, is refuted only where held-out data prefer the shape to it.
+    """
     shape = fitted_shape(as_read, problem.search, scale)
     if shape is None or not leaves_noise(problem, shape):
+        return None
+    if len(names.found.model.parts) == 1 and not held_out_proof(problem, names.found, shape).bears_out:
         return None
     return proven_shape(problem, as_read, shape, (names.found, *names.rivals))
 
@@ -223,7 +228,7 @@ def find_term_before(
     Random pushes explain anything, so that a term that is likelier than these goes before them: with noise of the
     sensors, or with pushes beside it, over the same numbers by the same criterion, and over what is held out. All is
     weighed by its size, with its autocorrelation, and one term was picked among all that were open. A term with states
-    of its own begins each held-out run where it suits: free runs must err less with it as well.
+    of its own begins each held-out run where it suits: free runs must not stray with it.
 
     as_read, named: the simulation as read and with what the search selected
     """
@@ -237,7 +242,7 @@ def find_term_before(
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
         proof = held_out_proof(problem, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
-        stays = not problem.spans_a_period(as_read) or free_run_error(problem, now) < free_run_error(problem, before)
+        stays = not problem.spans_a_period(as_read) or not strays(problem, now, free_run_error(problem, before))
         if one.model.parts and likelier > CRITERIA.margin and stays and left_out_errors_fall(problem, before, now):
             borne.append((likelier, now, proof))
     if not borne:

@@ -35,7 +35,7 @@ def select_forward(
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
-    explained, turns = 0.0, 0
+    explained, turns, begun = 0.0, 0, len(now.model.parts)
     while len(now.model.parts) < most and turns < MOST_TURNS:
         if scale and now.model.parts and scale.excess(now.model.fit) < CRITERIA.model_error:
             break
@@ -47,7 +47,7 @@ def select_forward(
         if not more or before.bic - more[0].bic < worth:
             break
         better = more[0]
-        if number == 2:
+        if number == 2 and not begun:
             better = beside_others(search, better, [one for one in rivals if one is not now], explored)
         far = scale is not None and number > 1 and leaves(better, scale.noise) > FAR
         if number > 1:

@@ -101,6 +101,16 @@ def spread_by_inputs(problem: Problem, run: Fitted, shooting: Shooting, now: Sco
     return moved
 
 
+def strays(problem: Problem, now: ScoredModel, before: float) -> bool:
+    """Whether free runs of the held-out trials err more than before, and than noise, model error and start explain.
+
+    before: what free runs of the simulation as read err by, over each channel's variance
+    """
+    (error, doubt), scale = free_runs(problem, now), scale_of(problem)
+    least = float(np.mean((scale.size / scale.spread) ** 2))
+    return error > max(before, CRITERIA.grown**2 * (least + doubt))
+
+
 def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:
     """Whether free runs of unseen data err clearly more than the short runs that a model was fitted to.
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from gaitdisc.discovery.beam import errs_more
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
@@ -15,7 +13,7 @@ from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import free_run_error, free_runs, grows_along_runs, proof_of
+from gaitdisc.discovery.held_out import free_run_error, grows_along_runs, proof_of, strays
 from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
@@ -116,11 +114,9 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
     base, named = fit_whole_runs(problem, as_read), verdict.found
     if not named.model.parts:
         return base, replace(verdict, found=base)
-    scale, most = scale_of(problem), free_run_error(problem, base)
-    least = float(np.mean((scale.size / scale.spread) ** 2))
+    most = free_run_error(problem, base)
     for one in (named, *verdict.rivals):
-        error, doubt = free_runs(problem, one)
-        if not one.model.parts or error > max(most, CRITERIA.grown**2 * (least + doubt)):
+        if not one.model.parts or strays(problem, one, most):
             continue
         if one is named:
             return base, complete_on_whole_runs(problem, as_read, verdict)
@@ -154,11 +150,10 @@ def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verd
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
         return verdict
-    near = [one for one in rivals if one.bic < named.bic + CRITERIA.support]
-    tried = [one for one in near if len(one.model.parts) == len(named.model.parts)]
+    tried = [one for one in rivals if len(one.model.parts) == len(named.model.parts)]
     left = [(free_run_error(problem, one), one) for one in (named, *tried[:MOST_NEAR])]
     least = min(error for error, _ in left)
-    if least > CRITERIA.half * free_run_error(problem, found):
+    if least > CRITERIA.half * free_run_error(problem, whole):
         return verdict
     more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
     beside, proof = held_out_proof(problem, whole, more, as_read), held_out_proof(problem, as_read, more)

@@ -96,14 +96,15 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(
 def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(problem, as_read, monkeypatch):
     names = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1, 2))), rivals=("rival",))
     alone = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1,))), rivals=())
-    proofs = iter([True, False])
+    proofs = iter([True, False, False, True, True])
     monkeypatch.setattr(decision, "fitted_shape", lambda *_: "shape")
     monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
     found = decision.shape_that_leaves_noise(problem, as_read, None, names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
     assert decision.shape_that_leaves_noise(problem, as_read, None, names) is None  # not borne out
-    assert decision.shape_that_leaves_noise(problem, as_read, None, alone) is None
+    assert decision.shape_that_leaves_noise(problem, as_read, None, alone) is None  # not preferred to a single name
+    assert decision.shape_that_leaves_noise(problem, as_read, None, alone).word == "unnamed"
     monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
     assert decision.shape_that_leaves_noise(problem, as_read, None, names) is None
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.linearised import linearise, pushable, seen_change
+from gaitdisc.discovery.linearised import Linearised, linearise, pushable, seen_change
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
@@ -73,3 +73,12 @@ def test_a_late_sensor_sees_the_change_late(as_read):
     seen = seen_change(as_read.shooting, compile_simulation(lagging), fit, change)[:, :, 0, 0]
     np.testing.assert_allclose(seen[:, 10 + late :], 1.0, rtol=1e-4)
     np.testing.assert_allclose(seen[:, late : 10 + late - 1], 0.0, atol=1e-6)
+
+
+def test_a_hidden_state_whose_guess_stands_still_is_no_chaos():
+    onward = np.broadcast_to([[0.9, 0.0], [5.0, 0.9]], (4, 30, 2, 2))
+    moving = np.random.default_rng(0).normal(size=(4, 31, 2))
+    still = moving * [1.0, 0.0] + [0.0, 0.3]
+    line = Linearised(onward, np.zeros(0), np.zeros(0))
+    assert line.first_growth(5.0, still) is None
+    assert line.first_growth(5.0, moving) in {1, 2}

@@ -1,11 +1,13 @@
 """A simulation that starts elsewhere than the trials is told so, and nothing else is named."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 from hidden_in_a_mass import mass, record
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.wrong_start import begun_at
+from gaitdisc.discovery.wrong_start import begun_at, wrong_starts
 from gaitdisc.results.discovery import Estimate
 
 
@@ -33,3 +35,12 @@ def test_states_without_a_start_in_the_file_are_left_alone():
 def test_other_starts_are_written_into_the_states():
     moved = begun_at(begun(3.0, 0.0), {"x": Estimate(0.25, 0.2, 0.3, "m")})
     assert [state.initial for state in moved.states] == [0.25, 0.0]
+
+
+def test_trials_that_begin_at_unlike_places_show_no_start_that_all_have():
+    slopes = np.full((3, 8, 2), 10.0) * [1.0, 0.0] + np.eye(8, 2)
+    for starts, wrong in (((0.4, 0.41, 0.4), True), ((0.9, -0.2, 0.5), False)):
+        fit = SimpleNamespace(starts=np.column_stack([starts, np.zeros(3)]), slopes=slopes)
+        runs = SimpleNamespace(segments=SimpleNamespace(begin=np.zeros(3, int)))
+        as_read = SimpleNamespace(model=SimpleNamespace(fit=fit), shooting=runs)
+        assert ("x" in wrong_starts(begun(0.0, 0.0), as_read)) is wrong
