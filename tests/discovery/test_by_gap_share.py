@@ -4,6 +4,7 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.problem import set_up_problem
 
@@ -21,9 +22,8 @@ def test_a_simulation_that_errs_leaves_noise_where_that_is_a_small_share_of_the_
     base = replace(problem.search.base, inexact=0.02)
     errs = replace(problem, search=replace(problem.search, base=base))
     assert not leaves_noise(errs, as_read)
-    monkeypatch.setattr(
-        "gaitdisc.discovery.by_gap_share.INEXACT_LEAVES", 2 * scale_of(errs).relative(as_read.model.fit)
-    )
+    loose = replace(CRITERIA, inexact=2 * scale_of(errs).relative(as_read.model.fit))
+    monkeypatch.setattr("gaitdisc.discovery.by_gap_share.CRITERIA", loose)
     assert leaves_noise(errs, as_read)
     assert not leaves_noise(problem, as_read)
 
