@@ -87,13 +87,15 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
 def shape_that_leaves_noise(problem: Problem, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
     """Return the verdict on one shape without a name that leaves mere noise where names do not.
 
-    A single name, which is plainer, is refuted only where held-out data prefer the shape to it.
+    A single name, which is plainer, is refuted only where held-out data prefer the shape, in free runs as well.
     """
     shape = fitted_shape(as_read, problem.search, scale)
     if shape is None or not leaves_noise(problem, shape):
         return None
-    if len(names.found.model.parts) == 1 and not held_out_proof(problem, names.found, shape).bears_out:
-        return None
+    if len(names.found.model.parts) == 1:
+        better = free_run_error(problem, shape) < free_run_error(problem, names.found)
+        if not better or not held_out_proof(problem, names.found, shape).bears_out:
+            return None
     return proven_shape(problem, as_read, shape, (names.found, *names.rivals))
 
 

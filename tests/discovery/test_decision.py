@@ -97,6 +97,7 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(proble
     names = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1, 2))), rivals=("rival",))
     alone = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1,))), rivals=())
     proofs = iter([True, False, False, True, True])
+    monkeypatch.setattr(decision, "free_run_error", lambda _, one: 0.1 if one == "shape" else 0.2)
     monkeypatch.setattr(decision, "fitted_shape", lambda *_: "shape")
     monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
