@@ -11,7 +11,6 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Parameter
 from gaitdisc.simulation.simulation import Simulation
 
-KIND = "stated errors"  # of the finding that they explain as well what was found
 BOUNDS = 2.0  # standard deviations, as of every number with bounds (prior.py)
 
 

@@ -20,7 +20,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.held_out import Proof, proof_of
-from gaitdisc.discovery.input_errors import KIND, wandering
+from gaitdisc.discovery.input_errors import wandering
 from gaitdisc.discovery.linearised import linearise, seen_change, seen_push
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
@@ -41,9 +41,6 @@ TURNS = 6
 NUDGE = 0.1  # standard errors
 ENOUGH = 0.1  # off the squares, a tenth of what one number of noise leaves
 HALVED = (1.0, 0.5, 0.25, 0.1)  # of a step that leaves more
-# correlation times, over which an input is averaged where its error is a share of it: else what reads low errs less,
-# and its factor is too large (three walks; errors of 25 %: by 21 and 17 %, so by 10 and 9; of 10 %: by 2.5, so by 1)
-SMOOTHED = 3.0
 Array = NDArray[np.float64]
 
 
@@ -90,7 +87,7 @@ def weigh_input_errors(problem: Problem, verdict: Verdict) -> tuple[Problem, Ver
     dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (named - kept).elements()]
     if dropped:
         what = f"the errors that the simulation states of {listed(erring)} explain {listed(dropped)} as well"
-        finding = Finding("note", KIND, problem.measured.source, what, "the name; it is among the rivals")
+        finding = Finding("note", "stated errors", problem.measured.source, what, "the name; it is among the rivals")
         measured = replace(problem.measured, findings=(*problem.measured.findings, finding))
         problem = replace(problem, measured=measured)
     same = now.labels == verdict.found.labels
@@ -240,8 +237,9 @@ def covariance_by_inputs(problem: Problem, now: ScoredModel, shooting: Shooting,
         seen = seen_change(shooting, now.model.machine, fit, change)
         seen = seen + shooting.filtered(direct[:, :, :, number, None] * unit[:, None, :], 1)
         flat = seen.reshape(len(segments), -1, segments.length)
-        near = np.exp(-late / (SMOOTHED * one.seconds))
-        along = one.gain * (segments.of(problem.measured.drive.inputs)[..., one.column] @ near) / near.sum(axis=0)
-        own = (one.sd**2 + along[:, :, None] * along[:, None]) * np.exp(-late / one.seconds)
+        memory = np.exp(-late / one.seconds)
+        # averaged, as else what reads low errs less and its factor is too large (by 17-21 % where it errs by 25 %)
+        along = one.gain * (segments.of(problem.measured.drive.inputs)[..., one.column] @ memory) / memory.sum(axis=0)
+        own = (one.sd**2 + along[:, :, None] * along[:, None]) * memory
         total += flat @ own @ np.swapaxes(flat, 1, 2)
     return total

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.input_errors import KIND as STATED_ERRORS
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import (
     amount,
@@ -83,7 +82,7 @@ def _given(discovery: Discovery) -> str:
 
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
-    stated = next((one.what for one in discovery.findings if one.kind == STATED_ERRORS), "")
+    stated = next((one.what for one in discovery.findings if one.kind == "stated errors"), "")
     if stated and discovery.verdict == "no_gap":
         return f"Nothing is named: {stated}."
     first = discovery.rivals[0] if discovery.rivals else None

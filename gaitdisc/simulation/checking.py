@@ -235,11 +235,9 @@ def _check_inputs(simulation: Simulation) -> None:
         place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
         _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)
         if one.wander is not None and not errors:
-            found, remedy = f"found wander = {one.wander:g} alone", "Write gain or sd beside it, or take it out."
-            raise SimulationError("wander says how fast an error of gain or sd changes", found, remedy, place)
+            raise SimulationError("wander belongs to gain or sd", "it has neither", "Write one beside it.", place)
         if errors and one.wraps:
-            found, remedy = "it has gain or sd", "Take them out."
-            raise SimulationError("the phase of the stride is taken as exact", found, remedy, place)
+            raise SimulationError("the phase of the stride is exact", "it has gain or sd", "Take them out.", place)
 
 
 def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[str, ...]) -> None:

@@ -165,12 +165,12 @@ def test_the_errors_of_an_input_are_read_and_written_back(ankle_text):
         (
             "gain = 0.1\nsd = 3.0",
             "",
-            "[inputs] motor: wander says how fast an error of gain or sd changes; found wander",
+            "[inputs] motor: wander belongs to gain or sd; it has neither",
         ),
         (
             '[inputs.motor]\nunit = "N m"',
             "[inputs.phase]",
-            "the phase of the stride is taken as exact; it has gain or sd",
+            "the phase of the stride is exact; it has gain or sd",
         ),
         ("wander", "wanders", "Did you mean 'wander'?"),
     ],
