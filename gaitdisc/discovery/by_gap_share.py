@@ -60,8 +60,7 @@ def leaves_noise(problem: Problem, now: ScoredModel) -> bool:
     known = np.isfinite(problem.sensor_noise)
     if not known.all():
         return not now.noise.is_autocorrelated
-    own_error = scale_of(problem).excess(now.model.fit) < CRITERIA.model_error
-    return own_error or leaves(now, problem.sensor_noise) < CRITERIA.mere_noise
+    return leaves(now, problem.sensor_noise) < CRITERIA.mere_noise
 
 
 def closing_most(problem: Problem, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:

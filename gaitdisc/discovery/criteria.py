@@ -29,7 +29,7 @@ class Criteria:
     agrees: float = 1.5  # times the error that a simulation that lacks nothing may leave
     model_error: float = 0.01  # of a channel's spread: no simulation of hardware is exact
     inexact: float = 0.05  # of a channel's spread: the same of an engine's linear stand-in
-    material: float = 0.02  # of what was explained, the least that one explanation more of such a stand-in is
+    material: float = 0.02  # of what was explained, the least that one explanation more has to explain
     independent: float = 20.0  # samples of what a wrong simulation leaves that say as much as one
 
     # Share of the gap that a set of explanations closes on what was left out

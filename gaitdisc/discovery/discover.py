@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from difflib import get_close_matches
 from functools import partial
 
 import numpy as np
@@ -10,18 +11,19 @@ import numpy as np
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel
+from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
 from gaitdisc.discovery.catalogue import ALL, Request
-from gaitdisc.discovery.decision import Verdict, decide
-from gaitdisc.discovery.given_effects import fit_given, refuse_unknown
+from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.problem import FEWEST_SAMPLES, Problem, set_up_problem, split_in_time
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.search import TURNS, Search, is_certain
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.uncertain_inputs import weigh_input_errors
+from gaitdisc.errors import SchemaError
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
@@ -30,6 +32,7 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 MOST_LOST = 0.2  # of the shortest runs; a few may begin at a bad guess of what is not measured
+NEAREST = 5  # effects that stand in a refusal
 CLOSE = 0.3  # of its range, moved from one sample to the next: ten samples in a period (pi / 10)
 
 
@@ -118,3 +121,52 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
         refuse_divergence(machine, drive, rows, states, ok)
     spread = np.maximum(np.ptp(states[ok, 0], axis=0), np.finfo(float).tiny)
     return bool(np.median((np.abs(states[ok, 1] - states[ok, 0]) / spread).max(axis=1)) < CLOSE)
+
+
+def refuse_unknown(search: Search, effects: tuple[str, ...]) -> None:
+    """Refuse an effect or a place that does not exist, with the nearest."""
+    known = {one.label for one in search.candidates}
+    for given in effects:
+        if given not in known:
+            near = get_close_matches(given, sorted(known), NEAREST, 0.0)
+            raise SchemaError(
+                "an effect that is to be fitted is written as effect@place, both of them known",
+                f"found {given!r}; nearest are {', '.join(near)}",
+                "Give one of these.",
+            )
+
+
+def fit_given(problem: Problem, as_read: ScoredModel, effects: tuple[str, ...]) -> Verdict:
+    """Fit a simulation with exactly these effects in it, each `name@place`, and test it on what is held out."""
+    search, now = problem.search, as_read
+    for given in effects:
+        castings = tuple(one for one in search.open_beside(now.model) if one.label == given)
+        begun = search.scorer(now.shooting, now.model).scores(castings)
+        tried = [
+            fit_model(
+                now.shooting,
+                search.base,
+                (*now.model.parts, Part(one.candidate, one.values)),
+                now.model.fit.starts,
+                TURNS,
+                like=now.model,
+            )
+            for one in begun
+        ]
+        tried = [one for one in tried if np.isfinite(one.fit.misfit)]
+        if not tried:
+            raise SchemaError(
+                "an effect that is to be fitted changes what is measured, and is given once",
+                f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
+                "Give another effect or place.",
+            )
+        now = scored(now.shooting, search.base, min(tried, key=lambda one: one.fit.misfit))
+    now = problem.lengthened(now)
+    count = len(now.model.parts)
+    idle = [
+        not is_certain(now.model, number, number + 1)
+        or (count > 1 and not held_out_proof(problem, search.without(now, number), now, as_read).bears_out)
+        for number in range(count)
+    ]
+    proof = held_out_proof(problem, as_read, now)
+    return Verdict(now.word, now, (), proof=proof, given=tuple(idle))

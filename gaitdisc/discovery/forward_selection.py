@@ -43,8 +43,9 @@ def select_forward(
         more = ranked(more, search.candidates)
         rivals = rivals or more
         number = len(now.model.parts) + 1
-        worth = max(CRITERIA.margin, CRITERIA.material * explained if search.base.inexact else 0.0)
-        if not more or before.bic - more[0].bic < worth:
+        worth = max(CRITERIA.margin, CRITERIA.material * explained)
+        least = CRITERIA.margin if number == 2 else worth  # two together may explain what neither does
+        if not more or before.bic - more[0].bic < least:
             break
         better = more[0]
         if number == 2 and not begun:

@@ -145,7 +145,8 @@ def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verd
         return verdict
     whole = fit_whole_runs(problem, found)
     whole = scored(whole.shooting, search.base, whole.model)
-    if leaves_noise(problem, whole):
+    own_error = scale_of(problem).excess(whole.model.fit) < CRITERIA.model_error
+    if own_error or leaves_noise(problem, whole):
         return verdict
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
@@ -153,7 +154,7 @@ def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verd
     tried = [one for one in rivals if len(one.model.parts) == len(named.model.parts)]
     left = [(free_run_error(problem, one), one) for one in (named, *tried[:MOST_NEAR])]
     least = min(error for error, _ in left)
-    if least > CRITERIA.half * free_run_error(problem, whole):
+    if least > CRITERIA.half * min(free_run_error(problem, one) for one in (found, whole)):
         return verdict
     more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
     beside, proof = held_out_proof(problem, whole, more, as_read), held_out_proof(problem, as_read, more)
