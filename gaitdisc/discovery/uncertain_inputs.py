@@ -116,7 +116,10 @@ def likeliest(problem: Problem, verdict: Verdict) -> Weighed:
 
 
 def beyond_errors(problem: Problem, now: Weighed) -> tuple[ScoredModel, Proof | None]:
-    """Return a model less the explanations that are not borne out, each beside the others and all together."""
+    """Return a model less what is not borne out: each explanation beside the others, and all together.
+
+    All together also take half of what the simulation as read leaves of unseen data beyond the stated errors.
+    """
     bare, proof = now.now, None
     while bare.model.parts:
         bare = problem.search.without(bare, 0)
@@ -126,7 +129,8 @@ def beyond_errors(problem: Problem, now: Weighed) -> tuple[ScoredModel, Proof | 
         fewer = [weighed(problem, problem.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
         tests = [tested(problem, one, now) for one in (*fewer, base)]
         proof = replace(proof_of(problem, base.now, now.now, now.now), test=tests[-1])
-        if all(one.bears_out for one in tests):
+        excess = float((base.held_out**2).sum()) - (base.held_out != 0).sum()  # beyond the stated errors
+        if tests[-1].fall >= CRITERIA.half * excess and all(one.bears_out for one in tests):
             break
         now = fewer[int(np.argmax([one.p for one in tests[:-1]]))]
     return now.now, proof
