@@ -1,8 +1,8 @@
 """Which criteria of `gaitdisc discover` decide anything: each is moved alone, over made cases and real records.
 
-    python benchmarks/criteria.py CASE [CASE ...] [--out criteria.jsonl] [--limit 120]
+    python benchmarks/criteria.py CASES [CASES ...] [--out criteria.jsonl] [--limit 120]
 
-CASE is a folder with simulation.toml and measured.csv. Each criterion (gaitdisc/discovery/criteria.py) is doubled and
+Each of CASES is a folder with simulation.toml and measured.csv. Each criterion (gaitdisc/discovery/criteria.py) is doubled and
 halved; of a factor above 1, its excess. What is fitted is kept within a case, so that deciding once more costs little.
 OUT gets one line a case, and a case that stands there is not run again; the table counts the cases whose answer
 (verdict, names, places) changes. Times of a case are those of this machine and no figure.

@@ -40,7 +40,7 @@ def with_constant_errors(simulation: Simulation) -> Simulation:
     ((('x', 'gain_of_u*u - x'),), 1.2)
     """
     for one in simulation.inputs:
-        told = one.name
+        text = one.name
         for name, error, value, unit in (
             (f"gain_of_{one.name}", one.gain, 1.0, "1"),
             (f"offset_of_{one.name}", one.sd, 0.0, one.unit),
@@ -48,8 +48,8 @@ def with_constant_errors(simulation: Simulation) -> Simulation:
             if error and not one.wander and name not in simulation.values():  # a file that was written has it already
                 bounds = value - BOUNDS * error, value + BOUNDS * error
                 simulation = simulation.with_parameter(Parameter(name, value, unit, *bounds))
-                told = f"{name}*{told}" if value else f"{told} + {name}"
-        simulation = simulation.with_input(one.name, told) if told != one.name else simulation
+                text = f"{name}*{text}" if value else f"{text} + {name}"
+        simulation = simulation.with_input(one.name, text) if text != one.name else simulation
     return simulation
 
 
