@@ -2,8 +2,8 @@
 
     python benchmarks/criteria.py CASES [CASES ...] [--out criteria.jsonl] [--limit 120]
 
-Each of CASES is a folder with simulation.toml and measured.csv. Each criterion (gaitdisc/discovery/criteria.py) is doubled and
-halved; of a factor above 1, its excess. What is fitted is kept within a case, so that deciding once more costs little.
+Each of CASES is a folder with simulation.toml and measured.csv. Each criterion (gaitdisc/discovery/criteria.py) is
+doubled and halved; of a factor above 1, its excess. What is fitted is kept, so that deciding once more costs little.
 OUT gets one line a case, and a case that stands there is not run again; the table counts the cases whose answer
 (verdict, names, places) changes. Times of a case are those of this machine and no figure.
 """

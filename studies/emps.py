@@ -21,10 +21,10 @@ from pathlib import Path
 import numpy as np
 
 import gaitdisc as gd
+from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.held_out import runs_of
-from gaitdisc.discovery.problem import Problem, set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 
@@ -48,13 +48,13 @@ def run(quick: bool, data: Path) -> Result:
     """Search the first record; test on its end, and on the pulses where they are there."""
     simulation = gd.read_simulation(MODEL)
     measured = stretches(data / "DATA_EMPS.mat", simulation)
-    problem = set_up_problem(simulation, measured)
-    as_read = problem.as_read()
-    first, _ = select_forward(problem.search, as_read, 1)
+    case = set_up_case(simulation, measured)
+    as_read = case.as_read()
+    first, _ = select_forward(case.search, as_read, 1)
     part = first.model.parts[0]
-    left = {"held-out stretches": errors_mm(problem, problem.held_out, as_read, first)}
+    left = {"held-out stretches": errors_mm(case, case.held_out, as_read, first)}
     if (data / "DATA_EMPS_PULSES.mat").exists():
-        pulses = set_up_problem(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))
+        pulses = set_up_case(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))
         left["pulses"] = errors_mm(pulses, (*pulses.learned, *pulses.held_out), as_read, first)
     whole = None if quick else discover(simulation, measured)[0]
     friction_n = -part.values.get("factor", float("nan"))
@@ -75,9 +75,9 @@ def stretches(path: Path, simulation: gd.Simulation) -> Measured:
     return measured_of_trials(trials, ("force",), tuple(name for name, _ in simulation.observations), path.name)
 
 
-def errors_mm(problem: Problem, trials: tuple[int, ...], *models: ScoredModel) -> tuple[float, ...]:
+def errors_mm(case: Case, trials: tuple[int, ...], *models: ScoredModel) -> tuple[float, ...]:
     """Root mean square of free runs of the model as read and with what was named, on trials not fitted [mm]."""
-    runs = (runs_of(problem, model, trials, models[-1]) for model in models)
+    runs = (runs_of(case, model, trials, models[-1]) for model in models)
     return tuple(float(np.sqrt(np.mean(run.fit.residual**2))) for run in runs)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
@@ -26,7 +27,6 @@ from gaitdisc.discovery.held_out import (
 )
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
-from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import ProcessNoise
 from gaitdisc.discovery.rivals import Rival, bic_gain, rivals_of
 from gaitdisc.discovery.scored_model import ScoredModel
@@ -44,7 +44,7 @@ DIGITS = 3  # of the numbers in an expression that a person reads; those of the 
 
 
 def answer(
-    problem: Problem,
+    case: Case,
     as_read: ScoredModel,
     verdict: Verdict,
     refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
@@ -54,45 +54,45 @@ def answer(
     refitted: fits the numbers once more; the runs that are shown stay those of the search
     returns augmented: the simulation with what was found, its numbers written in
     """
-    now, base = verdict.found, problem.search.base
+    now, base = verdict.found, case.search.base
     channels = tuple(name for name, _ in base.observations)
-    floor, proof = problem.noise_floor(now.noise.size), verdict.proof
-    before, after = (runs_of(problem, one, problem.learned, now) for one in (as_read, now))
-    train = gap_size(before, after, floor, channels, compare_runs(problem, before, after, now))
-    held = proof if proof and now.model.parts else proof_of(problem, as_read, now, now)
-    of = f"trial {', '.join(problem.measured.trials[one] for one in problem.held_out)}"
+    floor, proof = case.noise_floor(now.noise.size), verdict.proof
+    before, after = (runs_of(case, one, case.learned, now) for one in (as_read, now))
+    train = gap_size(before, after, floor, channels, compare_runs(case, before, after, now))
+    held = proof if proof and now.model.parts else proof_of(case, as_read, now, now)
+    of = f"trial {', '.join(case.measured.trials[one] for one in case.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
-    gained = bic_gain(problem.search, now)
-    rivals = rivals_of(problem.search, now, verdict.rivals, gained)
+    gained = bic_gain(case.search, now)
+    rivals = rivals_of(case.search, now, verdict.rivals, gained)
     stated = replace(verdict, found=replace(now, model=refitted(now)))
     parts, moved = stated.found.model.parts, corrections_of(stated.found.model, base)
-    effects = effects_of(problem, stated, 1 - held_out.unexplained, gained)
+    effects = effects_of(case, stated, 1 - held_out.unexplained, gained)
     if verdict.given:
         effects = tuple(replace(one, small=idle) for one, idle in zip(effects, verdict.given, strict=True))
-    named = (Explanation(effects, held_out, *first_run(problem, held.after, held_out)),) if effects else ()
-    agrees = verdict.word != "no_gap" or not grows_along_runs(problem, as_read)
+    named = (Explanation(effects, held_out, *first_run(case, held.after, held_out)),) if effects else ()
+    agrees = verdict.word != "no_gap" or not grows_along_runs(case, as_read)
     discovery = Discovery(
         verdict.word if agrees else "unexplained",
         "",
-        whereabouts(problem, stated, train) if effects or not agrees else (),
+        whereabouts(case, stated, train) if effects or not agrees else (),
         effects,
         (
-            *(reported_rival(problem, one) for one in rivals if one.part.candidate.label not in now.labels),
+            *(reported_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
             *small_ones(verdict.small),
         ),
         train,
         held_out,
         channels,
-        units_of(problem),
-        drawn_runs(problem, held.before, held.after),
-        (*problem.measured.findings, *nearly_off(effects, problem.measured.source), *exact_inputs(problem, now)),
+        units_of(case),
+        drawn_runs(case, held.before, held.after),
+        (*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
-        explanations=(*named, *list_explanations(problem, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
+        explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
     augmented = begun_at(augmented_of(corrected(base, moved), parts), verdict.starts)
     said = sentence_of(discovery, base, parts)
-    return replace(said, sentence=" ".join([said.sentence, *left_out(problem.measured.findings)])), augmented
+    return replace(said, sentence=" ".join([said.sentence, *left_out(case.measured.findings)])), augmented
 
 
 def left_out(findings: tuple[Finding, ...]) -> list[str]:
@@ -100,17 +100,17 @@ def left_out(findings: tuple[Finding, ...]) -> list[str]:
     return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
 
 
-def effects_of(problem: Problem, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
+def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
     """List what was found: a random push, wrong starts, or the explanations that were selected."""
     if verdict.process_noise:
-        place, push = verdict.process_noise.place, push_of(problem, verdict.process_noise)
+        place, push = verdict.process_noise.place, push_of(case, verdict.process_noise)
         return (FoundEffect(place.kind, place.name, "process_noise", "", {"strength": push}),)
     if verdict.starts:
         return tuple(
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    found = found_effects(problem, verdict.found, closed, gained)
+    found = found_effects(case, verdict.found, closed, gained)
     if verdict.read:
         (part,) = verdict.found.model.parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
@@ -118,9 +118,9 @@ def effects_of(problem: Problem, verdict: Verdict, closed: float, gained: float)
     return tuple(found)
 
 
-def push_of(problem: Problem, process_noise: ProcessNoise) -> Estimate:
+def push_of(case: Case, process_noise: ProcessNoise) -> Estimate:
     """Return the standard deviation of a random push, in the unit of its place."""
-    unit = places_unit(problem.search.base, process_noise.place.kind, process_noise.place.name)
+    unit = places_unit(case.search.base, process_noise.place.kind, process_noise.place.name)
     return Estimate(process_noise.strength, np.nan, np.nan, unit)
 
 
@@ -131,12 +131,12 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     return base
 
 
-def found_effects(problem: Problem, now: ScoredModel, closed: float, gained: float) -> list[FoundEffect]:
+def found_effects(case: Case, now: ScoredModel, closed: float, gained: float) -> list[FoundEffect]:
     """List the explanations with their numbers and intervals."""
     found = []
     for number, part in enumerate(now.model.parts):
         candidate = part.candidate
-        estimates = estimates_of(now.model, number, problem.search.base)
+        estimates = estimates_of(now.model, number, case.search.base)
         place = (candidate.kind, candidate.place, candidate.name)
         found.append(
             FoundEffect(
@@ -145,14 +145,14 @@ def found_effects(problem: Problem, now: ScoredModel, closed: float, gained: flo
                 estimates,
                 closed,
                 gained,
-                bounds=file_bounds(problem.search.base, candidate),
+                bounds=file_bounds(case.search.base, candidate),
                 states=candidate.states_at(part.written),
             )
         )
     return found
 
 
-def reported_rival(problem: Problem, rival: Rival, part: int = -1) -> FoundEffect:
+def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
     candidate, model = rival.scored.model.parts[part].candidate, rival.scored.model
     return FoundEffect(
@@ -160,15 +160,15 @@ def reported_rival(problem: Problem, rival: Rival, part: int = -1) -> FoundEffec
         candidate.place,
         candidate.name,
         "",
-        estimates_of(model, part % len(model.parts), problem.search.base),
+        estimates_of(model, part % len(model.parts), case.search.base),
         bic=rival.gained,
         tied=rival.tied,
-        bounds=file_bounds(problem.search.base, candidate),
+        bounds=file_bounds(case.search.base, candidate),
     )
 
 
 def list_explanations(
-    problem: Problem, verdict: Verdict, held: Proof, size: GapSize, rivals: tuple[Rival, ...]
+    case: Case, verdict: Verdict, held: Proof, size: GapSize, rivals: tuple[Rival, ...]
 ) -> list[Explanation]:
     """List what else was weighed by what it leaves of the held-out data, the least first.
 
@@ -176,20 +176,20 @@ def list_explanations(
     """
     found: list[tuple[float, Explanation]] = []
     for one in rivals:
-        after = runs_of(problem, one.scored, problem.held_out, verdict.found)
-        effects = tuple(reported_rival(problem, one, number) for number in range(len(one.scored.model.parts)))
+        after = runs_of(case, one.scored, case.held_out, verdict.found)
+        effects = tuple(reported_rival(case, one, number) for number in range(len(one.scored.model.parts)))
         floor = np.array([floor for _, _, floor in size.channels.values()])
-        test = compare_runs(problem, held.before, after, verdict.found)
+        test = compare_runs(case, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
-        explanation = Explanation(effects, replace(left, of=size.of), *first_run(problem, after, size))
+        explanation = Explanation(effects, replace(left, of=size.of), *first_run(case, after, size))
         found.append((float(np.nan_to_num(left.after, nan=np.inf)), explanation))
     return [explanation for _, explanation in sorted(found, key=lambda one: one[0])]
 
 
-def first_run(problem: Problem, after: Trial, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def first_run(case: Case, after: Trial, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return times [s] of the first held-out run, and measured minus run of the channel with the largest gap."""
     left = after.fit.residual[0, :DRAWN, [*size.channels].index(size.ranked[0])]
-    time = after.segments.samples[0, after.segments.compared][:DRAWN] / problem.measured.rate
+    time = after.segments.samples[0, after.segments.compared][:DRAWN] / case.measured.rate
     return tuple(time.tolist()), tuple(left.tolist())
 
 
@@ -201,7 +201,7 @@ def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
     )
 
 
-def whereabouts(problem: Problem, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
+def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
     """Say where the gap arises.
 
     train: the gap before and after on the trials that were learned from
@@ -220,14 +220,14 @@ def whereabouts(problem: Problem, verdict: Verdict, train: GapSize) -> tuple[Whe
             part.candidate.kind,
             part.candidate.place,
             share / len(now.model.parts),
-            phase_of(problem, now, part),
+            phase_of(case, now, part),
             region_of(part),
         )
         for part in now.model.parts
     )
 
 
-def push_along(problem: Problem, now: ScoredModel, part: Part) -> NDArray[np.float64] | None:
+def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] | None:
     """Return how strongly an effect acts along the runs that were fitted (run, sample) [the place's unit].
 
     returns: None of what is no term, and of one that comes late
@@ -235,7 +235,7 @@ def push_along(problem: Problem, now: ScoredModel, part: Part) -> NDArray[np.flo
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None
-    segments, drive, fit = now.shooting.segments, problem.measured.drive, now.model.fit
+    segments, drive, fit = now.shooting.segments, case.measured.drive, now.model.fit
     time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [
@@ -245,24 +245,24 @@ def push_along(problem: Problem, now: ScoredModel, part: Part) -> NDArray[np.flo
     return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
 
 
-def phase_of(problem: Problem, now: ScoredModel, part: Part) -> tuple[float, ...]:
+def phase_of(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
     """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
-    names = [one.name for one in problem.search.base.inputs]
-    push = push_along(problem, now, part) if "phase" in names else None
+    names = [one.name for one in case.search.base.inputs]
+    push = push_along(case, now, part) if "phase" in names else None
     if push is None:
         return ()
-    phase = now.shooting.segments.of(problem.measured.drive.inputs)[:, :, names.index("phase")].ravel()
+    phase = now.shooting.segments.of(case.measured.drive.inputs)[:, :, names.index("phase")].ravel()
     bins = np.minimum((phase * 100).astype(int), 99)
     mean = np.bincount(bins, push.ravel(), 100) / np.maximum(np.bincount(bins, minlength=100), 1)
     strong = np.flatnonzero(mean > CRITERIA.half * mean.max())
     return (float(strong[0] / 100), float((strong[-1] + 1) / 100)) if strong.size else ()
 
 
-def exact_inputs(problem: Problem, now: ScoredModel) -> tuple[Finding, ...]:
+def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
     """Say how large an error of the inputs would explain a missing term as well: they were taken as exact."""
-    base, found = problem.search.base, []
+    base, found = case.search.base, []
     for part in now.model.parts:
-        push, candidate = push_along(problem, now, part), part.candidate
+        push, candidate = push_along(case, now, part), part.candidate
         if push is None:
             continue
         unit = places_unit(base, candidate.kind, candidate.place)
@@ -273,9 +273,7 @@ def exact_inputs(problem: Problem, now: ScoredModel) -> tuple[Finding, ...]:
                 f"an error of {' or '.join(like)} in step with the {spoken(candidate.name)}, {size} (rms), "
                 "would explain it as well: inputs were taken as exact"
             )
-            found.append(
-                Finding("note", "exact inputs", problem.measured.source, what, "the name, if an input errs so")
-            )
+            found.append(Finding("note", "exact inputs", case.measured.source, what, "the name, if an input errs so"))
     return tuple(found)
 
 
@@ -290,9 +288,9 @@ def region_of(part: Part) -> str:
     return ""
 
 
-def units_of(problem: Problem) -> tuple[str, ...]:
+def units_of(case: Case) -> tuple[str, ...]:
     """Return the units of the observed channels."""
-    base = problem.search.base
+    base = case.search.base
     return tuple(unit_of_channel(base, name) for name, _ in base.observations)
 
 

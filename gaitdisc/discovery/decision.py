@@ -9,12 +9,12 @@ import numpy as np
 from gaitdisc.discovery.beam import MOST
 from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
 from gaitdisc.discovery.held_out import Proof, free_run_error, proof_of, strays
-from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
@@ -45,65 +45,65 @@ class Verdict:
     given: tuple[bool, ...] = ()
 
 
-def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
+def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
-    scale = scale_of(problem)
-    as_read, named, rivals = searched(problem, as_read, scale)
-    named = kept_on_longer_runs(problem, as_read, named)
-    exact = leaves_noise(problem, named)
-    plain = None if exact else plainest(problem, scale, named)
+    scale = scale_of(case)
+    as_read, named, rivals = searched(case, as_read, scale)
+    named = kept_on_longer_runs(case, as_read, named)
+    exact = leaves_noise(case, named)
+    plain = None if exact else plainest(case, scale, named)
     if plain:
-        return shape_that_leaves_noise(problem, as_read, scale, plain) or plain
-    suspect = named.noise.is_autocorrelated and not (exact and problem.search.base.inexact)
+        return shape_that_leaves_noise(case, as_read, scale, plain) or plain
+    suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = len(named.model.parts) > 1 or suspect
-    shape = fitted_shape(as_read, problem.search, scale) if wanted else None
-    autocorrelated = with_autocorrelation(problem, as_read, named, shape, rivals) if suspect else None
+    shape = fitted_shape(as_read, case.search, scale) if wanted else None
+    autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect else None
     if autocorrelated:
         return autocorrelated
     names = len(named.model.parts)
-    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(problem, shape, named))):
-        unnamed = proven_shape(problem, as_read, shape, (named, *rivals))
+    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(case, shape, named))):
+        unnamed = proven_shape(case, as_read, shape, (named, *rivals))
         if unnamed:
             return unnamed
     if not names:
-        wrong = wrong_starts(problem.search.base, as_read)
+        wrong = wrong_starts(case.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
-    longer, rivals = decided(problem, named if exact else strongest(problem.search, named), rivals)
-    kept = needed(problem, as_read, longer)
+    longer, rivals = decided(case, named if exact else strongest(case.search, named), rivals)
+    kept = needed(case, as_read, longer)
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
-        alone = decided(problem, rivals[0], rivals) if rivals else (kept, rivals)
-        if alone[0] is kept or (len(kept.model.parts) > 1 and proof_of(problem, alone[0], kept, kept).bears_out):
-            longer = scored(kept.shooting, problem.search.base, kept.model)
+        alone = decided(case, rivals[0], rivals) if rivals else (kept, rivals)
+        if alone[0] is kept or (len(kept.model.parts) > 1 and proof_of(case, alone[0], kept, kept).bears_out):
+            longer = scored(kept.shooting, case.search.base, kept.model)
         else:
             longer, rivals = alone
-    proof = held_out_proof(problem, as_read, longer)
+    proof = held_out_proof(case, as_read, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
-    refuted = None if leaves_noise(problem, longer) else shape_that_leaves_noise(problem, as_read, scale, verdict)
+    refuted = None if leaves_noise(case, longer) else shape_that_leaves_noise(case, as_read, scale, verdict)
     return refuted or verdict
 
 
-def shape_that_leaves_noise(problem: Problem, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
+def shape_that_leaves_noise(case: Case, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
     """Return the verdict on one shape without a name that leaves mere noise where names do not.
 
     A single name, which is plainer, is refuted only where held-out data prefer the shape, in free runs as well.
     """
-    shape = fitted_shape(as_read, problem.search, scale)
-    if shape is None or not leaves_noise(problem, shape):
+    shape = fitted_shape(as_read, case.search, scale)
+    if shape is None or not leaves_noise(case, shape):
         return None
     if len(names.found.model.parts) == 1:
-        better = free_run_error(problem, shape) < free_run_error(problem, names.found)
-        if not better or not held_out_proof(problem, names.found, shape).bears_out:
+        better = free_run_error(case, shape) < free_run_error(case, names.found)
+        if not better or not held_out_proof(case, names.found, shape).bears_out:
             return None
-    return proven_shape(problem, as_read, shape, (names.found, *names.rivals))
+    return proven_shape(case, as_read, shape, (names.found, *names.rivals))
 
 
 def proven_shape(
-    problem: Problem, as_read: ScoredModel, shape: ScoredModel, others: tuple[ScoredModel, ...]
+    case: Case, as_read: ScoredModel, shape: ScoredModel, others: tuple[ScoredModel, ...]
 ) -> Verdict | None:
     """Return the verdict on a shape without a name that the held-out data bear out; None where they do not."""
-    proof = held_out_proof(problem, as_read, shape)
+    proof = held_out_proof(case, as_read, shape)
     return Verdict("unnamed", shape, others, proof=proof) if proof.bears_out else None
 
 
@@ -115,11 +115,11 @@ def strongest(search: Search, named: ScoredModel) -> ScoredModel:
     return named
 
 
-def needed(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
+def needed(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
     """Return what was named without the explanations that the held-out data do not bear out beside the others."""
     while len(now.model.parts) > 1:
-        fewer = [problem.search.without(now, number) for number in range(len(now.model.parts))]
-        tests = [held_out_proof(problem, one, now, as_read).test for one in fewer]
+        fewer = [case.search.without(now, number) for number in range(len(now.model.parts))]
+        tests = [held_out_proof(case, one, now, as_read).test for one in fewer]
         idle = max(range(len(fewer)), key=lambda number: np.nan_to_num(tests[number].p, nan=1.0))
         if tests[idle].bears_out:
             break
@@ -127,104 +127,100 @@ def needed(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> ScoredMo
     return now
 
 
-def plainest(problem: Problem, scale: GapScale, named: ScoredModel) -> Verdict | None:
+def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
     """Return the verdict on the plainest explanations that close most of the gap; None where these close too little.
 
     named: the simulation with what the search selected, which leaves more than noise
     """
-    found = closing_most(problem, scale, (named.model.parts,) if named.model.parts else ())
+    found = closing_most(case, scale, (named.model.parts,) if named.model.parts else ())
     if found is None or found.closed < CRITERIA.half:
         return None
-    found = replace(found, now=prefer_on_held_out(problem, found.now, found.near))
-    plain, likelier = compared([found.as_read, found.now], problem.search.base)
+    found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
+    plain, likelier = compared([found.as_read, found.now], case.search.base)
     if plain.bic - likelier.bic < CRITERIA.margin:
         return None
-    now = needed(problem, found.as_read, found.now)
-    proof = held_out_proof(problem, found.as_read, now)
+    now = needed(case, found.as_read, found.now)
+    proof = held_out_proof(case, found.as_read, now)
     if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
         proof = replace(proof, test=found.test)
     if not proof.bears_out:
         return None
-    likeliest = (named,) if problem.search.base.inexact else ()  # what it errs by may choose between two like names
+    likeliest = (named,) if case.search.base.inexact else ()  # what it errs by may choose between two like names
     return Verdict(now.word, now, (found.now, *likeliest, *found.others), proof=proof, small=found.small)
 
 
-def prefer_on_held_out(problem: Problem, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
+def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
     """Return what held-out data prefer beyond chance among explanations that cost as much; what there was if nothing.
 
     near: what costs hardly more; of these, what has as many explanations and no more numbers
     """
     parts, size = len(now.model.parts), now.model.size
     equal = [one for one in near if len(one.model.parts) == parts and one.model.size <= size]
-    proofs = [proof_of(problem, now, one, one) for one in equal]
+    proofs = [proof_of(case, now, one, one) for one in equal]
     better = [
         (proof.test.fall, one)
         for proof, one in zip(proofs, equal, strict=True)
-        if proof.bears_out and proof.test.p < problem.alpha / len(equal)
+        if proof.bears_out and proof.test.p < case.alpha / len(equal)
     ]
     return max(better, key=lambda one: one[0])[1] if better else now
 
 
-def searched(
-    problem: Problem, as_read: ScoredModel, scale: GapScale
-) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
+def searched(case: Case, as_read: ScoredModel, scale: GapScale) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
 
     returns as_read, named: the simulation as read and with what was selected, on the same runs
     returns rivals: what else stood for the first place, best first
     """
-    named, rivals = select_forward(problem.search, as_read, MOST, scale)
-    if named.model.parts or not problem.spans_a_period(as_read):
+    named, rivals = select_forward(case.search, as_read, MOST, scale)
+    if named.model.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
-    longer = problem.lengthened(as_read)
+    longer = case.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = select_forward(problem.search, longer, MOST, scale)
+    named, rivals = select_forward(case.search, longer, MOST, scale)
     return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
 
 
-def kept_on_longer_runs(problem: Problem, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
+def kept_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
     """Return what was selected less what longer runs have no use for, on the runs that it was found on.
 
     Where chaos keeps runs short, several explanations together can do what one does with another number.
 
     as_read, named: the simulation as read and with what the search selected, on the same runs
     """
-    if len(named.model.parts) < 2 or problem.spans_a_period(as_read):
+    if len(named.model.parts) < 2 or case.spans_a_period(as_read):
         return named
-    longer = problem.lengthened(named)
-    kept = pruned(problem.search, longer, CRITERIA.margin).model.parts
+    longer = case.lengthened(named)
+    kept = pruned(case.search, longer, CRITERIA.margin).model.parts
     if len(kept) == len(named.model.parts):
         return named
-    model = fit_model(named.shooting, problem.search.base, kept, named.model.fit.starts, like=named.model)
-    return scored(named.shooting, problem.search.base, model)
+    model = fit_model(named.shooting, case.search.base, kept, named.model.fit.starts, like=named.model)
+    return scored(named.shooting, case.search.base, model)
 
 
 def with_autocorrelation(
-    problem: Problem, as_read: ScoredModel, named: ScoredModel, shape: ScoredModel | None, rivals: list[ScoredModel]
+    case: Case, as_read: ScoredModel, named: ScoredModel, shape: ScoredModel | None, rivals: list[ScoredModel]
 ) -> Verdict | None:
     """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better.
 
     as_read, named: the simulation as read and with what the search selected
     """
-    plain, *found = compared([as_read, named, *([shape] if shape else [])], problem.search.base)
-    moved = runs_that_pushes_move(problem, as_read)
-    process_noise = random_push(problem, moved)
-    ordered = [one for one in found if explains(problem, plain, one)]
+    plain, *found = compared([as_read, named, *([shape] if shape else [])], case.search.base)
+    moved = runs_that_pushes_move(case, as_read)
+    process_noise = random_push(case, moved)
+    ordered = [one for one in found if explains(case, plain, one)]
     if process_noise and not ordered:
-        if scale_of(problem).excess(moved.model.fit) < CRITERIA.model_error:
+        if scale_of(case).excess(moved.model.fit) < CRITERIA.model_error:
             return None
-        term = find_term_before(problem, as_read, named, rivals)
+        term = find_term_before(case, as_read, named, rivals)
         return term or Verdict("process_noise", as_read, tuple(rivals), process_noise)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
     if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
-        return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(problem, plain, found[1]))
+        return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(case, plain, found[1]))
     return None
 
 
-def find_term_before(
-    problem: Problem, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]
-) -> Verdict | None:
+def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]) -> Verdict | None:
     """Return the verdict on the term that goes before random pushes; None where none does.
 
     Random pushes explain anything, so that a term that is likelier than these goes before them: with noise of the
@@ -234,18 +230,18 @@ def find_term_before(
 
     as_read, named: the simulation as read and with what the search selected
     """
-    pushes = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)[0]
-    among = len(problem.search.candidates)
+    pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
+    among = len(case.search.candidates)
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
-        before, now = compared([as_read, one], problem.search.base)
-        beside = rank_process_noise(now.shooting, now.model, problem.search.places)[0]
+        before, now = compared([as_read, one], case.search.base)
+        beside = rank_process_noise(now.shooting, now.model, case.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
-        proof = held_out_proof(problem, before, now)
+        proof = held_out_proof(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
-        stays = not problem.spans_a_period(as_read) or not strays(problem, now, free_run_error(problem, before))
-        if one.model.parts and likelier > CRITERIA.margin and stays and left_out_errors_fall(problem, before, now):
+        stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
+        if one.model.parts and likelier > CRITERIA.margin and stays and left_out_errors_fall(case, before, now):
             borne.append((likelier, now, proof))
     if not borne:
         return None
@@ -255,76 +251,74 @@ def find_term_before(
     return Verdict(now.word, now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
 
 
-def left_out_errors_fall(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
+def left_out_errors_fall(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
     """Whether pieces of what was learned from err less with what was found when they are left out of the fit."""
-    scale, base = scale_of(problem), problem.search.base
+    scale, base = scale_of(case), case.search.base
     before, after = (cross_validated(scale, now.shooting, base, one.model.parts, now.model) for one in (as_read, now))
     return float(before.errors.sum()) > float(after.errors.sum())
 
 
-def says_more(problem: Problem, shape: ScoredModel, named: ScoredModel) -> bool:
+def says_more(case: Case, shape: ScoredModel, named: ScoredModel) -> bool:
     """Whether one shape without a name explains more than several names together.
 
     shape, named: the simulation with a fitted shape, and with what the search selected
     """
-    named, shape = compared([named, shape], problem.search.base)
+    named, shape = compared([named, shape], case.search.base)
     return shape.bic < named.bic - CRITERIA.margin
 
 
-def decided(problem: Problem, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
+def decided(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
 
     returns rivals: all that stood for the first place, best first
     """
-    longer = problem.lengthened(named)
+    longer = case.lengthened(named)
     if len(named.model.parts) > 1:
         return longer, rivals
     near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
-    near = [problem.lengthened(one, longer.shooting.segments.span) for one in near]
+    near = [case.lengthened(one, longer.shooting.segments.span) for one in near]
     near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
-    first, *others = ranked(compared([longer, *near], problem.search.base), problem.search.candidates)
+    first, *others = ranked(compared([longer, *near], case.search.base), case.search.candidates)
     others = [replace(one, gained=first.gained + first.bic - one.bic) for one in others]
     decided_on = {one.labels for one in (first, *others)}
     return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]
 
 
-def random_push(problem: Problem, as_read: ScoredModel) -> ProcessNoise | None:
+def random_push(case: Case, as_read: ScoredModel) -> ProcessNoise | None:
     """Return the random push that explains the gap better than noise of the sensors, if there is one.
 
     as_read: on runs in which pushes add up
     """
-    ranked_pushes = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)
+    ranked_pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)
     best = ranked_pushes[0]
     return best if best.rival - best.bic > CRITERIA.margin + 2 * np.log(len(ranked_pushes)) else None
 
 
-def runs_that_pushes_move(problem: Problem, as_read: ScoredModel) -> ScoredModel:
+def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
     """Return the simulation as read on runs as long as pushes are weighed on: they add up, a start takes up few.
 
     Where a small change of the start grows, the runs that the search began with.
     """
     fit = as_read.model.fit
-    samples = min(problem.longest, MOST_NUMBERS // fit.residual.shape[2])
-    if samples < 2 * as_read.shooting.segments.span or not problem.spans_a_period(as_read):
+    samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
+    if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):
         return as_read
-    guess = problem.guess.with_run(as_read.shooting.segments, fit.states)
-    shooting = problem.learned_runs(samples).with_noise(as_read.noise)
-    model = fit_model(shooting, problem.search.base, (), guess.starts(shooting.segments), like=as_read.model)
+    guess = case.guess.with_run(as_read.shooting.segments, fit.states)
+    shooting = case.learned_runs(samples).with_noise(as_read.noise)
+    model = fit_model(shooting, case.search.base, (), guess.starts(shooting.segments), like=as_read.model)
     return ScoredModel(model, shooting) if np.isfinite(model.fit.misfit) else as_read
 
 
-def explains(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
+def explains(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
     """Whether something that repeats itself explains the gap, also on held-out trials.
 
     as_read, now: the simulation as read and with what was found, under one noise
     """
     likelier = bool(now.model.parts) and as_read.bic - now.bic >= CRITERIA.margin
-    return likelier and held_out_proof(problem, as_read, now).bears_out
+    return likelier and held_out_proof(case, as_read, now).bears_out
 
 
-def held_out_proof(
-    problem: Problem, before: ScoredModel, now: ScoredModel, as_read: ScoredModel | None = None
-) -> Proof:
+def held_out_proof(case: Case, before: ScoredModel, now: ScoredModel, as_read: ScoredModel | None = None) -> Proof:
     """Test on the held-out trials whether the error falls with what was found.
 
     Over runs as long as it was fitted to, which show a small effect best; where chaos makes these too long, over those
@@ -332,8 +326,8 @@ def held_out_proof(
 
     as_read: the simulation as read, on the runs that the search began with; `before` where absent
     """
-    proof, first = proof_of(problem, before, now, now), as_read or before
-    if proof.bears_out or problem.spans_a_period(first):
+    proof, first = proof_of(case, before, now, now), as_read or before
+    if proof.bears_out or case.spans_a_period(first):
         return proof
-    shorter = proof_of(problem, before, now, replace(first, shooting=first.shooting.with_noise(now.noise)))
+    shorter = proof_of(case, before, now, replace(first, shooting=first.shooting.with_noise(now.noise)))
     return shorter if shorter.bears_out else proof

@@ -12,11 +12,11 @@ from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.case import FEWEST_SAMPLES, Case, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
-from gaitdisc.discovery.problem import FEWEST_SAMPLES, Problem, set_up_problem, split_in_time
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import TURNS, Search, is_certain
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives
@@ -50,61 +50,61 @@ def discover(
     """
     measured = without_spikes(measured)
     begun = partial(
-        set_up_problem,
+        set_up_case,
         simulation,
         shapes=request.shapes,
         progress=progress,
         possible=possible,
         alpha=request.alpha,
     )
-    problem = begun(measured)
-    refuse_unknown(problem.search, request.effects)
-    agreeing = agreeing_trials(problem, measured)
+    case = begun(measured)
+    refuse_unknown(case.search, request.effects)
+    agreeing = agreeing_trials(case, measured)
     if agreeing is not measured:
-        measured, problem = agreeing, begun(agreeing)
+        measured, case = agreeing, begun(agreeing)
     progress("fitting the simulation as it was read")
-    as_read = problem.as_read()
+    as_read = case.as_read()
     if request.effects:
         progress(f"fitting {' and '.join(request.effects)}")
-        verdict = fit_given(problem, as_read, request.effects)
+        verdict = fit_given(case, as_read, request.effects)
     else:
-        problem, as_read, verdict = weigh_explanations(problem, as_read, measured, begun)
+        case, as_read, verdict = weigh_explanations(case, as_read, measured, begun)
     progress("showing it on what was held out")
-    return answer(problem, as_read, verdict, refitted)
+    return answer(case, as_read, verdict, refitted)
 
 
 def weigh_explanations(
-    problem: Problem, as_read: ScoredModel, measured: Measured, begun: Callable[[Measured], Problem]
-) -> tuple[Problem, ScoredModel, Verdict]:
+    case: Case, as_read: ScoredModel, measured: Measured, begun: Callable[[Measured], Case]
+) -> tuple[Case, ScoredModel, Verdict]:
     """Search and decide; again without a trial that goes with no other, or with other data held out where need be.
 
-    measured: what the problem was set up with
-    begun: sets a problem up with other data
+    measured: what the case was set up with
+    begun: sets a case up with other data
     """
-    progress = problem.search.progress
-    progress(f"weighing {len(problem.search.candidates)} explanations")
-    verdict = decide(problem, as_read)
-    if not leaves_noise(problem, verdict.found):
-        kept = without_trial_apart(problem)
-        if kept is not problem.measured:
+    progress = case.search.progress
+    progress(f"weighing {len(case.search.candidates)} explanations")
+    verdict = decide(case, as_read)
+    if not leaves_noise(case, verdict.found):
+        kept = without_trial_apart(case)
+        if kept is not case.measured:
             progress("one trial goes with no explanation of the others: it is left out")
-            measured, problem = kept, begun(kept)
-            as_read = problem.as_read()
-            verdict = decide(problem, as_read)
+            measured, case = kept, begun(kept)
+            as_read = case.as_read()
+            verdict = decide(case, as_read)
     unproven = verdict.rivals[:1] if verdict.word == "no_gap" else ()
-    if unproven and is_uninformative(problem, as_read, *unproven):
+    if unproven and is_uninformative(case, as_read, *unproven):
         if len(measured.trials) == 1:
             other = begun(split_in_time(measured, last=False))
         else:
-            other = holding_out_others(problem, as_read, *unproven)
+            other = holding_out_others(case, as_read, *unproven)
         progress("what is held out never goes where it would act: other data are held out")
-        problem, as_read = noted(problem, other), other.as_read()
-        verdict = decide(problem, as_read)
-    verdict = prefer_delay(problem, as_read, prefer_relatives(problem, as_read, verdict))
-    verdict = read_instead(problem, as_read, read_shape(problem, as_read, verdict))
-    as_read, verdict = look_at_whole_runs(problem, as_read, verdict)
-    problem, verdict = weigh_input_errors(problem, verdict)
-    return problem, as_read, verdict
+        case, as_read = noted(case, other), other.as_read()
+        verdict = decide(case, as_read)
+    verdict = prefer_delay(case, as_read, prefer_relatives(case, as_read, verdict))
+    verdict = read_instead(case, as_read, read_shape(case, as_read, verdict))
+    as_read, verdict = look_at_whole_runs(case, as_read, verdict)
+    case, verdict = weigh_input_errors(case, verdict)
+    return case, as_read, verdict
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
@@ -112,10 +112,10 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
 
     returns: whether the samples are close enough for how fast it moves
     """
-    problem, machine = set_up_problem(simulation, without_spikes(measured)), compile_simulation(simulation)
-    segments = problem.segments((*problem.learned, *problem.held_out), 0.0)
-    rows = Rows(segments.trial, segments.begin, problem.guess.starts(segments))
-    drive = problem.measured.drive
+    case, machine = set_up_case(simulation, without_spikes(measured)), compile_simulation(simulation)
+    segments = case.segments((*case.learned, *case.held_out), 0.0)
+    rows = Rows(segments.trial, segments.begin, case.guess.starts(segments))
+    drive = case.measured.drive
     states, ok = machine.run(drive, rows, FEWEST_SAMPLES - 1)
     if np.mean(~ok) > MOST_LOST:
         refuse_divergence(machine, drive, rows, states, ok)
@@ -136,9 +136,9 @@ def refuse_unknown(search: Search, effects: tuple[str, ...]) -> None:
             )
 
 
-def fit_given(problem: Problem, as_read: ScoredModel, effects: tuple[str, ...]) -> Verdict:
+def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Verdict:
     """Fit a simulation with exactly these effects in it, each `name@place`, and test it on what is held out."""
-    search, now = problem.search, as_read
+    search, now = case.search, as_read
     for given in effects:
         castings = tuple(one for one in search.open_beside(now.model) if one.label == given)
         begun = search.scorer(now.shooting, now.model).scores(castings)
@@ -161,12 +161,12 @@ def fit_given(problem: Problem, as_read: ScoredModel, effects: tuple[str, ...]) 
                 "Give another effect or place.",
             )
         now = scored(now.shooting, search.base, min(tried, key=lambda one: one.fit.misfit))
-    now = problem.lengthened(now)
+    now = case.lengthened(now)
     count = len(now.model.parts)
     idle = [
         not is_certain(now.model, number, number + 1)
-        or (count > 1 and not held_out_proof(problem, search.without(now, number), now, as_read).bears_out)
+        or (count > 1 and not held_out_proof(case, search.without(now, number), now, as_read).bears_out)
         for number in range(count)
     ]
-    proof = held_out_proof(problem, as_read, now)
+    proof = held_out_proof(case, as_read, now)
     return Verdict(now.word, now, (), proof=proof, given=tuple(idle))

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.by_gap_share import scale_of
+from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
-from gaitdisc.discovery.problem import LENGTHENED, Problem
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
@@ -39,26 +39,26 @@ class Trial:
         return self.fit.misfits
 
 
-def runs_of(problem: Problem, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
+def runs_of(case: Case, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
     """Run a model over trials, finding nothing but the start states."""
-    periods = like.shooting.segments.span / problem.rhythm.samples
+    periods = like.shooting.segments.span / case.rhythm.samples
     *shorter, whole = _lengths(periods)
-    guess = problem.guess
+    guess = case.guess
     for length in shorter:
-        segments = problem.segments(trials, length)
-        shooting = replace(problem.shooting(segments).with_noise(like.noise), past=guess.states)
+        segments = case.segments(trials, length)
+        shooting = replace(case.shooting(segments).with_noise(like.noise), past=guess.states)
         guess = guess.with_run(segments, _started(shooting, now, guess.starts(segments)).states)
-    segments = problem.segments(trials, whole)
-    shooting = replace(problem.shooting(segments).with_noise(like.noise), past=guess.states)
+    segments = case.segments(trials, whole)
+    shooting = replace(case.shooting(segments).with_noise(like.noise), past=guess.states)
     return Trial(segments, _started(shooting, now, guess.starts(segments)), shooting.seen)
 
 
-def free_run_error(problem: Problem, now: ScoredModel) -> float:
+def free_run_error(case: Case, now: ScoredModel) -> float:
     """Mean square that free runs of the held-out trials err by, over each channel's variance."""
-    return free_runs(problem, now)[0]
+    return free_runs(case, now)[0]
 
 
-def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
+def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
     """Return what free runs of the held-out trials err by, and what the doubt about starts and inputs makes of it.
 
     A run begins with what its first samples say, a period or a third of the trial, and errs over the others: a start
@@ -66,16 +66,16 @@ def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
 
     returns: mean squares, over each channel's variance
     """
-    scale, found = scale_of(problem), []
-    for trial in problem.held_out:
-        samples = int(problem.measured.drive.samples[trial])
-        segments = problem.segments((trial,), samples / problem.rhythm.samples)
-        first = segments.margin + max(min(round(problem.rhythm.samples), samples // 3), 1)
-        seen = problem.measured.observed.copy()
+    scale, found = scale_of(case), []
+    for trial in case.held_out:
+        samples = int(case.measured.drive.samples[trial])
+        segments = case.segments((trial,), samples / case.rhythm.samples)
+        first = segments.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
+        seen = case.measured.observed.copy()
         seen[trial, first:] = np.nan
-        shooting = problem.shooting(segments).with_noise(white_noise(scale.size))
-        begun = replace(shooting, measured=replace(problem.measured, observed=seen))
-        run = _started(begun, now, problem.guess.starts(segments))
+        shooting = case.shooting(segments).with_noise(white_noise(scale.size))
+        begun = replace(shooting, measured=replace(case.measured, observed=seen))
+        run = _started(begun, now, case.guess.starts(segments))
         whole = shooting.at(now.model.machine, (), run.values, run.starts)
         error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
         slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
@@ -85,48 +85,46 @@ def free_runs(problem: Problem, now: ScoredModel) -> tuple[float, float]:
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
             * (scale.size / scale.spread) ** 2
         )
-        doubt = doubt + spread_by_inputs(problem, whole, shooting, now) / scale.spread**2
+        doubt = doubt + spread_by_inputs(case, whole, shooting, now) / scale.spread**2
         found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
     error, doubt = np.mean(found, axis=0)
     return float(error), float(doubt)
 
 
-def spread_by_inputs(problem: Problem, run: Fitted, shooting: Shooting, now: ScoredModel) -> NDArray[np.float64]:
+def spread_by_inputs(case: Case, run: Fitted, shooting: Shooting, now: ScoredModel) -> NDArray[np.float64]:
     """Mean square that the stated errors of inputs move a run by (run, sample, channel); 0 where none wanders."""
-    base, moved = problem.search.base, np.zeros_like(run.residual)
+    base, moved = case.search.base, np.zeros_like(run.residual)
     for seed in range(DRAWN if wandering(base) else 0):
-        drawn = with_drawn_errors(problem.measured, base, seed)
+        drawn = with_drawn_errors(case.measured, base, seed)
         _, seen = replace(shooting, measured=drawn).run(now.model.machine, run.starts[None], run.values[None])
         moved += (shooting.seen - run.residual - seen[0]) ** 2 / DRAWN
     return moved
 
 
-def strays(problem: Problem, now: ScoredModel, before: float) -> bool:
+def strays(case: Case, now: ScoredModel, before: float) -> bool:
     """Whether free runs of the held-out trials err more than before, and than noise, model error and start explain.
 
     before: what free runs of the simulation as read err by, over each channel's variance
     """
-    (error, doubt), scale = free_runs(problem, now), scale_of(problem)
+    (error, doubt), scale = free_runs(case, now), scale_of(case)
     least = float(np.mean((scale.size / scale.spread) ** 2))
     return error > max(before, CRITERIA.grown**2 * (least + doubt))
 
 
-def grows_along_runs(problem: Problem, now: ScoredModel) -> bool:
+def grows_along_runs(case: Case, now: ScoredModel) -> bool:
     """Whether free runs of unseen data err clearly more than the short runs that a model was fitted to.
 
     What a sensor's noise leaves, also one that remembers, is as large in a long run as in a short one, but for the
     doubt about the start; what is missing in the dynamics adds up. A simulation is granted a hundredth of the spread.
     Where a small change of the start grows, free runs say nothing.
     """
-    if not problem.spans_a_period(now):
+    if not case.spans_a_period(now):
         return False
-    error, doubt = free_runs(problem, now)
-    return error > CRITERIA.grown**2 * (
-        max(scale_of(problem).relative(now.model.fit), CRITERIA.model_error) ** 2 + doubt
-    )
+    error, doubt = free_runs(case, now)
+    return error > CRITERIA.grown**2 * (max(scale_of(case).relative(now.model.fit), CRITERIA.model_error) ** 2 + doubt)
 
 
-def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
+def is_uninformative(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
     """Whether the held-out data can say nothing for or against what the others speak for.
 
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
@@ -136,37 +134,35 @@ def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -
     """
     if not now.model.parts or now.gained < CRITERIA.support:
         return False
-    return _apart(problem, as_read, now, problem.held_out) <= CRITERIA.support and bool(
-        _informative(problem, as_read, now)
-    )
+    return _apart(case, as_read, now, case.held_out) <= CRITERIA.support and bool(_informative(case, as_read, now))
 
 
-def holding_out_others(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> Problem:
-    """Return the problem with other trials held out: the last of those that are informative.
+def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Case:
+    """Return the case with other trials held out: the last of those that are informative.
 
     as_read, now: the simulation as read and with what trials that were learned from speak for
     """
-    held = _informative(problem, as_read, now)[-len(problem.held_out) :]
-    learned = tuple(sorted({*problem.learned, *problem.held_out} - {*held}))
-    return replace(problem, learned=learned, held_out=held)
+    held = _informative(case, as_read, now)[-len(case.held_out) :]
+    learned = tuple(sorted({*case.learned, *case.held_out} - {*held}))
+    return replace(case, learned=learned, held_out=held)
 
 
-def noted(before: Problem, now: Problem) -> Problem:
-    """Return a problem with a finding that says what is held out in place of what."""
+def noted(before: Case, now: Case) -> Case:
+    """Return a case with a finding that says what is held out in place of what."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"with and without what was found, trial {blind} runs alike; trial {instead} is held out in its place"
     finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data were to be held out")
     return replace(now, measured=replace(now.measured, findings=(*now.measured.findings, finding)))
 
 
-def _informative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> tuple[int, ...]:
+def _informative(case: Case, as_read: ScoredModel, now: ScoredModel) -> tuple[int, ...]:
     """Return the learned trials on which the two runs are apart."""
-    return tuple(one for one in problem.learned if _apart(problem, as_read, now, (one,)) > CRITERIA.support)
+    return tuple(one for one in case.learned if _apart(case, as_read, now, (one,)) > CRITERIA.support)
 
 
-def _apart(problem: Problem, as_read: ScoredModel, now: ScoredModel, trials: tuple[int, ...]) -> float:
+def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int, ...]) -> float:
     """Return by how much the misfit would fall on trials if what was found were true: how far the runs are apart."""
-    before, after = (runs_of(problem, one, trials, now) for one in (as_read, now))
+    before, after = (runs_of(case, one, trials, now) for one in (as_read, now))
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
@@ -216,15 +212,15 @@ class Proof:
         return float(1 - after / before)
 
 
-def proof_of(problem: Problem, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
+def proof_of(case: Case, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
     """Run two models over the held-out trials and test what they err by."""
-    first, second = (runs_of(problem, one, problem.held_out, like) for one in (before, now))
-    return Proof(first, second, compare_runs(problem, first, second, like))
+    first, second = (runs_of(case, one, case.held_out, like) for one in (before, now))
+    return Proof(first, second, compare_runs(case, first, second, like))
 
 
-def compare_runs(problem: Problem, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
+def compare_runs(case: Case, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
     """Test whether the same runs of two models err less in the second."""
-    return replace(paired_test(before.fit.residual, after.fit.residual, like.noise.size), alpha=problem.alpha)
+    return replace(paired_test(before.fit.residual, after.fit.residual, like.noise.size), alpha=case.alpha)
 
 
 def gap_size(
@@ -243,13 +239,13 @@ def gap_size(
     return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces, alpha=test.alpha)
 
 
-def drawn_runs(problem: Problem, before: Trial, after: Trial) -> Runs:
+def drawn_runs(case: Case, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them.
 
     before, after: the same runs of the simulation as read and with what was found
     """
-    segments, drive = before.segments, problem.measured.drive
-    names = [one.name for one in problem.search.base.inputs]
+    segments, drive = before.segments, case.measured.drive
+    names = [one.name for one in case.search.base.inputs]
     time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
@@ -259,5 +255,5 @@ def drawn_runs(problem: Problem, before: Trial, after: Trial) -> Runs:
         before.measured,
         before.measured - before.fit.residual,
         after.measured - after.fit.residual,
-        problem.measured.trials,
+        case.measured.trials,
     )

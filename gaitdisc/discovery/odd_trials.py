@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import fit_model
+from gaitdisc.discovery.case import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.forward_selection import leaves
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
-from gaitdisc.discovery.problem import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Problem
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
@@ -61,15 +61,15 @@ class Change:
     measured: Measured
 
 
-def agreeing_trials(problem: Problem, measured: Measured) -> Measured:
+def agreeing_trials(case: Case, measured: Measured) -> Measured:
     """Return the trials without those that are turned in sign or shifted in time, each with a finding.
 
     measured: these, as they were given; of fewer than three, none can be said to be the odd one
     """
-    odd = odd_trials(problem) if len(measured.trials) > FEWEST_OTHERS else ()
+    odd = odd_trials(case) if len(measured.trials) > FEWEST_OTHERS else ()
     if not odd:
         return measured
-    source = measured.source or problem.search.base.title
+    source = measured.source or case.search.base.title
     findings = tuple(
         Finding(
             "warning",
@@ -87,14 +87,14 @@ def agreeing_trials(problem: Problem, measured: Measured) -> Measured:
     return replace(kept, findings=(*kept.findings, *findings))
 
 
-def odd_trials(problem: Problem) -> tuple[Odd, ...]:
+def odd_trials(case: Case) -> tuple[Odd, ...]:
     """Find the trials that are turned in sign or shifted in time."""
-    count = len(problem.measured.trials)
-    bench = _Bench(problem)
-    fit, segments = bench.fitted(problem.measured)
+    count = len(case.measured.trials)
+    bench = _Bench(case)
+    fit, segments = bench.fitted(case.measured)
     before = bench.errors(fit, segments)
     found: dict[int, list[Odd]] = {}
-    for change in (*_turned(problem), *_shifted(bench, fit, segments)):
+    for change in (*_turned(case), *_shifted(bench, fit, segments)):
         after = bench.errors(*bench.fitted(change.measured))
         for trial in range(count):
             then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
@@ -120,12 +120,12 @@ def _either(found: list[Odd]) -> Odd:
 class _Bench:
     """What runs the simulation as read over all trials and measures how far it misses each."""
 
-    def __init__(self, problem: Problem) -> None:
-        self.simulation, self.rhythm = problem.search.base, problem.rhythm
+    def __init__(self, case: Case) -> None:
+        self.simulation, self.rhythm = case.search.base, case.rhythm
         self.rate_of = kinematic_rates(self.simulation, compile_simulation(self.simulation))
-        self.spread = np.nanstd(problem.measured.observed, axis=(0, 1))
-        self.samples = max(int(problem.predictable_periods() * self.rhythm.samples), FEWEST_SAMPLES)
-        self.measured = problem.measured
+        self.spread = np.nanstd(case.measured.observed, axis=(0, 1))
+        self.samples = max(int(case.predictable_periods() * self.rhythm.samples), FEWEST_SAMPLES)
+        self.measured = case.measured
 
     def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
         """The fit of the start states, run by run."""
@@ -143,9 +143,9 @@ class _Bench:
         return np.sqrt([np.nanmean(square[segments.trial == trial]) for trial in np.unique(segments.trial)])
 
 
-def _turned(problem: Problem) -> Iterator[Change]:
+def _turned(case: Case) -> Iterator[Change]:
     """Yield the trials with the sign of a channel, of all channels, or of an input turned."""
-    measured, inputs = problem.measured, problem.search.base.inputs
+    measured, inputs = case.measured, case.search.base.inputs
     for number, name in enumerate(measured.channels):
         observed = measured.observed * np.where(np.arange(len(measured.channels)) == number, -1.0, 1.0)
         yield Change(f"{SIGN}{name}", name, replace(measured, observed=observed))
@@ -215,28 +215,28 @@ def _lowest(values: NDArray[np.float64]) -> list[int]:
     return sorted(places.tolist(), key=lambda place: values[place])
 
 
-def without_trial_apart(problem: Problem) -> Measured:
+def without_trial_apart(case: Case) -> Measured:
     """Return the trials without the one that goes with no explanation of the others, with a finding.
 
     The simulation as read is fitted to all trials. What the best single explanation would leave of all but one of them
     follows from its slopes, to first order, for each trial in turn: this finds the one to suspect. The others are then
     searched without it, and for comparison without the next.
 
-    problem: the simulation as read and all trials, which leave more than noise whatever is named
+    case: the simulation as read and all trials, which leave more than noise whatever is named
     returns: the trials as they were where none stands apart, or there are too few or too many to say
     """
-    measured = problem.measured
+    measured = case.measured
     count = len(measured.trials)
     if not FEWEST_TRIALS <= count <= MOST_TRIALS:
         return measured
     spread = np.nanstd(measured.observed, axis=(0, 1))
-    as_read = replace(problem, learned=tuple(range(count))).as_read()
-    trial, other = np.argsort(_promised(problem, as_read))[:2].tolist()
-    least = _left_without(problem, trial, spread)
+    as_read = replace(case, learned=tuple(range(count))).as_read()
+    trial, other = np.argsort(_promised(case, as_read))[:2].tolist()
+    least = _left_without(case, trial, spread)
     wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
     if _as_read_left(as_read, other, spread) < wanted:  # what a search leaves of the same trials is no more
         return measured
-    next_least = _left_without(problem, other, spread)
+    next_least = _left_without(case, other, spread)
     if next_least < wanted:
         return measured
     what = (
@@ -244,15 +244,15 @@ def without_trial_apart(problem: Problem) -> Measured:
         f"{least:.2g} standard deviations, without trial {measured.trials[other]!r}, the next best to leave out, "
         f"{next_least:.2g}"
     )
-    source = measured.source or problem.search.base.title
+    source = measured.source or case.search.base.title
     spoils = "this trial, which was left out: look at its gain, its offset and whether a channel stood still"
     kept = measured.selected([one for one in range(count) if one != trial])
     return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
 
 
-def _promised(problem: Problem, as_read: ScoredModel) -> NDArray[np.float64]:
+def _promised(case: Case, as_read: ScoredModel) -> NDArray[np.float64]:
     """Mean square that the best single explanation leaves of all other trials, to first order (trial,)."""
-    search, model = problem.search, as_read.model
+    search, model = case.search, as_read.model
     return search.scorer(as_read.shooting, model).left_without_each(search.open_beside(model))
 
 
@@ -262,9 +262,9 @@ def _as_read_left(as_read: ScoredModel, trial: int, spread: NDArray[np.float64])
     return float(np.sqrt(np.nanmean((as_read.model.fit.residual[others] / spread) ** 2)))
 
 
-def _left_without(problem: Problem, trial: int, spread: NDArray[np.float64]) -> float:
+def _left_without(case: Case, trial: int, spread: NDArray[np.float64]) -> float:
     """Root mean square that the best single explanation of all other trials leaves [standard deviations]."""
-    others = tuple(other for other in range(len(problem.measured.trials)) if other != trial)
-    part = replace(problem, learned=others)
+    others = tuple(other for other in range(len(case.measured.trials)) if other != trial)
+    part = replace(case, learned=others)
     as_read = part.as_read()
     return float(np.sqrt(min(leaves(one, spread) for one in (as_read, *part.search.extended(as_read)))))

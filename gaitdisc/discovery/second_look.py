@@ -8,13 +8,13 @@ from gaitdisc.discovery.beam import errs_more
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
 from gaitdisc.discovery.held_out import free_run_error, grows_along_runs, proof_of, strays
-from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
@@ -36,25 +36,25 @@ RELATIVES = {
 }
 
 
-def prefer_relatives(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+def prefer_relatives(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict with the simpler relative of each shape in its place, where this leaves no more of unseen data.
 
     Where a model leaves mere noise, the likelihood says so; where none does, it prefers whatever is more flexible. What
     relaxes or yields beyond the record's length or range is its relative, or nothing is named.
     """
-    shows = problem.search.shows
+    shows = case.search.shows
     if verdict.word in ("unnamed", "process_noise", "no_gap") or not verdict.proof:
         return replace(verdict, rivals=tuple(one for one in verdict.rivals if shows(one.model)))
     for number in range(len(verdict.found.model.parts)):
         found = verdict.found
-        tried = [in_its_place(problem, found, number, one) for one in relatives_of(problem, found, number)]
+        tried = [in_its_place(case, found, number, one) for one in relatives_of(case, found, number)]
         for now in sorted((one for one in tried if one), key=lambda one: one.bic):
             idle = not shows(found.model) or may_vanish(found.model, number)
             if found.model.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
-                idle = idle or free_run_error(problem, found) > CRITERIA.half * free_run_error(problem, now)
-            if not idle and is_needed(problem, now, found):
+                idle = idle or free_run_error(case, found) > CRITERIA.half * free_run_error(case, now)
+            if not idle and is_needed(case, now, found):
                 continue
-            proof = held_out_proof(problem, as_read, now)
+            proof = held_out_proof(case, as_read, now)
             if proof.bears_out:
                 verdict = replace(verdict, word=now.word, found=now, rivals=(found, *verdict.rivals), proof=proof)
                 break
@@ -64,27 +64,27 @@ def prefer_relatives(problem: Problem, as_read: ScoredModel, verdict: Verdict) -
     return replace(verdict, rivals=rivals)
 
 
-def prefer_delay(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict with a feedback that comes late in the place of one at once, where unseen data show the delay.
 
     Whatever answers with a delay (a person, a controller) looks like a spring to a search that begins without one: run
     freely, the simulation as read leaves the data, and no delay of it says anything. Beside the spring it does not.
     """
     parts = verdict.found.model.parts
-    firsts = {place.motions[0] for place in problem.search.places}
+    firsts = {place.motions[0] for place in case.search.places}
     springs = [one for one in parts if one.candidate.name == AT_ONCE and (one.candidate.role, "") in firsts]
     if len(parts) != 1 or not springs or not verdict.proof:
         return verdict
     late = [
         one
-        for one in problem.search.candidates
+        for one in case.search.candidates
         if one.name == LATE and (one.place, one.role) == (springs[0].candidate.place, springs[0].candidate.role)
     ]
-    found, search = verdict.found, problem.search
+    found, search = verdict.found, case.search
     begun = [
         Part(one, {"factor": springs[0].values["factor"], "d": float(delay)})
         for one in late
-        for delay in delays(problem.rhythm)[::STEP]
+        for delay in delays(case.rhythm)[::STEP]
     ]
     tried = [
         fit_model(found.shooting, search.base, (part,), found.model.fit.starts, TURNS, like=found.model)
@@ -95,13 +95,13 @@ def prefer_delay(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Ve
         return verdict
     now = ScoredModel(min(tried, key=lambda one: one.bic), found.shooting, found.gained)
     _, now = compared([found, now], search.base)
-    proof = held_out_proof(problem, as_read, now)
-    if not proof_of(problem, found, now, now).bears_out or not proof.bears_out:
+    proof = held_out_proof(case, as_read, now)
+    if not proof_of(case, found, now, now).bears_out or not proof.bears_out:
         return verdict
     return replace(verdict, found=now, rivals=(found, *verdict.rivals), proof=proof)
 
 
-def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> tuple[ScoredModel, Verdict]:
+def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tuple[ScoredModel, Verdict]:
     """Return a verdict whose free runs err no more than the simulation's, with what takes half of what they leave.
 
     In short runs a part of what is missing leaves mere noise; along whole ones the rest adds up. Where a small change
@@ -109,67 +109,67 @@ def look_at_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict)
 
     returns: the simulation as read, its numbers those of whole runs; and the verdict
     """
-    if verdict.word == "process_noise" or verdict.starts or not problem.spans_a_period(as_read):
+    if verdict.word == "process_noise" or verdict.starts or not case.spans_a_period(as_read):
         return as_read, verdict
-    base, named = fit_whole_runs(problem, as_read), verdict.found
+    base, named = fit_whole_runs(case, as_read), verdict.found
     if not named.model.parts:
         return base, replace(verdict, found=base)
-    most = free_run_error(problem, base)
+    most = free_run_error(case, base)
     for one in (named, *verdict.rivals):
-        if not one.model.parts or strays(problem, one, most):
+        if not one.model.parts or strays(case, one, most):
             continue
         if one is named:
-            return base, complete_on_whole_runs(problem, as_read, verdict)
-        proof = held_out_proof(problem, as_read, one)
+            return base, complete_on_whole_runs(case, as_read, verdict)
+        proof = held_out_proof(case, as_read, one)
         if proof.bears_out:
             return base, replace(verdict, word=one.word, found=one, rivals=(named, *verdict.rivals), proof=proof)
     return base, Verdict("no_gap", base, (named, *verdict.rivals), proof=verdict.proof)
 
 
-def fit_whole_runs(problem: Problem, now: ScoredModel) -> ScoredModel:
+def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
     """Return a model fitted to the learned trials whole, where a small error of a number shows; else as it was.
 
     All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
     """
-    shooting = problem.learned_runs(problem.longest).with_noise(scale_of(problem).error_of(now.model.fit))
-    guess = problem.guess.with_run(now.shooting.segments, now.model.fit.states)
+    shooting = case.learned_runs(case.longest).with_noise(scale_of(case).error_of(now.model.fit))
+    guess = case.guess.with_run(now.shooting.segments, now.model.fit.states)
     starts = guess.starts(shooting.segments)
-    model = fit_model(shooting, problem.search.base, now.model.parts, starts, like=now.model)
-    return ScoredModel(model, shooting.with_past(model.fit.states)) if problem.search.sensible(model) else now
+    model = fit_model(shooting, case.search.base, now.model.parts, starts, like=now.model)
+    return ScoredModel(model, shooting.with_past(model.fit.states)) if case.search.sensible(model) else now
 
 
-def complete_on_whole_runs(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict with one explanation more, where this takes half of what free runs of the others leave."""
-    found, search = verdict.found, problem.search
-    if verdict.word == "unnamed" or not grows_along_runs(problem, found):
+    found, search = verdict.found, case.search
+    if verdict.word == "unnamed" or not grows_along_runs(case, found):
         return verdict
-    whole = fit_whole_runs(problem, found)
+    whole = fit_whole_runs(case, found)
     whole = scored(whole.shooting, search.base, whole.model)
-    own_error = scale_of(problem).excess(whole.model.fit) < CRITERIA.model_error
-    if own_error or leaves_noise(problem, whole):
+    own_error = scale_of(case).excess(whole.model.fit) < CRITERIA.model_error
+    if own_error or leaves_noise(case, whole):
         return verdict
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
         return verdict
     tried = [one for one in rivals if len(one.model.parts) == len(named.model.parts)]
-    left = [(free_run_error(problem, one), one) for one in (named, *tried[:MOST_NEAR])]
+    left = [(free_run_error(case, one), one) for one in (named, *tried[:MOST_NEAR])]
     least = min(error for error, _ in left)
-    if least > CRITERIA.half * min(free_run_error(problem, one) for one in (found, whole)):
+    if least > CRITERIA.half * min(free_run_error(case, one) for one in (found, whole)):
         return verdict
     more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
-    beside, proof = held_out_proof(problem, whole, more, as_read), held_out_proof(problem, as_read, more)
+    beside, proof = held_out_proof(case, whole, more, as_read), held_out_proof(case, as_read, more)
     if not beside.bears_out or not proof.bears_out:
         return verdict
     return replace(verdict, word=more.word, found=more, rivals=(found, *tried, *verdict.rivals), proof=proof)
 
 
-def relatives_of(problem: Problem, now: ScoredModel, number: int) -> list[Candidate]:
+def relatives_of(case: Case, now: ScoredModel, number: int) -> list[Candidate]:
     """List the simpler relatives of one of a model's explanations: at its place, of the same motion."""
     own = now.model.parts[number].candidate
     names, present = RELATIVES.get(own.name, ()), now.model.explanations
     found = [
         one
-        for one in problem.search.candidates
+        for one in case.search.candidates
         if one.name in names
         and one.identity not in present
         and (
@@ -183,9 +183,9 @@ def relatives_of(problem: Problem, now: ScoredModel, number: int) -> list[Candid
     return sorted(found, key=lambda one: names.index(one.name))
 
 
-def in_its_place(problem: Problem, now: ScoredModel, number: int, relative: Candidate) -> ScoredModel | None:
+def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate) -> ScoredModel | None:
     """Return a model with a relative in the place of one of its explanations; None where it does not fit."""
-    search, fewer = problem.search, problem.search.without(now, number)
+    search, fewer = case.search, case.search.without(now, number)
     scores = search.scorer(fewer.shooting, fewer.model).scores((relative,))
     if not scores:
         return None
@@ -195,14 +195,14 @@ def in_its_place(problem: Problem, now: ScoredModel, number: int, relative: Cand
     return ScoredModel(model, now.shooting, now.gained) if search.sensible(model) else None
 
 
-def is_needed(problem: Problem, relative: ScoredModel, general: ScoredModel) -> bool:
+def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
     """Whether data show that a general shape explains more than its relative."""
-    first, second = compared([relative, general], problem.search.base)
-    if leaves_noise(problem, second):
+    first, second = compared([relative, general], case.search.base)
+    if leaves_noise(case, second):
         return first.bic - second.bic > CRITERIA.margin
-    proof = proof_of(problem, first, second, second)
+    proof = proof_of(case, first, second, second)
     if proof.bears_out:
         return True
-    scale, base = scale_of(problem), problem.search.base
+    scale, base = scale_of(case), case.search.base
     left = [cross_validated(scale, one.shooting, base, one.model.parts, one.model) for one in (first, second)]
     return proof.test.fall > 0 and errs_more(*left) < ALPHA

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.fitted_shape import cost_of, fitted_shape
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
-from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.unnamed_terms import NAME
@@ -52,7 +52,7 @@ class Piece:
         return Shape("", (self.text,)).written({f"_{slot}": f"{value:.9g}" for slot, value in self.values.items()})[0]
 
 
-def read_shape(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict on a learned shape with its reading in its place; as it was where there is none.
 
     Source: Brunton, Proctor and Kutz 2016, PNAS 113, 3932 (a library of pieces, few of which act); Miller 2002, Subset
@@ -62,7 +62,7 @@ def read_shape(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verd
     shape = verdict.found
     if verdict.word != NAME or len(shape.model.parts) != 1 or not verdict.proof:
         return verdict
-    search, scale = problem.search, scale_of(problem)
+    search, scale = case.search, scale_of(case)
     plain = cross_validated(scale, shape.shooting, search.base, (), shape.model)
     if not np.isfinite(plain.gap):
         return verdict
@@ -72,14 +72,14 @@ def read_shape(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verd
     readings = [one for one in readings if search.sensible(one.model)]
     for one in sorted(readings, key=lambda one: cost_of(one, plain)):
         found = scored(shape.shooting, search.base, one.model)
-        proof = held_out_proof(problem, as_read, found)
+        proof = held_out_proof(case, as_read, found)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
             reads_as = effect_of(search, one.model.parts[0].candidate)
             return replace(verdict, found=found, proof=proof, read=True, reads_as=reads_as)
     return verdict
 
 
-def read_instead(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict on several names at one place, or on a shape that reads as less than they are and errs less.
 
     Pieces of the catalogue laid beside each other imitate any curve, above all one piece laid twice; other names
@@ -90,15 +90,15 @@ def read_instead(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Ve
     if named.model.size < FEWEST_NUMBERS or len(set(places)) == len(places):
         return verdict
     twice = len(set(named.labels)) < len(named.labels)
-    if leaves_noise(problem, named) and not twice:
+    if leaves_noise(case, named) and not twice:
         return verdict
-    shape = fitted_shape(as_read, problem.search, scale_of(problem))
+    shape = fitted_shape(as_read, case.search, scale_of(case))
     if shape is None:
         return verdict
-    proof = held_out_proof(problem, as_read, shape)
-    instead = read_shape(problem, as_read, Verdict(NAME, shape, (named, *verdict.rivals), proof=proof))
+    proof = held_out_proof(case, as_read, shape)
+    instead = read_shape(case, as_read, Verdict(NAME, shape, (named, *verdict.rivals), proof=proof))
     less = instead.read and instead.found.model.size < named.model.size
-    return instead if less and held_out_proof(problem, named, instead.found, as_read).bears_out else verdict
+    return instead if less and held_out_proof(case, named, instead.found, as_read).bears_out else verdict
 
 
 def effect_of(search: Search, candidate: Candidate) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
@@ -25,7 +26,6 @@ from gaitdisc.discovery.linearised import linearise, seen_change, seen_push
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.problem import FEWEST_SAMPLES, Problem
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, sensor_covariance
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
@@ -70,65 +70,65 @@ class Weighed:
         return self.squares / (self.learned != 0).sum()
 
 
-def weigh_input_errors(problem: Problem, verdict: Verdict) -> tuple[Problem, Verdict]:
+def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt.
 
-    returns problem: with a finding about what is not named
+    returns case: with a finding about what is not named
     """
-    found, erring = verdict.found, [repr(one.name) for one in wandering(problem.search.base)]
+    found, erring = verdict.found, [repr(one.name) for one in wandering(case.search.base)]
     if not erring or verdict.starts:
-        return problem, verdict
-    best = likeliest(problem, verdict)
+        return case, verdict
+    best = likeliest(case, verdict)
     if verdict.process_noise and best.level > CRITERIA.mere_noise:
-        return problem, verdict
-    now, proof = beyond_errors(problem, best)
+        return case, verdict
+    now, proof = beyond_errors(case, best)
     named, kept = (Counter(part.candidate.label for part in one.model.parts) for one in (best.now, now))
     dropped = ["random pushes"] * bool(verdict.process_noise)
     dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (named - kept).elements()]
     if dropped:
         what = f"the errors that the simulation states of {listed(erring)} explain {listed(dropped)} as well"
-        finding = Finding("note", "stated errors", problem.measured.source, what, "the name; it is among the rivals")
-        measured = replace(problem.measured, findings=(*problem.measured.findings, finding))
-        problem = replace(problem, measured=measured)
+        finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
+        measured = replace(case.measured, findings=(*case.measured.findings, finding))
+        case = replace(case, measured=measured)
     same = now.labels == verdict.found.labels
     verdict = replace(verdict, found=now, proof=proof or verdict.proof, read=verdict.read and same, process_noise=None)
     verdict = replace(verdict, word=now.word if now.model.parts else "no_gap")
-    return problem, verdict if same else replace(verdict, rivals=(found, *verdict.rivals))
+    return case, verdict if same else replace(verdict, rivals=(found, *verdict.rivals))
 
 
-def likeliest(problem: Problem, verdict: Verdict) -> Weighed:
+def likeliest(case: Case, verdict: Verdict) -> Weighed:
     """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
-    found = cut_short(problem, verdict.found)
+    found = cut_short(case, verdict.found)
     tried = [one.model.parts for one in verdict.rivals[:RIVALS]]
     tried += [
         (Part(one, part.values),)  # what a shape reads as
         for part in found.model.parts
-        for one in problem.search.candidates
+        for one in case.search.candidates
         if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
     ]
     tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
-    runs, starts, base = found.shooting, found.model.fit.starts, problem.search.base
+    runs, starts, base = found.shooting, found.model.fit.starts, case.search.base
     models = [fit_model(runs, base, parts, starts, like=found.model) for parts in tried]
-    models = [ScoredModel(one, runs) for one in models if problem.search.sensible(one)]
-    ordered = sorted((weighed(problem, one) for one in (found, *models)), key=lambda one: one.criterion)
+    models = [ScoredModel(one, runs) for one in models if case.search.sensible(one)]
+    ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
     named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
 
 
-def beyond_errors(problem: Problem, now: Weighed) -> tuple[ScoredModel, Proof | None]:
+def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
     """Return a model less what is not borne out: each explanation beside the others, and all together.
 
     All together also take half of what the simulation as read leaves of unseen data beyond the stated errors.
     """
     bare, proof = now.now, None
     while bare.model.parts:
-        bare = problem.search.without(bare, 0)
-    base = weighed(problem, bare)
+        bare = case.search.without(bare, 0)
+    base = weighed(case, bare)
     while now.now.model.parts:
         parts = range(len(now.now.model.parts))
-        fewer = [weighed(problem, problem.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
-        tests = [tested(problem, one, now) for one in (*fewer, base)]
-        proof = replace(proof_of(problem, base.now, now.now, now.now), test=tests[-1])
+        fewer = [weighed(case, case.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
+        tests = [tested(case, one, now) for one in (*fewer, base)]
+        proof = replace(proof_of(case, base.now, now.now, now.now), test=tests[-1])
         excess = float((base.held_out**2).sum()) - (base.held_out != 0).sum()  # beyond the stated errors
         if tests[-1].fall >= CRITERIA.half * excess and all(one.bears_out for one in tests):
             break
@@ -136,7 +136,7 @@ def beyond_errors(problem: Problem, now: Weighed) -> tuple[ScoredModel, Proof | 
     return now.now, proof
 
 
-def tested(problem: Problem, before: Weighed, now: Weighed) -> PairedTest:
+def tested(case: Case, before: Weighed, now: Weighed) -> PairedTest:
     """Test whether a model leaves less than another by more than chance, also of what it was not fitted to.
 
     returns: of the held-out runs; p is 1 where the runs that it was fitted to say less than the criterion's margin,
@@ -152,25 +152,25 @@ def tested(problem: Problem, before: Weighed, now: Weighed) -> PairedTest:
     gained = (before.squares - now.squares) / max(now.level, 1.0) - numbers * np.log(now.learned.size)
     worth = gained > CRITERIA.margin and now.plain < before.plain and is_certain(now.now.model)
     p, fall = errors_rise_p(*squares) if worth else 1.0, float((squares[1] - squares[0]).sum())
-    return PairedTest(p, len(squares[0]), fall, problem.alpha)
+    return PairedTest(p, len(squares[0]), fall, case.alpha)
 
 
-def cut_short(problem: Problem, now: ScoredModel) -> ScoredModel:
+def cut_short(case: Case, now: ScoredModel) -> ScoredModel:
     """Return a model fitted to runs of which a covariance can be made."""
-    samples = max(MOST_NUMBERS // len(problem.measured.channels), FEWEST_SAMPLES)
+    samples = max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES)
     if now.shooting.segments.span <= samples:
         return now
-    shooting = problem.learned_runs(samples).with_noise(now.noise)
-    starts = problem.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-    model = fit_model(shooting, problem.search.base, now.model.parts, starts, like=now.model)
+    shooting = case.learned_runs(samples).with_noise(now.noise)
+    starts = case.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
+    model = fit_model(shooting, case.search.base, now.model.parts, starts, like=now.model)
     return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
-def weighed(problem: Problem, now: ScoredModel) -> Weighed:
+def weighed(case: Case, now: ScoredModel) -> Weighed:
     """Estimate a model's numbers under the stated errors of inputs (Gauss-Newton), and weigh what it leaves."""
     fit = now.model.fit
-    size = problem.noise_floor(now.noise.size)
-    left = whitener(problem, now, now.shooting, fit.starts, size)
+    size = case.noise_floor(now.noise.size)
+    left = whitener(case, now, now.shooting, fit.starts, size)
 
     def rows(values: Array) -> Array:
         return np.concatenate([left(values).ravel(), fit.prior.left(values)])
@@ -186,7 +186,7 @@ def weighed(problem: Problem, now: ScoredModel) -> Weighed:
         move = np.zeros(len(values))
         move[columns] = -np.linalg.lstsq(slopes, here, rcond=None)[0]
         tried = (fit.prior.within(values + share * move) for share in HALVED)
-        tried = (one for one in tried if problem.search.sensible(now.model.with_estimates(one, fit.covariance)))
+        tried = (one for one in tried if case.search.sensible(now.model.with_estimates(one, fit.covariance)))
         better = next(((one, found) for one in tried if ((found := rows(one)) ** 2).sum() < (here**2).sum()), None)
         if better is None:
             break
@@ -196,15 +196,13 @@ def weighed(problem: Problem, now: ScoredModel) -> Weighed:
     level = max(float((here**2).sum()) / max(int((here != 0).sum()), 1), 1.0)
     model = now.model.with_estimates(values, np.asarray(level * np.linalg.pinv(slopes.T @ slopes), float))
     now = replace(now, model=model)
-    held = proof_of(problem, now, now, now).after
-    shooting = replace(problem.shooting(held.segments), past=now.shooting.past)
-    unseen = whitener(problem, now, shooting, held.fit.starts, size)(values)
+    held = proof_of(case, now, now, now).after
+    shooting = replace(case.shooting(held.segments), past=now.shooting.past)
+    unseen = whitener(case, now, shooting, held.fit.starts, size)(values)
     return Weighed(now, left(values), unseen, float(np.nanmean((held.fit.residual / size) ** 2)))
 
 
-def whitener(
-    problem: Problem, now: ScoredModel, shooting: Shooting, starts: Array, size: Array
-) -> Callable[[Array], Array]:
+def whitener(case: Case, now: ScoredModel, shooting: Shooting, starts: Array, size: Array) -> Callable[[Array], Array]:
     """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers.
 
     starts (run, state): where the runs begin, up to what is to first order
@@ -218,7 +216,7 @@ def whitener(
 
     def left(values: Array) -> Array:
         fit = shooting.at(now.model.machine, (), values, starts)
-        inputs = covariance_by_inputs(problem, now, shooting, fit) * measured[:, :, None] * measured[:, None]
+        inputs = covariance_by_inputs(case, now, shooting, fit) * measured[:, :, None] * measured[:, None]
         columns = np.concatenate([np.nan_to_num(fit.residual).reshape(*measured.shape, 1), fit.slopes], axis=2)
         white = np.asarray(np.linalg.solve(np.linalg.cholesky(sensors + inputs), columns), np.float64)
         return without(start_basis(white[..., 1:]), white[..., :1]).reshape(known.shape)
@@ -226,15 +224,15 @@ def whitener(
     return left
 
 
-def covariance_by_inputs(problem: Problem, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Array:
+def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Array:
     """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
-    base, segments = problem.search.base, shooting.segments
+    base, segments = case.search.base, shooting.segments
     places = tuple(Place("input", one.name, (), (), (), False) for one in wandering(base))
     line = linearise(shooting, now.model.simulation, places, fit)
     direct = seen_push(shooting, now.model.simulation, places, fit)
     unit = np.eye(segments.length)
     held = 0.5 * (unit[:-1] + unit[1:])
-    late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / problem.measured.rate
+    late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
     total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
     for number, one in enumerate(wandering(base)):
         change = line.of_change(line.pushed[:, :, :, number, None] * held[:, None, :])
@@ -243,7 +241,7 @@ def covariance_by_inputs(problem: Problem, now: ScoredModel, shooting: Shooting,
         flat = seen.reshape(len(segments), -1, segments.length)
         memory = np.exp(-late / one.seconds)
         # averaged, as else what reads low errs less and its factor is too large (by 17-21 % where it errs by 25 %)
-        along = one.gain * (segments.of(problem.measured.drive.inputs)[..., one.column] @ memory) / memory.sum(axis=0)
+        along = one.gain * (segments.of(case.measured.drive.inputs)[..., one.column] @ memory) / memory.sum(axis=0)
         own = (one.sd**2 + along[:, :, None] * along[:, None]) * memory
         total += flat @ own @ np.swapaxes(flat, 1, 2)
     return total

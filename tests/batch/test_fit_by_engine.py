@@ -8,7 +8,7 @@ import pytest
 
 from gaitdisc.batch.fit_by_engine import EngineFit
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.scored_model import scored
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
@@ -43,12 +43,12 @@ def found(tmp_path_factory):
     seen = whole[:, :, :1] + NOISE * rng.normal(size=(4, 300, 1))
     measured = Measured(Drive.of(controls, 100.0), seen, tuple("1234"), ("pivot",))
     mapping = drafted(plain)
-    problem = set_up_problem(*expanded(mapping, plain, measured, whole))
-    spring = next(one for one in problem.search.candidates if one.label == "linear_stiffness@pivot_moment")
-    as_read = problem.as_read()
+    case = set_up_case(*expanded(mapping, plain, measured, whole))
+    spring = next(one for one in case.search.candidates if one.label == "linear_stiffness@pivot_moment")
+    as_read = case.as_read()
     parts = (Part(spring, {"factor": -STIFFNESS}),)
-    fitted = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts)
-    return EngineFit(mapping, plain, measured, whole), scored(as_read.shooting, problem.search.base, fitted)
+    fitted = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
+    return EngineFit(mapping, plain, measured, whole), scored(as_read.shooting, case.search.base, fitted)
 
 
 @pytest.mark.slow

@@ -1,30 +1,30 @@
-"""A problem into a mass on a spring, whose missing cubic spring is known."""
+"""A case into a mass on a spring, whose missing cubic spring is known."""
 
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.forward_selection import select_forward
-from gaitdisc.discovery.problem import set_up_problem
 
 
 @pytest.fixture(scope="package")
-def problem():
+def case():
     measured = record(with_load("-14*x**3"), 3, Experiment(seconds=12.0))
-    return set_up_problem(mass(), measured)
+    return set_up_case(mass(), measured)
 
 
 @pytest.fixture(scope="package")
-def as_read(problem):
-    return problem.as_read()
+def as_read(case):
+    return case.as_read()
 
 
 @pytest.fixture(scope="package")
-def cubic(problem):
+def cubic(case):
     """Return the explanation that is true."""
-    return next(one for one in problem.search.candidates if one.label == "cubic_stiffness@load")
+    return next(one for one in case.search.candidates if one.label == "cubic_stiffness@load")
 
 
 @pytest.fixture(scope="package")
-def named(problem, as_read):
+def named(case, as_read):
     """Return the simulation with what the search selected, and the rivals."""
-    return select_forward(problem.search, as_read, 2)
+    return select_forward(case.search, as_read, 2)

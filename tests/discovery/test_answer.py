@@ -8,8 +8,8 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.scored_model import compared
 from gaitdisc.simulation.measured_table import read_measured
@@ -26,10 +26,10 @@ SLACK = replace(
 
 
 @pytest.fixture(scope="module")
-def answered(problem, as_read, named):
+def answered(case, as_read, named):
     now, rivals = named
-    plain, *_ = compared([as_read, now], problem.search.base)
-    return answer(problem, plain, Verdict("missing_physics", now, tuple(rivals)))
+    plain, *_ = compared([as_read, now], case.search.base)
+    return answer(case, plain, Verdict("missing_physics", now, tuple(rivals)))
 
 
 def test_the_augmented_simulation_has_the_numbers_that_were_found(answered, named):
@@ -87,8 +87,8 @@ def test_a_region_is_said_where_an_effect_has_one(candidate, values, region):
     assert region_of(Part(candidate, values)) == region
 
 
-def test_units_are_those_of_what_is_observed(problem):
-    assert units_of(problem) == ("m",)
+def test_units_are_those_of_what_is_observed(case):
+    assert units_of(case) == ("m",)
 
 
 @pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])
@@ -100,18 +100,18 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
     time = np.arange(measured.samples[0]) / measured.rate
     phase = np.broadcast_to((time % 1.0)[None, :, None], (2, len(time), 1))
     drive = replace(measured.drive, inputs=np.concatenate([measured.drive.inputs, phase], axis=2))
-    problem = set_up_problem(stride, replace(measured, drive=drive))
+    case = set_up_case(stride, replace(measured, drive=drive))
     grids = {"c": "phases", "w": "phase widths"}
     pulse = Candidate("missing_physics", "port", "load", "pulse", (f"exp(-(({seen} - _c)/_w)**2)",), grids)
     half = 0.1 * np.sqrt(np.log(2))
-    begin, end = phase_of(problem, problem.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
+    begin, end = phase_of(case, case.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
     assert (begin, end) == pytest.approx((centre - half, centre + half), abs=0.03)
 
 
 def test_random_pushes_of_a_function_are_answered(tmp_path):
-    problem = set_up_problem(tank(), read_measured(write_record(tmp_path / "tank.csv"), tank()))
-    as_read = problem.as_read()
-    process_noise, *_ = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)
-    found, augmented = answer(problem, as_read, Verdict("process_noise", as_read, (), process_noise))
+    case = set_up_case(tank(), read_measured(write_record(tmp_path / "tank.csv"), tank()))
+    as_read = case.as_read()
+    process_noise, *_ = rank_process_noise(as_read.shooting, as_read.model, case.search.places)
+    found, augmented = answer(case, as_read, Verdict("process_noise", as_read, (), process_noise))
     assert [(one.place, one.name) for one in found.effects] == [("leak", "process_noise")]
     assert augmented == tank()

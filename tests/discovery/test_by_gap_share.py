@@ -4,35 +4,35 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.problem import set_up_problem
 
 CLEAN = Experiment(seconds=8.0, noise=0.001)
 
 
-def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(problem, as_read, named):
-    scale = scale_of(problem)
-    assert leaves_noise(problem, named[0])
-    assert not leaves_noise(problem, as_read)
+def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(case, as_read, named):
+    scale = scale_of(case)
+    assert leaves_noise(case, named[0])
+    assert not leaves_noise(case, as_read)
     assert not scale.agrees(as_read.model.fit)
 
 
-def test_a_simulation_that_errs_leaves_noise_where_that_is_a_small_share_of_the_spread(problem, as_read, monkeypatch):
-    base = replace(problem.search.base, inexact=0.02)
-    errs = replace(problem, search=replace(problem.search, base=base))
+def test_a_simulation_that_errs_leaves_noise_where_that_is_a_small_share_of_the_spread(case, as_read, monkeypatch):
+    base = replace(case.search.base, inexact=0.02)
+    errs = replace(case, search=replace(case.search, base=base))
     assert not leaves_noise(errs, as_read)
     loose = replace(CRITERIA, inexact=2 * scale_of(errs).relative(as_read.model.fit))
     monkeypatch.setattr("gaitdisc.discovery.by_gap_share.CRITERIA", loose)
     assert leaves_noise(errs, as_read)
-    assert not leaves_noise(problem, as_read)
+    assert not leaves_noise(case, as_read)
 
 
 def test_where_nothing_is_missing_nothing_is_weighed():
-    problem = set_up_problem(mass(), record(mass(), 3, CLEAN))
-    scale = scale_of(problem)
-    assert scale.agrees(problem.as_read().model.fit)
-    assert closing_most(problem, scale, ()) is None
+    case = set_up_case(mass(), record(mass(), 3, CLEAN))
+    scale = scale_of(case)
+    assert scale.agrees(case.as_read().model.fit)
+    assert closing_most(case, scale, ()) is None
 
 
 @pytest.fixture(scope="module")

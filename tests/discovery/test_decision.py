@@ -8,57 +8,57 @@ from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed, strongest
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
 
 
-def test_what_longer_runs_have_no_use_for_is_not_named(problem, as_read, cubic):
-    shooting = problem.shooting(problem.segments(problem.learned, 0.4)).with_noise(as_read.noise)
-    starts = problem.guess.starts(shooting.segments)
-    damper = next(one for one in problem.search.candidates if one.label == "viscous_damping@load")
+def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic):
+    shooting = case.shooting(case.segments(case.learned, 0.4)).with_noise(as_read.noise)
+    starts = case.guess.starts(shooting.segments)
+    damper = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
     read, both = (
-        scored(shooting, problem.search.base, fit_model(shooting, problem.search.base, parts, starts))
+        scored(shooting, case.search.base, fit_model(shooting, case.search.base, parts, starts))
         for parts in ((), (Part(cubic, {"factor": -14.0}), Part(damper, {"factor": 0.0})))
     )
-    assert not problem.spans_a_period(read)
-    assert kept_on_longer_runs(problem, read, both).labels == ("cubic_stiffness@load",)
-    assert kept_on_longer_runs(problem, read, both).shooting.segments is shooting.segments
-    assert kept_on_longer_runs(problem, as_read, both) is both
+    assert not case.spans_a_period(read)
+    assert kept_on_longer_runs(case, read, both).labels == ("cubic_stiffness@load",)
+    assert kept_on_longer_runs(case, read, both).shooting.segments is shooting.segments
+    assert kept_on_longer_runs(case, as_read, both) is both
 
 
-def _with(problem, as_read, parts):
-    model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts)
-    return scored(as_read.shooting, problem.search.base, model)
+def _with(case, as_read, parts):
+    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
+    return scored(as_read.shooting, case.search.base, model)
 
 
-def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(problem, as_read, cubic):
-    idle = next(one for one in problem.search.candidates if one.label == "viscous_damping@load")
-    both = _with(problem, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
-    assert needed(problem, as_read, both).labels == ("cubic_stiffness@load",)
-    alone = _with(problem, as_read, (Part(cubic, {"factor": -14.0}),))
-    assert needed(problem, as_read, alone) is alone
+def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case, as_read, cubic):
+    idle = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
+    both = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
+    assert needed(case, as_read, both).labels == ("cubic_stiffness@load",)
+    alone = _with(case, as_read, (Part(cubic, {"factor": -14.0}),))
+    assert needed(case, as_read, alone) is alone
 
 
-def test_of_three_names_the_one_that_is_missed_least_goes(problem, as_read, cubic):
+def test_of_three_names_the_one_that_is_missed_least_goes(case, as_read, cubic):
     others = [
-        next(one for one in problem.search.candidates if one.label == label)
+        next(one for one in case.search.candidates if one.label == label)
         for label in ("viscous_damping@load", "sensor_drift@x")
     ]
     parts = (Part(cubic, {"factor": -14.0}), *(Part(one, dict.fromkeys(one.slots, 0.0)) for one in others))
-    kept = strongest(problem.search, _with(problem, as_read, parts))
+    kept = strongest(case.search, _with(case, as_read, parts))
     assert len(kept.model.parts) == 2
     assert "cubic_stiffness@load" in kept.labels
 
 
-def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(problem, as_read, cubic, monkeypatch):
-    idle = next(one for one in problem.search.candidates if one.label == "viscous_damping@load")
-    both = _with(problem, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
+def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, as_read, cubic, monkeypatch):
+    idle = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
+    both = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
     wrong = replace(cubic, name="unnamed")
-    bad = fit_model(as_read.shooting, problem.search.base, (Part(wrong, {"factor": 2.0}),), as_read.model.fit.starts, 0)
+    bad = fit_model(as_read.shooting, case.search.base, (Part(wrong, {"factor": 2.0}),), as_read.model.fit.starts, 0)
     shape = ScoredModel(bad, as_read.shooting)
     for name, value in (
         ("searched", lambda *_: (as_read, both, [])),
@@ -67,33 +67,31 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(proble
         ("with_autocorrelation", lambda *_: None),
     ):
         monkeypatch.setattr(f"gaitdisc.discovery.decision.{name}", value)
-    verdict = decide(problem, as_read)
+    verdict = decide(case, as_read)
     assert (verdict.word, verdict.found.labels) == ("missing_physics", ("cubic_stiffness@load",))
     assert verdict.proof.test.p < 0.05
 
 
 @pytest.mark.parametrize(("half", "word"), [(0.5, "missing_physics"), (1.1, "no_gap")])
-def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(
-    problem, as_read, cubic, monkeypatch, half, word
-):
+def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, as_read, cubic, monkeypatch, half, word):
     others = [
-        next(one for one in problem.search.candidates if one.label == label)
+        next(one for one in case.search.candidates if one.label == label)
         for label in ("viscous_damping@load", "sensor_drift@x")
     ]
     parts = (Part(cubic, {"factor": -14.0}), *(Part(one, dict.fromkeys(one.slots, 0.0)) for one in others))
-    three = _with(problem, as_read, parts)
+    three = _with(case, as_read, parts)
     monkeypatch.setattr("gaitdisc.discovery.decision.searched", lambda *_: (as_read, three, []))
     monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
     monkeypatch.setattr("gaitdisc.discovery.decision.CRITERIA", replace(CRITERIA, half=half))
     monkeypatch.setattr("gaitdisc.discovery.decision.leaves_noise", lambda *_: False)
     monkeypatch.setattr("gaitdisc.discovery.decision.plainest", lambda *_: None)
-    verdict = decide(problem, as_read)
+    verdict = decide(case, as_read)
     assert verdict.word == word
     assert verdict.proof.test.p < 0.05
     assert 0.5 < verdict.proof.closed <= 1.0
 
 
-def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(problem, as_read, monkeypatch):
+def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, as_read, monkeypatch):
     names = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1, 2))), rivals=("rival",))
     alone = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1,))), rivals=())
     proofs = iter([True, False, False, True, True])
@@ -101,17 +99,17 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(proble
     monkeypatch.setattr(decision, "fitted_shape", lambda *_: "shape")
     monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
-    found = decision.shape_that_leaves_noise(problem, as_read, None, names)
+    found = decision.shape_that_leaves_noise(case, as_read, None, names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
-    assert decision.shape_that_leaves_noise(problem, as_read, None, names) is None  # not borne out
-    assert decision.shape_that_leaves_noise(problem, as_read, None, alone) is None  # not preferred to a single name
-    assert decision.shape_that_leaves_noise(problem, as_read, None, alone).word == "unnamed"
+    assert decision.shape_that_leaves_noise(case, as_read, None, names) is None  # not borne out
+    assert decision.shape_that_leaves_noise(case, as_read, None, alone) is None  # not preferred to a single name
+    assert decision.shape_that_leaves_noise(case, as_read, None, alone).word == "unnamed"
     monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
-    assert decision.shape_that_leaves_noise(problem, as_read, None, names) is None
+    assert decision.shape_that_leaves_noise(case, as_read, None, names) is None
 
 
-def test_a_verdict_carries_the_account_and_what_else_was_weighed(problem, as_read, named):
-    verdict = decide(problem, as_read)
+def test_a_verdict_carries_the_account_and_what_else_was_weighed(case, as_read, named):
+    verdict = decide(case, as_read)
     assert verdict.word == "missing_physics"
     assert verdict.found.labels == named[0].labels
     assert verdict.rivals[0].bic <= verdict.rivals[1].bic
@@ -119,8 +117,8 @@ def test_a_verdict_carries_the_account_and_what_else_was_weighed(problem, as_rea
 
 
 def test_a_random_push_comes_with_its_place_and_strength_and_without_an_explanation():
-    problem = set_up_problem(mass(), record(mass(), 3, Experiment(shaking=6.0)))
-    verdict = decide(problem, problem.as_read())
+    case = set_up_case(mass(), record(mass(), 3, Experiment(shaking=6.0)))
+    verdict = decide(case, case.as_read())
     assert verdict.word == "process_noise"
     assert verdict.found.model.parts == ()
     assert verdict.process_noise is not None
@@ -131,32 +129,32 @@ def test_a_random_push_comes_with_its_place_and_strength_and_without_an_explanat
 @pytest.mark.parametrize(("name", "constants"), [("series_elasticity", {"tau": 5e13}), ("hysteresis", {"width": 2e14})])
 def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_that_it_is(name, constants):
     measured = record(mass().with_effect(Term("load", "port", "hidden", "-30*x")), 3, Experiment(seconds=12.0))
-    problem = set_up_problem(mass(), measured)
-    as_read = problem.as_read()
+    case = set_up_case(mass(), measured)
+    as_read = case.as_read()
     remembering, spring = (
-        next(one for one in problem.search.candidates if one.label == f"{each}@load")
+        next(one for one in case.search.candidates if one.label == f"{each}@load")
         for each in (name, "linear_stiffness")
     )
     part = Part(remembering, {"factor": -30.0, **constants})
-    base, starts = problem.search.base, as_read.model.fit.starts
+    base, starts = case.search.base, as_read.model.fit.starts
     endless = scored(as_read.shooting, base, fit_model(as_read.shooting, base, (part,), starts, turns=0))
-    assert not problem.search.shows(endless.model)
+    assert not case.search.shows(endless.model)
     plain = scored(
         as_read.shooting, base, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts)
     )
-    as_rival = prefer_relatives(problem, as_read, Verdict("missing_physics", plain, (endless, plain)))
+    as_rival = prefer_relatives(case, as_read, Verdict("missing_physics", plain, (endless, plain)))
     assert [one.labels for one in as_rival.rivals] == [("linear_stiffness@load",)]
-    proof = held_out_proof(problem, as_read, endless)
-    found = prefer_relatives(problem, as_read, Verdict("missing_physics", endless, (), proof=proof))
+    proof = held_out_proof(case, as_read, endless)
+    found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert (found.word, found.found.labels) == ("missing_physics", ("linear_stiffness@load",))
     assert found.found.model.parts[0].values["factor"] == pytest.approx(-30.0, rel=0.05)
 
 
-def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(problem, as_read, cubic):
-    remembering = next(one for one in problem.search.candidates if one.label == "series_elasticity@load")
+def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic):
+    remembering = next(one for one in case.search.candidates if one.label == "series_elasticity@load")
     parts = (Part(cubic, {"factor": -14.0}), Part(remembering, {"factor": 2.0, "tau": 5e13}))
-    model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts, turns=0)
-    endless = scored(as_read.shooting, problem.search.base, model)
-    proof = held_out_proof(problem, as_read, endless)
-    found = prefer_relatives(problem, as_read, Verdict("missing_physics", endless, (), proof=proof))
-    assert all(problem.search.shows(one.model) for one in (found.found, *found.rivals))
+    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts, turns=0)
+    endless = scored(as_read.shooting, case.search.base, model)
+    proof = held_out_proof(case, as_read, endless)
+    found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))
+    assert all(case.search.shows(one.model) for one in (found.found, *found.rivals))

@@ -8,8 +8,8 @@ from hidden_in_a_mass import RATE, Experiment, mass, record, with_load
 from scipy.signal import butter, sosfiltfilt
 from texts import says
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.estimated_filter import _as_the_surer
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.signals.recorded_filter import RecordedFilter
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.parts import Sensor
@@ -24,24 +24,24 @@ def filtered():
 
 
 def test_a_filter_that_the_file_does_not_tell_of_is_found_and_told(filtered):
-    problem = set_up_problem(mass(), filtered)
-    assert problem.record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
-    (finding,) = (one for one in problem.measured.findings if one.kind == "low-pass")
+    case = set_up_case(mass(), filtered)
+    assert case.record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
+    (finding,) = (one for one in case.measured.findings if one.kind == "low-pass")
     assert finding.channel == "x"
     assert says(finding.what, "without lag (order 2") and "say lowpass" in finding.spoils
 
 
 def test_what_the_file_says_stands(filtered):
-    problem = set_up_problem(mass().with_sensor(Sensor("x", lowpass=5.0)), filtered)
-    assert problem.record_filter.cutoffs_hz == (5.0,)
-    assert not [one for one in problem.measured.findings if one.kind == "low-pass"]
+    case = set_up_case(mass().with_sensor(Sensor("x", lowpass=5.0)), filtered)
+    assert case.record_filter.cutoffs_hz == (5.0,)
+    assert not [one for one in case.measured.findings if one.kind == "low-pass"]
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_a_raw_record_went_through_none(noise):
-    problem = set_up_problem(mass(), record(with_load("-14*x**3"), 3, Experiment(seconds=30.0, noise=noise)))
-    assert problem.record_filter.cutoffs_hz == (None,)
-    assert not problem.measured.findings
+    case = set_up_case(mass(), record(with_load("-14*x**3"), 3, Experiment(seconds=30.0, noise=noise)))
+    assert case.record_filter.cutoffs_hz == (None,)
+    assert not case.measured.findings
 
 
 def test_harmonics_of_a_stride_are_not_taken_for_the_fall_of_a_filter():
@@ -59,7 +59,7 @@ def test_harmonics_of_a_stride_are_not_taken_for_the_fall_of_a_filter():
     seen = machine.observe(drive, rows, machine.run(drive, rows, raw.observed.shape[1] - 1)[0])
     noisy = seen + 0.002 * rng.standard_normal(seen.shape)
     passed = sosfiltfilt(butter(2, 3.0, fs=RATE, output="sos"), noisy, axis=1)
-    found = set_up_problem(model, replace(raw, drive=drive, observed=passed)).record_filter.cutoffs_hz[0]
+    found = set_up_case(model, replace(raw, drive=drive, observed=passed)).record_filter.cutoffs_hz[0]
     assert found == pytest.approx(3.0, rel=0.1)
 
 
@@ -70,17 +70,17 @@ def test_of_a_linear_system_whose_inputs_were_filtered_alike_nothing_is_filtered
     pushes = [one + rng.normal(0, 0.3, one.shape) for one in raw.drive.inputs]
     both = [sosfiltfilt(sections, one, axis=1) for one in (np.array(pushes), raw.observed)]
     passed = replace(raw, drive=Drive.of(list(both[0]), RATE), observed=both[1])
-    assert set_up_problem(mass(), passed).record_filter.cutoffs_hz == (None,)
+    assert set_up_case(mass(), passed).record_filter.cutoffs_hz == (None,)
     alone = replace(raw, observed=both[1])
-    assert set_up_problem(mass(), alone).record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
+    assert set_up_case(mass(), alone).record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
 
 
 def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
     truth = with_load("-60*max(0, x - 0.25)", "one_sided_spring")
     found = {}
     for lowpass in (0.0, 3.0):
-        problem = set_up_problem(mass(), record(truth, 5, Experiment(seconds=30.0, lowpass_hz=lowpass)))
-        now = problem.search.extended(problem.as_read())[1]
+        case = set_up_case(mass(), record(truth, 5, Experiment(seconds=30.0, lowpass_hz=lowpass)))
+        now = case.search.extended(case.as_read())[1]
         found[lowpass] = abs(next(iter(now.model.parts[0].values.values())))
     assert now.labels == ("one_sided_spring@load",)
     assert found[3.0] == pytest.approx(found[0.0], rel=0.05)

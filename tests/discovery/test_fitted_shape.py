@@ -5,21 +5,21 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import scale_of
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fitted_shape, shapes_at
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.simulation_file import simulation_of
 
 
 @pytest.fixture(scope="module")
 def bumpy():
-    problem = set_up_problem(mass(), record(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), 3, Experiment(trials=6)))
-    return problem, problem.as_read()
+    case = set_up_case(mass(), record(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), 3, Experiment(trials=6)))
+    return case, case.as_read()
 
 
 def test_shapes_over_place_speed_and_both_are_tried(bumpy):
-    problem, now = bumpy
-    shapes = shapes_at(problem.search.places[0], now, problem.search)
+    case, now = bumpy
+    shapes = shapes_at(case.search.places[0], now, case.search)
     assert {one.name for one in shapes} == {"unnamed"}
     assert len(shapes[0].pieces) == FLAT_BUMPS
     assert all(parsed(piece) for one in shapes for piece in one.pieces)
@@ -27,16 +27,16 @@ def test_shapes_over_place_speed_and_both_are_tried(bumpy):
 
 
 def test_bumps_lie_where_the_run_goes(bumpy):
-    problem, now = bumpy
-    first = shapes_at(problem.search.places[0], now, problem.search)[0]
+    case, now = bumpy
+    first = shapes_at(case.search.places[0], now, case.search)[0]
     x = now.model.fit.states[..., 0]
     centres = [float(piece.split(" - ")[1].split("/")[0].strip("()")) for piece in first.pieces]
     assert x.min() <= min(centres) < 0 < max(centres) <= x.max()
 
 
 def test_powers_of_two_states_are_tried_up_to_the_third_together(bumpy):
-    problem, now = bumpy
-    (powers,) = [one for one in shapes_at(problem.search.places[0], now, problem.search) if "1" in one.pieces]
+    case, now = bumpy
+    (powers,) = [one for one in shapes_at(case.search.places[0], now, case.search) if "1" in one.pieces]
     assert len(powers.pieces) == 10
     assert max(sum(map(int, re.findall(r"\*\*(\d)", piece))) for piece in powers.pieces) == 3
     x = now.model.fit.states[..., 0]
@@ -46,17 +46,17 @@ def test_powers_of_two_states_are_tried_up_to_the_third_together(bumpy):
 
 def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
     strides = simulation_of(MASS.replace("inputs.push", "inputs.phase").replace("(push +", "(phase +"), "stride.toml")
-    problem = set_up_problem(strides, record(mass(), 0, Experiment(2, 4.0)))
-    shapes = shapes_at(problem.search.places[0], problem.as_read(), problem.search)
+    case = set_up_case(strides, record(mass(), 0, Experiment(2, 4.0)))
+    shapes = shapes_at(case.search.places[0], case.as_read(), case.search)
     assert any("phase" in one.pieces[0] for one in shapes)
 
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
-    problem, now = bumpy
-    shape = fitted_shape(now, problem.search, scale_of(problem))
+    case, now = bumpy
+    shape = fitted_shape(now, case.search, scale_of(case))
     assert shape is not None
     (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
-    plain = now.under(shape, problem.search.base)
+    plain = now.under(shape, case.search.base)
     before, after, noise = plain.model.fit.misfit, shape.model.fit.misfit, shape.model.fit.white.size
     assert 1 - (after - noise) / (before - noise) > 0.7

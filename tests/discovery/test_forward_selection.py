@@ -5,9 +5,9 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import beside_others, exchanged, pruned, select_forward, settled
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel
 
@@ -22,65 +22,63 @@ def test_what_is_hidden_is_let_in_alone(named):
     assert now.gained > 100
 
 
-def _with(problem, as_read, *parts):
-    return ScoredModel(
-        fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts), as_read.shooting
-    )
+def _with(case, as_read, *parts):
+    return ScoredModel(fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts), as_read.shooting)
 
 
-def _idle_and_true(problem, as_read, cubic):
-    return _with(problem, as_read, Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
+def _idle_and_true(case, as_read, cubic):
+    return _with(case, as_read, Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
 
 
-def _wrong_and_idle(problem, as_read):
+def _wrong_and_idle(case, as_read):
     quadratic = Candidate("missing_physics", "port", "load", "quadratic_stiffness", ("x**2",), None, "x")
-    return _with(problem, as_read, Part(quadratic, {"factor": 0.0}), Part(DAMPER, {"factor": 0.0}))
+    return _with(case, as_read, Part(quadratic, {"factor": 0.0}), Part(DAMPER, {"factor": 0.0}))
 
 
-def test_an_explanation_that_earns_nothing_is_thrown_out(problem, as_read, cubic):
-    assert pruned(problem.search, _idle_and_true(problem, as_read, cubic), CRITERIA.margin).labels == (
+def test_an_explanation_that_earns_nothing_is_thrown_out(case, as_read, cubic):
+    assert pruned(case.search, _idle_and_true(case, as_read, cubic), CRITERIA.margin).labels == (
         "cubic_stiffness@load",
     )
 
 
-def test_a_wrong_explanation_is_exchanged_for_the_true_one(problem, as_read):
-    assert "cubic_stiffness@load" in exchanged(problem.search, _wrong_and_idle(problem, as_read), set()).labels
+def test_a_wrong_explanation_is_exchanged_for_the_true_one(case, as_read):
+    assert "cubic_stiffness@load" in exchanged(case.search, _wrong_and_idle(case, as_read), set()).labels
 
 
-def test_what_is_settled_holds_the_true_one_alone(problem, as_read):
-    now = settled(problem.search, _wrong_and_idle(problem, as_read), CRITERIA.margin, set())
+def test_what_is_settled_holds_the_true_one_alone(case, as_read):
+    now = settled(case.search, _wrong_and_idle(case, as_read), CRITERIA.margin, set())
     assert now.labels == ("cubic_stiffness@load",)
 
 
-def test_beside_what_was_explored_already_nothing_is_sought_again(problem, as_read):
-    now = _wrong_and_idle(problem, as_read)
-    explored = {problem.search.without(now, number).model.explanations for number in range(2)}
+def test_beside_what_was_explored_already_nothing_is_sought_again(case, as_read):
+    now = _wrong_and_idle(case, as_read)
+    explored = {case.search.without(now, number).model.explanations for number in range(2)}
     assert len(explored) == 2
-    assert exchanged(problem.search, now, explored) is now
+    assert exchanged(case.search, now, explored) is now
 
 
 @pytest.fixture(scope="module")
 def two():
-    """Return a problem into two springs, and the simulation as read."""
-    problem = set_up_problem(mass(), record(with_load("-14*x**3 - 9*x**2"), 3, Experiment(seconds=12.0)))
-    return problem, problem.as_read()
+    """Return a case into two springs, and the simulation as read."""
+    case = set_up_case(mass(), record(with_load("-14*x**3 - 9*x**2"), 3, Experiment(seconds=12.0)))
+    return case, case.as_read()
 
 
 def test_two_effects_are_both_found_with_their_numbers(two):
-    problem, as_read = two
-    now, _ = select_forward(problem.search, as_read, 3)
+    case, as_read = two
+    now, _ = select_forward(case.search, as_read, 3)
     assert sorted(now.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
     values = {part.candidate.name: part.values["factor"] for part in now.model.parts}
     assert values == pytest.approx({"cubic_stiffness": -14.0, "quadratic_stiffness": -9.0}, rel=0.05)
 
 
 def test_a_pair_whose_first_was_not_the_best_alone_is_found_beside_it(two):
-    problem, as_read = two
-    wrong = _wrong_and_idle(problem, as_read)
-    firsts = ranked(problem.search.extended(as_read)[1:], problem.search.candidates)
+    case, as_read = two
+    wrong = _wrong_and_idle(case, as_read)
+    firsts = ranked(case.search.extended(as_read)[1:], case.search.candidates)
     cubic = [one for one in firsts if one.labels == ("cubic_stiffness@load",)]
     explored = set()
-    pair = beside_others(problem.search, wrong, [*cubic, *cubic], explored)
+    pair = beside_others(case.search, wrong, [*cubic, *cubic], explored)
     assert sorted(pair.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
     assert explored == {cubic[0].model.explanations}
 
@@ -88,9 +86,9 @@ def test_a_pair_whose_first_was_not_the_best_alone_is_found_beside_it(two):
 @pytest.mark.slow
 def test_what_explains_less_than_a_simulation_may_err_is_not_added():
     """The small spring is found where the simulation is exact, and left where it says that it errs by a thousandth."""
-    problem = set_up_problem(mass(), record(with_load("-14*x**3 - 0.5*x**2"), 3, Experiment(seconds=12.0)))
-    as_read, found = problem.as_read(), []
+    case = set_up_case(mass(), record(with_load("-14*x**3 - 0.5*x**2"), 3, Experiment(seconds=12.0)))
+    as_read, found = case.as_read(), []
     for share in (0.0, 1e-3):
-        search = replace(problem.search, base=replace(problem.search.base, inexact=share))
+        search = replace(case.search, base=replace(case.search.base, inexact=share))
         found.append(select_forward(search, as_read, 3)[0].labels)
     assert found == [("cubic_stiffness@load", "quadratic_stiffness@load"), ("cubic_stiffness@load",)]

@@ -5,10 +5,10 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 from texts import says
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.places import places_of
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.results.discovery import Estimate, FoundEffect
 from gaitdisc.simulation.refusal import SimulationError
@@ -47,10 +47,10 @@ def test_a_state_that_nothing_sees_and_the_port_that_moves_it_are_said(measured)
 
 def test_a_parameter_without_influence_is_no_candidate(measured):
     more = MASS.replace("[ports.load]", "[parameters.colour]\nvalue = 3.0\n[ports.load]")
-    problem = set_up_problem(simulation_of(more), measured)
-    assert says(problem.measured.findings[-1].what, "'colour'", "no", "what is measured")
-    assert all(one.place != "colour" for one in problem.search.candidates)
-    assert any(one.place == "k" for one in problem.search.candidates)
+    case = set_up_case(simulation_of(more), measured)
+    assert says(case.measured.findings[-1].what, "'colour'", "no", "what is measured")
+    assert all(one.place != "colour" for one in case.search.candidates)
+    assert any(one.place == "k" for one in case.search.candidates)
 
 
 def test_where_no_port_shows_the_simulation_is_refused(measured):
@@ -67,19 +67,19 @@ def test_an_observation_that_never_changes_is_refused(measured, expression):
 
 def test_a_port_that_shows_only_late_has_influence():
     slow = MASS.replace("k*x", "k*delay(x, 5)")
-    problem = set_up_problem(simulation_of(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
-    assert [place.name for place in problem.search.places] == ["load"]
-    assert problem.measured.findings == ()
+    case = set_up_case(simulation_of(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
+    assert [place.name for place in case.search.places] == ["load"]
+    assert case.measured.findings == ()
 
 
 def test_all_has_influence_where_all_is_as_it_should_be(measured):
-    assert set_up_problem(mass(), measured).measured.findings == ()
+    assert set_up_case(mass(), measured).measured.findings == ()
 
 
 def test_pushes_that_show_nowhere_explain_nothing(measured):
-    problem = set_up_problem(simulation_of(MUTED), measured)
-    now = problem.as_read()
-    places = places_of(problem.search.base, compile_simulation(problem.search.base))
+    case = set_up_case(simulation_of(MUTED), measured)
+    now = case.as_read()
+    places = places_of(case.search.base, compile_simulation(case.search.base))
     best, muted = rank_process_noise(now.shooting, now.model, places)
     assert (best.place.name, muted.place.name) == ("load", "wind")
     assert np.isfinite(best.bic) and np.isinf(muted.bic)

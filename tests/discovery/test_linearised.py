@@ -10,8 +10,8 @@ SMALL = 1e-4
 
 
 @pytest.fixture(scope="module")
-def line(problem, as_read):
-    return linearise(as_read.shooting, as_read.model.simulation, problem.search.places, as_read.model.fit)
+def line(case, as_read):
+    return linearise(as_read.shooting, as_read.model.simulation, case.search.places, as_read.model.fit)
 
 
 def _run(as_read, simulation):
@@ -51,8 +51,8 @@ def test_steps_land_on_the_run(as_read, line):
     np.testing.assert_allclose(line.landed, as_read.model.fit.states[:, 1:], rtol=1e-9)
 
 
-def test_pushes_have_parameters_that_are_zero(problem, as_read):
-    machine = pushable(as_read.model.simulation, problem.search.places)
+def test_pushes_have_parameters_that_are_zero(case, as_read):
+    machine = pushable(as_read.model.simulation, case.search.places)
     assert machine.parameters[-1] == "push_0"
     assert machine.defaults[-1] == 0.0
 

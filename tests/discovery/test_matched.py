@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.matched import matched
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.errors import GaitdiscError, SamplingError
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.parts import Sensor
@@ -85,7 +85,7 @@ def test_what_does_not_fit_is_refused_in_words(measured, wrong):
 def test_of_the_observations_those_that_were_measured_are_kept(measured):
     both = mass().with_observation("v", "v")
     assert matched(both, measured).observations == (("x", "x"),)
-    assert set_up_problem(both, measured).search.base.observations == (("x", "x"),)
+    assert set_up_case(both, measured).search.base.observations == (("x", "x"),)
     assert matched(mass(), measured) is not None and matched(mass(), measured) == mass()
 
 
@@ -113,7 +113,7 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
 def test_delays_of_the_users_own_effects_are_refused_as_those_of_the_file(measured, piece, words):
     with pytest.raises(SimulationError, match=words):
         discover(mass(), measured, Request((Shape("mine", (piece,)),)))
-    discover_begins = set_up_problem(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
+    discover_begins = set_up_case(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
     assert any(one.name == "mine" for one in discover_begins.search.candidates)
 
 

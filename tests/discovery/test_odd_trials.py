@@ -7,9 +7,9 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, neuron, record, two_rods, with_load
 from texts import says
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows
@@ -37,7 +37,7 @@ def moved_in_time(measured, trial, samples):
 
 
 def found_in(simulation, measured):
-    return [(one.trial, one.change, one.channel) for one in odd_trials(set_up_problem(simulation, measured))]
+    return [(one.trial, one.change, one.channel) for one in odd_trials(set_up_case(simulation, measured))]
 
 
 @pytest.mark.parametrize("trial", [0, 2])
@@ -72,9 +72,9 @@ CLEAN = {
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-@pytest.mark.parametrize("case", CLEAN)
-def test_trials_that_were_recorded_alike_draw_no_finding(case, seed):
-    given, truth, how = CLEAN[case]
+@pytest.mark.parametrize("name", CLEAN)
+def test_trials_that_were_recorded_alike_draw_no_finding(name, seed):
+    given, truth, how = CLEAN[name]
     assert found_in(given, record(truth, seed, how)) == []
 
 
@@ -107,12 +107,12 @@ def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
 
 def test_of_two_trials_none_is_the_odd_one(cubic):
     two = turned(cubic.selected([0, 1]), 1)
-    assert agreeing_trials(set_up_problem(mass(), two), two) is two
+    assert agreeing_trials(set_up_case(mass(), two), two) is two
 
 
 def test_two_against_two_are_left_as_they_are(cubic):
     both = turned(turned(cubic, 0), 1)
-    assert agreeing_trials(set_up_problem(mass(), both), both) is both
+    assert agreeing_trials(set_up_case(mass(), both), both) is both
 
 
 def test_trials_are_shifted_against_their_inputs(cubic):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.own_states import followed, with_own_states
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.running import compile_simulation
 
@@ -15,7 +15,7 @@ from gaitdisc.simulation.running import compile_simulation
 @pytest.fixture(scope="module")
 def shooting():
     measured = record(mass(), 3, Experiment(trials=2, seconds=12.0, noise=0.0))
-    return set_up_problem(mass(), measured).as_read().shooting
+    return set_up_case(mass(), measured).as_read().shooting
 
 
 def with_lag(seconds):

@@ -6,9 +6,9 @@ from hidden_in_a_mass import MASS, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.prior import prior_of
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.simulation_file import simulation_of
 
 NOISE = 0.013
@@ -25,9 +25,9 @@ def measured():
 
 
 def _fitted(simulation, measured, parts=()):
-    problem = set_up_problem(simulation, measured)
-    shooting = problem.shooting(problem.segments(problem.learned)).with_noise(white_noise(np.array([NOISE])))
-    return fit_model(shooting, simulation, parts, problem.guess.starts(shooting.segments))
+    case = set_up_case(simulation, measured)
+    shooting = case.shooting(case.segments(case.learned)).with_noise(white_noise(np.array([NOISE])))
+    return fit_model(shooting, simulation, parts, case.guess.starts(shooting.segments))
 
 
 def test_half_the_width_is_two_standard_deviations():
@@ -67,8 +67,8 @@ def test_only_a_wrong_parameter_leaves_its_bounds(measured):
 
 
 def test_few_data_leave_a_number_where_the_file_has_it(measured):
-    problem = set_up_problem(bounded(k=22.0, low=21.9, high=22.1), measured)
-    shooting = problem.shooting(problem.segments((0,))).with_noise(white_noise(np.array([50.0])))
-    model = fit_model(shooting, problem.search.base, (), problem.guess.starts(shooting.segments))
+    case = set_up_case(bounded(k=22.0, low=21.9, high=22.1), measured)
+    shooting = case.shooting(case.segments((0,))).with_noise(white_noise(np.array([50.0])))
+    model = fit_model(shooting, case.search.base, (), case.guess.starts(shooting.segments))
     assert model.fit.values[1] == pytest.approx(22.0, abs=1e-3)
     assert np.sqrt(model.fit.covariance[0, 0]) == pytest.approx(0.05, rel=0.01)

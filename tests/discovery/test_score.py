@@ -5,24 +5,24 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.score import Scorer
 
 
 def _inquiry(truth, late=0):
-    problem = set_up_problem(mass(), record(truth, 5, Experiment(seconds=10.0, late=late)))
-    return problem, problem.as_read()
+    case = set_up_case(mass(), record(truth, 5, Experiment(seconds=10.0, late=late)))
+    return case, case.as_read()
 
 
-def _scores(problem, now):
+def _scores(case, now):
     model = now.model
-    scorer = Scorer(now.shooting, model.simulation, model.machine, model.fit, problem.search.places, problem.rhythm)
-    return {one.candidate.label: one for one in reversed(scorer.scores(problem.search.candidates))}
+    scorer = Scorer(now.shooting, model.simulation, model.machine, model.fit, case.search.places, case.rhythm)
+    return {one.candidate.label: one for one in reversed(scorer.scores(case.search.candidates))}
 
 
-def _fall(problem, now, score):
+def _fall(case, now, score):
     part = Part(score.candidate, score.values)
-    refitted = fit_model(now.shooting, problem.search.base, (part,), now.model.fit.starts)
+    refitted = fit_model(now.shooting, case.search.base, (part,), now.model.fit.starts)
     return now.model.fit.misfit - refitted.fit.misfit, refitted.parts[0].values
 
 
@@ -31,53 +31,53 @@ def _fall(problem, now, score):
     [("0.15", "constant_load@load"), ("-0.3*x", "linear_stiffness@load"), ("-0.2*x**3", "cubic_stiffness@load")],
 )
 def test_of_a_small_effect_the_score_is_the_fall_of_the_misfit_after_the_refit(term, label):
-    problem, now = _inquiry(with_load(term))
-    score = _scores(problem, now)[label]
-    fall, values = _fall(problem, now, score)
+    case, now = _inquiry(with_load(term))
+    score = _scores(case, now)[label]
+    fall, values = _fall(case, now, score)
     assert score.gain == pytest.approx(fall, rel=0.03)
     assert score.values["factor"] == pytest.approx(values["factor"], rel=0.03)
 
 
 def test_a_wrong_number_and_a_wrong_sensor_are_scored_alike():
-    problem, now = _inquiry(mass().with_values({"k": 24.2}).with_observation("x", "x + 0.002"))
-    scores = _scores(problem, now)
+    case, now = _inquiry(mass().with_values({"k": 24.2}).with_observation("x", "x + 0.002"))
+    scores = _scores(case, now)
     for label, slot in (("wrong_parameter@k", "value"), ("sensor_offset@x", "offset")):
-        fall, values = _fall(problem, now, scores[label])
+        fall, values = _fall(case, now, scores[label])
         assert scores[label].gain == pytest.approx(fall, rel=0.05)
         assert scores[label].values[slot] == pytest.approx(values[slot], rel=0.05)
 
 
 def test_the_best_delay_of_the_grid_is_near_the_true_one():
-    problem, now = _inquiry(mass(), late=6)
-    scores = _scores(problem, now)
+    case, now = _inquiry(mass(), late=6)
+    scores = _scores(case, now)
     assert scores["input_delay@push"].values["seconds"] == pytest.approx(0.12, abs=0.05)
     assert scores["input_delay@push"].gain > scores["input_gain@push"].gain
 
 
-def test_an_effect_that_is_let_in_already_promises_nothing_more(problem, as_read, cubic):
+def test_an_effect_that_is_let_in_already_promises_nothing_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    model = fit_model(as_read.shooting, problem.search.base, (part,), as_read.model.fit.starts)
-    before, after = _scores(problem, as_read), _scores(problem, replace(as_read, model=model))
+    model = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    before, after = _scores(case, as_read), _scores(case, replace(as_read, model=model))
     assert after["cubic_stiffness@load"].gain < 1e-3 * before["cubic_stiffness@load"].gain
 
 
-def test_scores_are_in_order_and_one_for_each_candidate(problem, as_read):
+def test_scores_are_in_order_and_one_for_each_candidate(case, as_read):
     model = as_read.model
-    scorer = Scorer(as_read.shooting, model.simulation, model.machine, model.fit, problem.search.places, problem.rhythm)
-    scores = scorer.scores(problem.search.candidates)
-    assert len(scores) <= len(problem.search.candidates)
+    scorer = Scorer(as_read.shooting, model.simulation, model.machine, model.fit, case.search.places, case.rhythm)
+    scores = scorer.scores(case.search.candidates)
+    assert len(scores) <= len(case.search.candidates)
     assert np.all(np.diff([one.gain for one in scores]) <= 0)
 
 
 def test_a_sensor_that_lags_already_is_not_delayed_again():
     lagging = mass().with_observation("x", "delay(x, 0.05)")
-    problem = set_up_problem(lagging, record(lagging, 5, Experiment(seconds=8.0)))
-    assert "sensor_lag@x" not in _scores(problem, problem.as_read())
+    case = set_up_case(lagging, record(lagging, 5, Experiment(seconds=8.0)))
+    assert "sensor_lag@x" not in _scores(case, case.as_read())
 
 
-def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(problem, as_read):
-    model, candidates = as_read.model, problem.search.candidates
-    scorer = Scorer(as_read.shooting, model.simulation, model.machine, model.fit, problem.search.places, problem.rhythm)
+def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(case, as_read):
+    model, candidates = as_read.model, case.search.candidates
+    scorer = Scorer(as_read.shooting, model.simulation, model.machine, model.fit, case.search.places, case.rhythm)
     left = scorer.left_without_each(candidates)
     for trial in np.unique(as_read.shooting.segments.trial):
         some = np.flatnonzero(as_read.shooting.segments.trial != trial)
@@ -93,11 +93,11 @@ def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(probl
 
 
 def test_of_a_great_many_candidates_those_worth_it_are_scored_as_all_are(monkeypatch):
-    problem, now = _inquiry(with_load("-0.3*x"))
-    every = _scores(problem, now)
+    case, now = _inquiry(with_load("-0.3*x"))
+    every = _scores(case, now)
     monkeypatch.setattr("gaitdisc.discovery.score.MOST", len(every) // 2)
     monkeypatch.setattr("gaitdisc.discovery.score.KEPT", len(every) // 3)
-    some = _scores(problem, now)
+    some = _scores(case, now)
     assert len(every) // 4 < len(some) <= len(every) // 3
     best = max(every.values(), key=lambda one: one.gain)
     assert max(some.values(), key=lambda one: one.gain).candidate.label == best.candidate.label

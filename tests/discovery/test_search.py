@@ -39,29 +39,27 @@ def _with(model, candidate, **values):
         (LAG, {"seconds": -0.1}, False),
     ],
 )
-def test_a_number_has_to_lie_where_it_means_what_its_name_says(problem, as_read, candidate, values, sensible):
-    assert problem.search.sensible(_with(as_read.model, candidate, **values)) is sensible
+def test_a_number_has_to_lie_where_it_means_what_its_name_says(case, as_read, candidate, values, sensible):
+    assert case.search.sensible(_with(as_read.model, candidate, **values)) is sensible
 
 
-def test_a_fit_that_failed_is_not_sensible(problem, as_read):
+def test_a_fit_that_failed_is_not_sensible(case, as_read):
     failed = replace(as_read.model.fit, white=as_read.model.fit.white * float("inf"))
-    assert not problem.search.sensible(replace(as_read.model, fit=failed))
+    assert not case.search.sensible(replace(as_read.model, fit=failed))
 
 
-def _both(problem, as_read, cubic):
+def _both(case, as_read, cubic):
     parts = (Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
-    return ScoredModel(
-        fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts), as_read.shooting
-    )
+    return ScoredModel(fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts), as_read.shooting)
 
 
-def test_less_one_explanation_the_others_stay(problem, as_read, cubic):
-    both = _both(problem, as_read, cubic)
-    assert problem.search.without(both, 0).labels == ("viscous_damping@load",)
-    assert problem.search.without(both, 1).labels == ("cubic_stiffness@load",)
+def test_less_one_explanation_the_others_stay(case, as_read, cubic):
+    both = _both(case, as_read, cubic)
+    assert case.search.without(both, 0).labels == ("viscous_damping@load",)
+    assert case.search.without(both, 1).labels == ("cubic_stiffness@load",)
 
 
-def test_a_number_lost_in_its_error_is_not_certain(problem, as_read, cubic):
-    both = _both(problem, as_read, cubic)
+def test_a_number_lost_in_its_error_is_not_certain(case, as_read, cubic):
+    both = _both(case, as_read, cubic)
     assert not is_certain(both.model)
-    assert is_certain(problem.search.without(both, 1).model)
+    assert is_certain(case.search.without(both, 1).model)

@@ -6,44 +6,44 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.held_out import free_run_error, grows_along_runs
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.scored_model import scored
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_relatives
 
 
 def _problem(truth, how=None):
-    problem = set_up_problem(mass(), record(truth, 3, how or Experiment(seconds=12.0)))
-    return problem, problem.as_read()
+    case = set_up_case(mass(), record(truth, 3, how or Experiment(seconds=12.0)))
+    return case, case.as_read()
 
 
-def _with(problem, as_read, label, **values):
+def _with(case, as_read, label, **values):
     """Return the simulation with one explanation in it, fitted from its numbers."""
-    candidate = next(one for one in problem.search.candidates if one.label == label)
+    candidate = next(one for one in case.search.candidates if one.label == label)
     parts = (Part(candidate, values),)
-    model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts)
-    return scored(as_read.shooting, problem.search.base, model)
+    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
+    return scored(as_read.shooting, case.search.base, model)
 
 
 def test_hysteresis_that_yields_within_a_step_is_dry_friction():
-    problem, as_read = _problem(with_load("-1.5*sign(v)"))
-    candidate = next(one for one in problem.search.candidates if one.label == "hysteresis@load")
+    case, as_read = _problem(with_load("-1.5*sign(v)"))
+    candidate = next(one for one in case.search.candidates if one.label == "hysteresis@load")
     values = dict.fromkeys(candidate.slots, 0.003) | {"factor": -500.0}
-    general = _with(problem, as_read, "hysteresis@load", **values)
-    verdict = Verdict("missing_physics", general, (), proof=held_out_proof(problem, as_read, general))
-    assert prefer_relatives(problem, as_read, verdict).found.labels == ("coulomb_friction@load",)
+    general = _with(case, as_read, "hysteresis@load", **values)
+    verdict = Verdict("missing_physics", general, (), proof=held_out_proof(case, as_read, general))
+    assert prefer_relatives(case, as_read, verdict).found.labels == ("coulomb_friction@load",)
 
 
 def test_free_runs_of_what_is_right_leave_the_noise_and_refuse_what_is_wrong():
-    problem, as_read = _problem(with_load("-14*x**3"))
-    right = _with(problem, as_read, "cubic_stiffness@load", factor=-14.0)
+    case, as_read = _problem(with_load("-14*x**3"))
+    right = _with(case, as_read, "cubic_stiffness@load", factor=-14.0)
     wrong = replace(right, model=replace(right.model, fit=replace(right.model.fit, values=-8 * right.model.fit.values)))
-    assert free_run_error(problem, right) < 0.01 * free_run_error(problem, as_read)
-    proof = held_out_proof(problem, as_read, right)
+    assert free_run_error(case, right) < 0.01 * free_run_error(case, as_read)
+    proof = held_out_proof(case, as_read, right)
     verdict = Verdict("missing_physics", wrong, (right,), proof=proof)
-    assert look_at_whole_runs(problem, as_read, verdict)[1].found is right
-    _, nothing = look_at_whole_runs(problem, as_read, replace(verdict, rivals=()))
+    assert look_at_whole_runs(case, as_read, verdict)[1].found is right
+    _, nothing = look_at_whole_runs(case, as_read, replace(verdict, rivals=()))
     assert nothing.word == "no_gap" and not nothing.found.model.parts
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, neuron, record
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 
@@ -13,11 +13,11 @@ COVERED = 20
 
 
 def _shooting(seed=0, noise=0.02, value=24.0):
-    problem = set_up_problem(mass(), record(mass().with_values({"k": value}), seed, Experiment(3, 8.0, noise)))
-    segments = problem.segments((0, 1, 2))
-    shooting = problem.shooting(segments)
-    size = max(noise, 1e-6) * np.nanstd(problem.measured.observed)
-    return shooting.with_noise(white_noise(np.array([size]))), problem.guess.starts(segments)
+    case = set_up_case(mass(), record(mass().with_values({"k": value}), seed, Experiment(3, 8.0, noise)))
+    segments = case.segments((0, 1, 2))
+    shooting = case.shooting(segments)
+    size = max(noise, 1e-6) * np.nanstd(case.measured.observed)
+    return shooting.with_noise(white_noise(np.array([size]))), case.guess.starts(segments)
 
 
 def test_a_parameter_that_is_wrong_in_the_file_is_found_without_noise():
@@ -37,11 +37,11 @@ def test_start_states_are_found_from_far_away():
 
 def test_a_segment_that_began_on_the_wrong_side_of_a_threshold_is_begun_elsewhere():
     truth = neuron().with_values({"b": 1.0})
-    problem = set_up_problem(neuron(), record(truth, 2, Experiment(seconds=20.0, noise=0.01)))
-    segments = problem.segments(problem.learned)
-    size = white_noise(0.01 * np.nanstd(problem.measured.observed, axis=(0, 1)))
-    shooting, machine = problem.shooting(segments).with_noise(size), compile_simulation(neuron())
-    fit = shooting.fitted(machine, ("b",), machine.defaults, problem.guess.starts(segments), 30)
+    case = set_up_case(neuron(), record(truth, 2, Experiment(seconds=20.0, noise=0.01)))
+    segments = case.segments(case.learned)
+    size = white_noise(0.01 * np.nanstd(case.measured.observed, axis=(0, 1)))
+    shooting, machine = case.shooting(segments).with_noise(size), compile_simulation(neuron())
+    fit = shooting.fitted(machine, ("b",), machine.defaults, case.guess.starts(segments), 30)
     assert (fit.misfits < 1.6 * fit.white.shape[1]).all()
     assert fit.values[machine.parameters.index("b")] == pytest.approx(1.0, abs=1e-3)
 
@@ -118,9 +118,9 @@ FILTERED = Experiment(3, 10.0, 0.02, lowpass_hz=0.7)
 
 def _filtered(stated):
     simulation = mass().with_sensor(Sensor("x", lowpass=0.7)) if stated else mass()
-    problem = set_up_problem(simulation, record(mass().with_values({"k": 31.0, "c": 1.4}), 5, FILTERED))
-    segments = problem.segments((0, 1, 2))
-    return problem.shooting(segments), problem.guess.starts(segments)
+    case = set_up_case(simulation, record(mass().with_values({"k": 31.0, "c": 1.4}), 5, FILTERED))
+    segments = case.segments((0, 1, 2))
+    return case.shooting(segments), case.guess.starts(segments)
 
 
 @pytest.mark.parametrize("stated", [True, False])

@@ -7,24 +7,24 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.fitted_shape import fitted_shape
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.symbolic_regression import effect_of, read_instead, read_shape
 
 
 def asked(term):
-    problem = set_up_problem(mass(), record(with_load(term), 3, Experiment(seconds=8.0)))
-    return problem, problem.as_read()
+    case = set_up_case(mass(), record(with_load(term), 3, Experiment(seconds=8.0)))
+    return case, case.as_read()
 
 
 @pytest.fixture(scope="module")
 def damped():
     """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
-    problem, as_read = asked("-8*x**2*v")
-    shape = fitted_shape(as_read, problem.search, scale_of(problem))
-    return problem, as_read, Verdict("unnamed", shape, (), proof=held_out_proof(problem, as_read, shape))
+    case, as_read = asked("-8*x**2*v")
+    shape = fitted_shape(as_read, case.search, scale_of(case))
+    return case, as_read, Verdict("unnamed", shape, (), proof=held_out_proof(case, as_read, shape))
 
 
 def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
@@ -45,17 +45,17 @@ def test_a_reading_that_is_an_effect_of_the_catalogue_is_said_to_be_one(damped):
 
 
 def test_what_is_no_learned_shape_is_not_read(damped):
-    problem, as_read, verdict = damped
+    case, as_read, verdict = damped
     nothing = Verdict("no_gap", as_read, ())
-    assert read_shape(problem, as_read, nothing) is nothing
+    assert read_shape(case, as_read, nothing) is nothing
     unproven = Verdict("unnamed", verdict.found, ())
-    assert read_shape(problem, as_read, unproven) is unproven
+    assert read_shape(case, as_read, unproven) is unproven
 
 
 def test_names_stay_where_no_reading_has_fewer_numbers(damped):
-    problem, as_read, verdict = damped
+    case, as_read, verdict = damped
     one = Verdict("missing_physics", verdict.found, ())
-    assert read_instead(problem, as_read, one) is one
+    assert read_instead(case, as_read, one) is one
 
 
 @pytest.mark.slow

@@ -7,9 +7,9 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 from texts import says
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.odd_trials import without_trial_apart
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.search import Search
 
 
@@ -44,11 +44,11 @@ def test_trials_that_were_recorded_alike_are_all_kept_after_one_search_at_most(m
     search = Search.extended
     monkeypatch.setattr(Search, "extended", lambda *a, **k: searched.append(1) or search(*a, **k))
     bump = with_load("-6*exp(-((x - 0.3)/0.2)**2)")  # of which no single explanation leaves mere noise
-    problem = set_up_problem(mass(), record(bump, 3, Experiment(seconds=10.0)))
-    assert without_trial_apart(problem) is problem.measured
+    case = set_up_case(mass(), record(bump, 3, Experiment(seconds=10.0)))
+    assert without_trial_apart(case) is case.measured
     assert len(searched) <= 1
 
 
 def test_of_three_trials_none_is_said_to_stand_apart():
-    problem = set_up_problem(mass(), record(mass(), 3, Experiment(trials=3, seconds=10.0)))
-    assert without_trial_apart(problem) is problem.measured
+    case = set_up_case(mass(), record(mass(), 3, Experiment(trials=3, seconds=10.0)))
+    assert without_trial_apart(case) is case.measured

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import RATE, mass, record, with_load
 
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.input_errors import with_constant_errors, with_drawn_errors
-from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.uncertain_inputs import covariance_by_inputs
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -84,12 +84,12 @@ def test_drawn_errors_have_the_stated_size_and_memory():
 @pytest.mark.parametrize("seen", ["x", "push + 3*x"])
 def test_the_covariance_is_that_of_runs_with_drawn_errors(seen):
     stated = _stating(mass().with_observation("x", seen), sd=2.0, wander=0.3)
-    problem = set_up_problem(stated, record(mass().with_observation("x", seen), SEED))
-    now = problem.as_read()
+    case = set_up_case(stated, record(mass().with_observation("x", seen), SEED))
+    now = case.as_read()
     fit, shooting = now.model.fit, now.shooting
-    covariance = covariance_by_inputs(problem, now, shooting, fit)[0]
+    covariance = covariance_by_inputs(case, now, shooting, fit)[0]
     runs = []
     for seed in range(600):
-        drawn = replace(shooting, measured=with_drawn_errors(problem.measured, stated, seed))
+        drawn = replace(shooting, measured=with_drawn_errors(case.measured, stated, seed))
         runs.append(drawn.run(now.model.machine, fit.starts[None], fit.values[None])[1][0, 0, :, 0])
     assert np.cov(np.array(runs).T) == pytest.approx(covariance, abs=0.2 * covariance.max())

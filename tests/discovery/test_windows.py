@@ -2,42 +2,42 @@ import numpy as np
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import as_read_on, near_runs, on_longer_runs, scale_of
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.problem import set_up_problem
 
 
 def begun(hidden):
-    problem = set_up_problem(mass(), record(hidden, 3, Experiment(noise=0.002)))
-    return problem, scale_of(problem)
+    case = set_up_case(mass(), record(hidden, 3, Experiment(noise=0.002)))
+    return case, scale_of(case)
 
 
 def test_a_simulation_that_agrees_is_fitted_to_whole_trials():
-    problem, scale = begun(mass())
-    found = near_runs(problem, scale)
-    assert found.shooting.segments.length == problem.longest
-    assert on_longer_runs(problem, scale, found) is None
+    case, scale = begun(mass())
+    found = near_runs(case, scale)
+    assert found.shooting.segments.length == case.longest
+    assert on_longer_runs(case, scale, found) is None
 
 
 def test_runs_are_halved_where_the_simulation_leaves_the_data():
-    problem, scale = begun(with_load("-60*x**3"))
-    found = near_runs(problem, scale)
-    assert found.shooting.segments.length < problem.longest
-    whole = near_runs_of_one_length(problem, scale)
+    case, scale = begun(with_load("-60*x**3"))
+    found = near_runs(case, scale)
+    assert found.shooting.segments.length < case.longest
+    whole = near_runs_of_one_length(case, scale)
     assert scale.relative(found.model.fit) < scale.relative(whole)
 
 
-def near_runs_of_one_length(problem, scale):
+def near_runs_of_one_length(case, scale):
     from gaitdisc.discovery.candidate_model import fit_model
     from gaitdisc.discovery.noise import white_noise
 
-    shooting = problem.learned_runs(problem.longest).with_noise(white_noise(scale.spread))
-    return fit_model(shooting, problem.search.base, (), problem.guess.starts(shooting.segments)).fit
+    shooting = case.learned_runs(case.longest).with_noise(white_noise(scale.spread))
+    return fit_model(shooting, case.search.base, (), case.guess.starts(shooting.segments)).fit
 
 
 def test_on_longer_runs_the_simulation_as_read_errs_by_the_spread_at_most():
-    problem, scale = begun(with_load("-60*x**3"))
-    short = near_runs(problem, scale)
-    again = as_read_on(problem, scale, short, short)
+    case, scale = begun(with_load("-60*x**3"))
+    short = near_runs(case, scale)
+    again = as_read_on(case, scale, short, short)
     assert np.ptp(again.errors) == 0.0
     assert 0 < again.gap <= np.sqrt(2.0) * (scale.spread / scale.size).max()
     assert CRITERIA.near == 0.25

@@ -1,4 +1,4 @@
-"""An identification problem: one simulation, one set of measured trials, what is fitted and what is held out."""
+"""A case: one simulation, one set of measured trials, what is fitted and what is held out."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is f
 
 
 @dataclass(frozen=True)
-class Problem:
+class Case:
     """A simulation, measured trials, and which of them are held out."""
 
     search: Search  # the simulation, and everything that could explain a gap
@@ -162,15 +162,15 @@ class Problem:
         return now
 
 
-def set_up_problem(
+def set_up_case(
     simulation: Simulation,
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
     progress: Callable[[str], None] = lambda _: None,
     possible: Callable[[Candidate], bool] = lambda _: True,
     alpha: float = ALPHA,
-) -> Problem:
-    """Prepare a problem: split the trials, list places and explanations, guess the states.
+) -> Case:
+    """Prepare a case: split the trials, list places and explanations, guess the states.
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
     possible: whether an explanation is possible here; all are by default
@@ -189,27 +189,27 @@ def set_up_problem(
     passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
     learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
-    problem = Problem(search, measured, learned, held_out, guess, passed, alpha)
-    return _less_idle(problem)
+    case = Case(search, measured, learned, held_out, guess, passed, alpha)
+    return _less_idle(case)
 
 
-def _less_idle(problem: Problem) -> Problem:
-    """Return the problem without the places that change nothing of what is measured, and a finding about each."""
-    search = problem.search
-    for periods in (1.0, problem.rhythm.duration / problem.rhythm.period):  # what comes late may need a whole trial
-        segments = problem.segments(problem.learned, periods)
-        idle = idle_parts(problem.shooting(segments), search.base, search.places, problem.guess.starts(segments))
+def _less_idle(case: Case) -> Case:
+    """Return the case without the places that change nothing of what is measured, and a finding about each."""
+    search = case.search
+    for periods in (1.0, case.rhythm.duration / case.rhythm.period):  # what comes late may need a whole trial
+        segments = case.segments(case.learned, periods)
+        idle = idle_parts(case.shooting(segments), search.base, search.places, case.guess.starts(segments))
         if idle == Idle():
-            return problem
+            return case
     refuse_idle(idle, search.base, search.places)
     kinds = {(place.kind, place.name) for place in search.places if place.name in idle.places}
     kinds |= {("parameter", name) for name in idle.parameters}
     places = tuple(place for place in search.places if place.name not in idle.places)
     candidates = tuple(one for one in search.candidates if (one.kind, one.place) not in kinds)
-    measured, kind = problem.measured, "port" if search.base.ports else "equation"
+    measured, kind = case.measured, "port" if search.base.ports else "equation"
     findings = (*measured.findings, *idle.findings(measured.source or search.base.title, kind))
     return replace(
-        problem,
+        case,
         search=replace(search, places=places, candidates=candidates),
         measured=replace(measured, findings=findings),
     )

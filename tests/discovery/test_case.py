@@ -5,10 +5,10 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.case import SHORT, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.noise import sensor_noise
-from gaitdisc.discovery.problem import SHORT, set_up_problem, split_in_time
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import scored
 from gaitdisc.report.discovery_page import write_discovery_report
@@ -38,9 +38,9 @@ x = "x"
 
 @pytest.mark.parametrize(("trials", "held"), [(2, (1,)), (4, (3,)), (8, (6, 7))])
 def test_of_four_trials_one_is_held_out(trials, held):
-    problem = set_up_problem(mass(), record(mass(), 0, Experiment(trials, 4.0)))
-    assert problem.held_out == held
-    assert problem.learned == tuple(range(held[0]))
+    case = set_up_case(mass(), record(mass(), 0, Experiment(trials, 4.0)))
+    assert case.held_out == held
+    assert case.learned == tuple(range(held[0]))
 
 
 def test_one_trial_is_split_in_time():
@@ -65,11 +65,11 @@ def ringing(lengths: tuple[int, ...], rate: float = 10.0) -> Measured:
 
 
 def test_runs_are_cut_again_as_they_were():
-    problem = set_up_problem(mass(), ringing((240, 200, 220, 268)))
-    for trials in (problem.learned, problem.held_out, (0, 1, 2, 3)):
+    case = set_up_case(mass(), ringing((240, 200, 220, 268)))
+    for trials in (case.learned, case.held_out, (0, 1, 2, 3)):
         for periods in np.linspace(0.5, 12, 60):
-            once = problem.segments(trials, periods)
-            again = problem.segments(trials, once.length / (problem.rhythm.period * problem.rhythm.rate))
+            once = case.segments(trials, periods)
+            again = case.segments(trials, once.length / (case.rhythm.period * case.rhythm.rate))
             assert (again.length, again.begin.tolist()) == (once.length, once.begin.tolist())
 
 
@@ -82,19 +82,19 @@ def test_trials_of_unequal_length_are_answered_written_and_drawn(tmp_path):
 
 
 def test_what_is_learned_and_what_is_held_out_share_no_sample():
-    problem = set_up_problem(mass(), record(mass(), 0, Experiment(1, 8.0)))
-    assert set(problem.segments(problem.learned).trial).isdisjoint(problem.segments(problem.held_out).trial)
+    case = set_up_case(mass(), record(mass(), 0, Experiment(1, 8.0)))
+    assert set(case.segments(case.learned).trial).isdisjoint(case.segments(case.held_out).trial)
 
 
-def test_runs_are_about_a_period_long(problem):
-    period = problem.rhythm.period * problem.rhythm.rate
-    assert problem.segments(problem.learned).length == pytest.approx(period, rel=0.25)
+def test_runs_are_about_a_period_long(case):
+    period = case.rhythm.period * case.rhythm.rate
+    assert case.segments(case.learned).length == pytest.approx(period, rel=0.25)
 
 
 def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
     unstable = simulation_of(FALLING, "falling.toml")
-    calm = set_up_problem(mass(), record(mass(), 0, Experiment(4, 6.0)))
-    wild = set_up_problem(unstable, record(mass(), 0, Experiment(4, 6.0)))
+    calm = set_up_case(mass(), record(mass(), 0, Experiment(4, 6.0)))
+    wild = set_up_case(unstable, record(mass(), 0, Experiment(4, 6.0)))
     assert calm.predictable_periods() == 1.0
     growing = wild.predictable_periods() * wild.rhythm.period
     assert np.cosh(np.sqrt(60) * growing) == pytest.approx(3.0, abs=2.0)
@@ -105,32 +105,32 @@ def test_as_read_only_the_starts_are_fitted(as_read):
     np.testing.assert_array_equal(as_read.model.fit.values, as_read.model.machine.defaults)
 
 
-def test_a_right_account_is_followed_over_half_a_trial_or_more(problem, as_read, cubic):
+def test_a_right_account_is_followed_over_half_a_trial_or_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = fit_model(as_read.shooting, problem.search.base, (part,), as_read.model.fit.starts)
-    longer = problem.lengthened(scored(as_read.shooting, problem.search.base, true))
-    assert longer.shooting.segments.length >= problem.measured.samples.min() / 2
+    true = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    longer = case.lengthened(scored(as_read.shooting, case.search.base, true))
+    assert longer.shooting.segments.length >= case.measured.samples.min() / 2
     assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
 
 
-def test_no_run_is_longer_than_wanted(problem, as_read):
+def test_no_run_is_longer_than_wanted(case, as_read):
     length = as_read.shooting.segments.length
-    assert problem.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
+    assert case.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
 
 
 def test_shapes_of_the_users_own_are_searched():
-    problem = set_up_problem(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
-    assert "quintic@load" in {one.label for one in problem.search.candidates}
+    case = set_up_case(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
+    assert "quintic@load" in {one.label for one in case.search.candidates}
 
 
 def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
     measured = record(mass(), 3, Experiment(trials=2, seconds=6.0))
     progress = mass().with_sensor(Sensor("x", "m", 0.03, 3.0))
-    problem = set_up_problem(progress, measured)
-    assert problem.record_filter == RecordFilter((3.0,), measured.rate)
-    assert problem.sensor_noise == pytest.approx(0.03 * problem.record_filter.gains)
-    assert problem.noise_floor(np.array([0.5])) == problem.sensor_noise
-    plain = set_up_problem(mass(), measured)
+    case = set_up_case(progress, measured)
+    assert case.record_filter == RecordFilter((3.0,), measured.rate)
+    assert case.sensor_noise == pytest.approx(0.03 * case.record_filter.gains)
+    assert case.noise_floor(np.array([0.5])) == case.sensor_noise
+    plain = set_up_case(mass(), measured)
     assert plain.sensor_noise == pytest.approx(sensor_noise(measured.observed))
     silent = replace(plain, record_filter=RecordFilter((3.0,), measured.rate))
     assert np.isnan(silent.sensor_noise).all() and silent.noise_floor(np.array([0.5])) == 0.5
@@ -138,7 +138,7 @@ def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
 
 def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
     measured = record(mass(), 3, Experiment(trials=3, seconds=1.6))
-    problem = set_up_problem(mass().with_sensor(Sensor("x", lowpass=1.0)), measured)
-    segments = problem.segments((0, 1))
+    case = set_up_case(mass().with_sensor(Sensor("x", lowpass=1.0)), measured)
+    segments = case.segments((0, 1))
     assert segments.margin == 80 // SHORT and segments.span >= 8
-    assert np.isfinite(problem.as_read().model.fit.misfit)
+    assert np.isfinite(case.as_read().model.fit.misfit)
