@@ -1,6 +1,6 @@
 """Effects hidden in the walks of the embedded cohort: which are named, and how near to the truth.
 
-    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--emg-error 0.05] [--others-nm 1.5] [--quick]
+    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--emg-error .05] [--stated] [--hidden nothing,spring]
 
 Each of the twelve walks with one thing hidden that the simulation (tracked_ankle.toml) does not know: the spring of the
 exoskeleton, weak plantarflexors, EMG that is 40 ms late, 0.8 kg on the foot, a spring of 0.6 of its moment; and the
@@ -20,14 +20,18 @@ GIVEN = command_line(
     argument("--people", "how many of the twelve", 12),
     argument("--emg-error", "error of the plantarflexors' moment, sd as a share of it", 0.05),
     argument("--others-nm", "error of all other muscles' moment, sd [N m]", 1.5),
+    argument("--stated", "the simulation states these errors", False),
+    argument("--hidden", "which, with commas between (default: all)", ""),
+    argument("--seed", "of the walks", 0),
     QUICK,
 )  # before the slow imports
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from ankle_records import ankle_trials, own_foot_kg
+from hidden_spring import with_stated_errors
 
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
@@ -57,23 +61,35 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     return counts.join(groups[["off_percent", "before", "after", "floor"]].median())
 
 
-def run(quick: bool, people_count: int = 12, *errors: float) -> pd.DataFrame:
+@dataclass(frozen=True)
+class Setting:
+    """How large the errors of the moments are (as in `ankle_trials`), whether they are stated, and which walks."""
+
+    emg_error: float = 0.05
+    others_nm: float = 1.5
+    stated: bool = False
+    seed: int = 0
+
+
+def run(people_count: int, hidden: tuple[str, ...], setting: Setting) -> pd.DataFrame:
     """Hide each effect in each person's walk, and search; `before`, `after` and `floor` are errors held out [deg]."""
-    people = the_twelve()[: 1 if quick else people_count]
-    hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
-    return pd.DataFrame([found_in(person, effect, *errors) for person in people for effect in hidden])
+    people = the_twelve()[:people_count]
+    return pd.DataFrame([found_in(person, effect, setting) for person in people for effect in hidden])
 
 
-def found_in(person: Person, hidden: str, *errors: float) -> dict[str, object]:
-    """One walk, one search: what it says beside what is true; `errors` of the moments, as in `ankle_trials`."""
+def found_in(person: Person, hidden: str, setting: Setting) -> dict[str, object]:
+    """One walk, one search: what it says beside what is true."""
     size = {"spring": 1.0, "scaled moment": SCALED}.get(hidden, 0.0)
     spring = Spring(STIFFNESS * size) if size else None
     strength, added = WEAK if hidden == "weak plantarflexor" else 1.0, ADDED_KG if hidden == "foot mass" else 0.0
     walker = person.adapted_to(spring) if spring else replace(person, plantarflexors=strength, foot_kg=added)
-    walk = walked(walker, spring, WALK_S + 4.0, seed=list(RIGHT).index(hidden))
+    walk = walked(walker, spring, WALK_S + 4.0, seed=setting.seed + list(RIGHT).index(hidden))
     kg = own_foot_kg(person)
-    measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0, *errors)
-    found = discover(gd.read_simulation(MODEL).with_values({"foot_mass": kg}), measured)[0]
+    measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0, setting.emg_error, setting.others_nm)
+    simulation = gd.read_simulation(MODEL).with_values({"foot_mass": kg})
+    if setting.stated:
+        simulation = with_stated_errors(simulation, setting.emg_error, setting.others_nm)
+    found = discover(simulation, measured)[0]
     moved = [one for one in found.corrections if not one.found.low <= one.given <= one.found.high]
     named = [(each.name, each.place) for each in found.effects] + [("correction", one.parameter) for one in moved]
     right = not named if hidden == "nothing" else RIGHT[hidden] in named
@@ -97,7 +113,9 @@ def found_in(person: Person, hidden: str, *errors: float) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    table = run(GIVEN.quick, GIVEN.people, GIVEN.emg_error, GIVEN.others_nm)
+    effects = tuple(GIVEN.hidden.split(",")) if GIVEN.hidden else tuple(RIGHT)
+    setting = Setting(GIVEN.emg_error, GIVEN.others_nm, GIVEN.stated, GIVEN.seed)
+    table = run(1, ("spring",), Setting()) if GIVEN.quick else run(GIVEN.people, effects, setting)
     print(table.round(4).to_string(), summary(table).round(3).to_string(), sep="\n")
     if GIVEN.out:
         table.to_csv(GIVEN.out, index=False)

@@ -19,6 +19,8 @@ from command_line import argument, command_line
 OUT = argument("out", "folder that gets ankle.toml and walk.csv", type=Path)
 GIVEN = command_line(__name__, __doc__, OUT)  # before the slow imports
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 from ankle_records import INPUTS, ankle_trials, own_foot_kg
@@ -31,7 +33,16 @@ from gaitdisc.cohort.walk import walked
 MODEL = Path(__file__).with_name("tracked_ankle.toml")
 WALK_S, STARTING_S = 24.0, 4.0
 EMG_ERROR, OTHERS_NM = 0.10, 3.0
-STATED = {"recorded": "sd = 2.4", "plantarflexors": f"gain = {EMG_ERROR}", "others": f"sd = {OTHERS_NM}"}
+PRESSURE_NM, MEMORY_S = 2.4, 0.04
+
+
+def with_stated_errors(simulation: gd.Simulation, emg_error: float, others_nm: float) -> gd.Simulation:
+    """The simulation that states the errors of its inputs."""
+    stated = {"recorded": {"sd": PRESSURE_NM}, "plantarflexors": {"gain": emg_error}, "others": {"sd": others_nm}}
+    inputs = (
+        replace(one, wander=MEMORY_S, **stated[one.name]) if one.name in stated else one for one in simulation.inputs
+    )
+    return replace(simulation, inputs=tuple(inputs))
 
 
 def run(folder: Path) -> tuple[Path, Path]:
@@ -39,10 +50,7 @@ def run(folder: Path) -> tuple[Path, Path]:
     person, spring = the_twelve()[0], Spring(STIFFNESS)
     walk = walked(person.adapted_to(spring), spring, WALK_S + STARTING_S, seed=1)
     simulation = gd.read_simulation(MODEL).with_values({"foot_mass": own_foot_kg(person)})
-    text = gd.write_simulation(simulation, folder / "ankle.toml", overwrite=True).read_text(encoding="utf-8")
-    for name, error in STATED.items():
-        text = text.replace(f"[inputs.{name}]\n", f"[inputs.{name}]\n{error}\nwander = 0.04\n")
-    (folder / "ankle.toml").write_text(text, encoding="utf-8")
+    gd.write_simulation(with_stated_errors(simulation, EMG_ERROR, OTHERS_NM), folder / "ankle.toml", overwrite=True)
     measured, tables = ankle_trials(walk, 0.0, EMG_ERROR, OTHERS_NM), []
     for number, trial in enumerate(measured.trials):
         count = int(measured.drive.samples[number])

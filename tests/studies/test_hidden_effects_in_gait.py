@@ -15,7 +15,7 @@ def row():
         study = importlib.import_module("hidden_effects_in_gait")
     finally:
         sys.path.remove(str(STUDIES))
-    return study.run(True).iloc[0]
+    return study.run(1, ("spring",), study.Setting()).iloc[0]
 
 
 def test_the_exoskeletons_spring_is_named_at_the_ankle_and_nothing_else(row):
