@@ -117,6 +117,9 @@ def hide_law(model: Model, kind: str, trial: Trial, motion: list[str], rng: np.r
         rates.append([model.rates(*one) for one in zip(states, trial.moments, strict=True)])
     base, change = (np.sqrt(np.mean(np.square(one), axis=0)) for one in (rates[0], np.subtract(*rates)))
     column = int(np.argmax(change))
+    if change[column] == 0:  # a spring that the run never reaches
+        model.law = compile("0.0", "nothing", "eval")
+        return hide_law(model, kind, trial, motion, rng)
     term = f"{rng.uniform(*SHARES) * base[column] / change[column]:.5g}*({text})"
     model.law = compile(term, effect, "eval")
     return {"effect": effect, "term": term}
