@@ -1,6 +1,6 @@
 """Effects hidden in the walks of the embedded cohort: which are named, and how near to the truth.
 
-    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--emg-error .05] [--stated] [--hidden nothing,spring]
+    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--stated] [--hidden nothing,spring] [--seed N]
 
 Each of the twelve walks with one thing hidden that the simulation (tracked_ankle.toml) does not know: the spring of the
 exoskeleton, weak plantarflexors, EMG that is 40 ms late, 0.8 kg on the foot, a spring of 0.6 of its moment; and the
@@ -87,9 +87,8 @@ def found_in(person: Person, hidden: str, setting: Setting) -> dict[str, object]
     kg = own_foot_kg(person)
     measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0, setting.emg_error, setting.others_nm)
     simulation = gd.read_simulation(MODEL).with_values({"foot_mass": kg})
-    if setting.stated:
-        simulation = with_stated_errors(simulation, setting.emg_error, setting.others_nm)
-    found = discover(simulation, measured)[0]
+    stated = with_stated_errors(simulation, setting.emg_error, setting.others_nm)
+    found = discover(stated if setting.stated else simulation, measured)[0]
     moved = [one for one in found.corrections if not one.found.low <= one.given <= one.found.high]
     named = [(each.name, each.place) for each in found.effects] + [("correction", one.parameter) for one in moved]
     right = not named if hidden == "nothing" else RIGHT[hidden] in named
