@@ -27,7 +27,6 @@ from gaitdisc.discovery.held_out import (
 )
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
-from gaitdisc.discovery.process_noise import ProcessNoise
 from gaitdisc.discovery.rivals import Rival, bic_gain, rivals_of
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.wording import sentence_of
@@ -103,7 +102,9 @@ def left_out(findings: tuple[Finding, ...]) -> list[str]:
 def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
     """List what was found: a random push, wrong starts, or the explanations that were selected."""
     if verdict.process_noise:
-        place, push = verdict.process_noise.place, push_of(case, verdict.process_noise)
+        place = verdict.process_noise.place
+        unit = places_unit(case.search.base, place.kind, place.name)
+        push = Estimate(verdict.process_noise.strength, np.nan, np.nan, unit)
         return (FoundEffect(place.kind, place.name, "process_noise", "", {"strength": push}),)
     if verdict.starts:
         return tuple(
@@ -116,12 +117,6 @@ def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tu
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
         found = [replace(found[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
     return tuple(found)
-
-
-def push_of(case: Case, process_noise: ProcessNoise) -> Estimate:
-    """Return the standard deviation of a random push, in the unit of its place."""
-    unit = places_unit(case.search.base, process_noise.place.kind, process_noise.place.name)
-    return Estimate(process_noise.strength, np.nan, np.nan, unit)
 
 
 def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:

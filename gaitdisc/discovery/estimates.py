@@ -41,7 +41,7 @@ def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulatio
     candidate, slots = part.candidate, part.candidate.slots
     units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})
     found: dict[str, Estimate] = {}
-    number = 0
+    number, waning = 0, candidate.pieces and _WANING.match(candidate.pieces[0])
     while number < len(slots):
         slot, pair = slots[number], slots[number : number + 2]
         if _is_wave(candidate, number):
@@ -52,7 +52,7 @@ def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulatio
             number += 2
             continue
         name = names.get(slot, slot)
-        sign = -1 if name in RESISTING and not _waning(candidate) else 1
+        sign = -1 if name in RESISTING and not waning else 1
         found[_free_name(name, found)] = _estimate(
             sign * part.values[slot], float(covariance[number, number]), units[slot]
         )
@@ -78,10 +78,6 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
         return {slot: own[candidate.place]}
     channel = unit_of_channel(base, candidate.place)
     return {slot: divided(channel, "s") if slot == "rate" else channel}
-
-
-def _waning(candidate: Candidate) -> bool:
-    return bool(candidate.pieces and _WANING.match(candidate.pieces[0]))
 
 
 def _is_wave(candidate: Candidate, number: int) -> bool:

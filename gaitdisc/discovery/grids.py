@@ -43,7 +43,11 @@ def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
     """
     periods = []
     for trial in observed:
-        seen = _bridged(trial)
+        known = np.isfinite(trial)  # without the empty end, gaps bridged by straight lines
+        length = int(np.flatnonzero(known.any(axis=1))[-1]) + 1
+        at = np.arange(length)
+        whole = zip(trial[:length].T, known[:length].T, strict=True)
+        seen = np.column_stack([np.interp(at, at[there], values[there]) for values, there in whole])
         centred = seen - seen.mean(axis=0)
         centred = centred / np.maximum(centred.std(axis=0), 1e-12)
         power = (np.abs(np.fft.rfft(centred * np.hanning(len(seen))[:, None], axis=0)) ** 2).sum(axis=1)
@@ -52,15 +56,6 @@ def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
         power = np.maximum(power - NOISE_FACTOR * np.median(power), 0.0)
         periods.append(1 / max(float((frequency * power).sum() / max(power.sum(), 1e-300)), 1 / (len(seen) / rate)))
     return Rhythm(float(np.median(periods)), observed.shape[1] / rate, rate)
-
-
-def _bridged(trial: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Channels of a trial without its empty end (sample, channel), gaps bridged by straight lines."""
-    known = np.isfinite(trial)
-    length = int(np.flatnonzero(known.any(axis=1))[-1]) + 1
-    at = np.arange(length)
-    whole = zip(trial[:length].T, known[:length].T, strict=True)
-    return np.column_stack([np.interp(at, at[there], values[there]) for values, there in whole])
 
 
 def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.float64]:

@@ -231,7 +231,9 @@ def without_trial_apart(case: Case) -> Measured:
         return measured
     spread = np.nanstd(measured.observed, axis=(0, 1))
     as_read = replace(case, learned=tuple(range(count))).as_read()
-    trial, other = np.argsort(_promised(case, as_read))[:2].tolist()
+    search, model = case.search, as_read.model
+    promised = search.scorer(as_read.shooting, model).left_without_each(search.open_beside(model))  # to first order
+    trial, other = np.argsort(promised)[:2].tolist()
     least = _left_without(case, trial, spread)
     wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
     if _as_read_left(as_read, other, spread) < wanted:  # what a search leaves of the same trials is no more
@@ -248,12 +250,6 @@ def without_trial_apart(case: Case) -> Measured:
     spoils = "this trial, which was left out: look at its gain, its offset and whether a channel stood still"
     kept = measured.selected([one for one in range(count) if one != trial])
     return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
-
-
-def _promised(case: Case, as_read: ScoredModel) -> NDArray[np.float64]:
-    """Mean square that the best single explanation leaves of all other trials, to first order (trial,)."""
-    search, model = case.search, as_read.model
-    return search.scorer(as_read.shooting, model).left_without_each(search.open_beside(model))
 
 
 def _as_read_left(as_read: ScoredModel, trial: int, spread: NDArray[np.float64]) -> float:

@@ -73,7 +73,8 @@ def spiked(record: NDArray[np.float64]) -> NDArray[np.bool_]:
     at = np.concatenate([known[0] - np.arange(LONGEST, 0, -1), known, known[-1] + 1 + np.arange(LONGEST)])
     middle = MAD_OF_NORMAL * float(np.median(np.abs(x[1:-1] - (x[:-2] + x[2:]) / 2)))
     least = max(SIGMAS * middle, OF_RANGE * float(np.subtract(*np.percentile(record[known], [99, 1]))))
-    steps = _steps_around(x)
+    padded = np.pad(np.abs(np.diff(x)), (AROUND, AROUND + 1), mode="reflect")
+    steps = np.median(sliding_window_view(padded, 2 * AROUND + 1), axis=1)[: len(x)]
     here, shouldered = np.zeros(len(x), bool), []
     for width in range(1, LONGEST + 1):
         before, after = x[: -width - 1], x[width + 1 :]
@@ -109,12 +110,6 @@ def _line(x: NDArray[np.float64]) -> NDArray[np.float64]:
     slope = float(np.median((x[later] - x[earlier]) / (later - earlier)))
     level = float(np.median(x - slope * np.arange(len(x))))
     return np.asarray(level + slope * (len(x) + np.arange(LONGEST)), np.float64)
-
-
-def _steps_around(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Median size of the steps around each sample; spikes are too few there to move it."""
-    padded = np.pad(np.abs(np.diff(x)), (AROUND, AROUND + 1), mode="reflect")
-    return np.median(sliding_window_view(padded, 2 * AROUND + 1), axis=1)[: len(x)]
 
 
 def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Finding:

@@ -100,7 +100,10 @@ def simulation_of(text: str, file: str = "the simulation", source: Path | None =
         refuse_units(simulation)
         return simulation
     except SimulationError as error:
-        raise _located(error, text, file) from None
+        line = _line(text, error.place)
+        where = f"{file}, line {line}" if line else file
+        part = f", [{error.place[0]}] {' '.join(error.place[1:])}".rstrip() if error.place else ""
+        raise SchemaError(f"{where}{part}: {error.needed}", error.found, error.remedy) from None
 
 
 def _not_toml(file: str, found: str) -> ReadError:
@@ -245,14 +248,6 @@ def _expression(value: Any, place: tuple[str, ...]) -> str:
     if not isinstance(value, str):
         raise SimulationError("an expression is text", f"found {str(value)[:60]}", 'Write it in quotes: "..."', place)
     return value
-
-
-def _located(error: SimulationError, text: str, file: str) -> SchemaError:
-    """Give a refusal the file and the line."""
-    line = _line(text, error.place)
-    where = f"{file}, line {line}" if line else file
-    part = f", [{error.place[0]}] {' '.join(error.place[1:])}".rstrip() if error.place else ""
-    return SchemaError(f"{where}{part}: {error.needed}", error.found, error.remedy)
 
 
 def _line(text: str, place: tuple[str, ...]) -> int | None:
