@@ -30,15 +30,14 @@ def select_forward(
 
     scale: what is left is measured against: two explanations that leave far more than the sensors' noise are not
         refined, for no set of names is exact then; beside one that leaves less than a simulation's own error above that
-        noise, no other is sought
+        noise, no other stays, but another may stand in its place
     returns rivals: what else stood for the first place, best first
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
     explained, turns, begun = 0.0, 0, len(now.model.parts)
     while len(now.model.parts) < most and turns < MOST_TURNS:
-        if scale and now.model.parts and scale.excess(now.model.fit) < CRITERIA.model_error:
-            break
+        enough = bool(scale and now.model.parts and scale.excess(now.model.fit) < CRITERIA.model_error)
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
@@ -55,7 +54,7 @@ def select_forward(
             better = better if far else settled(search, better, worth, explored)
             before, better = compared([before, better], search.base)
         gained = before.bic - better.bic
-        if gained < worth or not is_certain(better.model):
+        if gained < worth or not is_certain(better.model) or (enough and len(better.model.parts) == number):
             break
         explained, now, turns = max(explained, gained), better, turns + 1
         explored.add(now.model.explanations)
