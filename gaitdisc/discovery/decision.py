@@ -18,7 +18,7 @@ from gaitdisc.discovery.held_out import Proof, free_run_error, proof_of, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
-from gaitdisc.discovery.search import Search
+from gaitdisc.discovery.search import Search, is_certain
 from gaitdisc.discovery.wrong_start import wrong_starts
 from gaitdisc.results.discovery import Estimate
 
@@ -140,6 +140,8 @@ def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
     if plain.bic - likelier.bic < CRITERIA.margin:
         return None
     now = needed(case, found.as_read, found.now)
+    if not is_certain(now.model):  # two that cancel each other
+        return None
     proof = held_out_proof(case, found.as_read, now)
     if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
         proof = replace(proof, test=found.test)
