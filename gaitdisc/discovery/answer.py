@@ -170,10 +170,10 @@ def list_explanations(
     held, size: held-out runs of the simulation as read and of what was found, and their gap
     """
     found: list[tuple[float, Explanation]] = []
+    floor = np.array([floor for _, _, floor in size.channels.values()])
     for one in rivals:
         after = runs_of(case, one.scored, case.held_out, verdict.found)
         effects = tuple(reported_rival(case, one, number) for number in range(len(one.scored.model.parts)))
-        floor = np.array([floor for _, _, floor in size.channels.values()])
         test = compare_runs(case, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
         explanation = Explanation(effects, replace(left, of=size.of), *first_run(case, after, size))

@@ -53,7 +53,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     exact = leaves_noise(case, named)
     plain = None if exact else plainest(case, scale, named)
     if plain:
-        return shape_that_leaves_noise(case, as_read, scale, plain) or plain
+        return shape_that_leaves_noise(case, as_read, fitted_shape(as_read, case.search, scale), plain) or plain
     suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = len(named.model.parts) > 1 or suspect
     shape = fitted_shape(as_read, case.search, scale) if wanted else None
@@ -80,16 +80,18 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
-    refuted = None if leaves_noise(case, longer) else shape_that_leaves_noise(case, as_read, scale, verdict)
-    return refuted or verdict
+    noise = leaves_noise(case, longer)
+    shape = shape if wanted or noise else fitted_shape(as_read, case.search, scale)
+    return (None if noise else shape_that_leaves_noise(case, as_read, shape, verdict)) or verdict
 
 
-def shape_that_leaves_noise(case: Case, as_read: ScoredModel, scale: GapScale, names: Verdict) -> Verdict | None:
+def shape_that_leaves_noise(
+    case: Case, as_read: ScoredModel, shape: ScoredModel | None, names: Verdict
+) -> Verdict | None:
     """Return the verdict on one shape without a name that leaves mere noise where names do not.
 
     A single name, which is plainer, is refuted only where held-out data prefer the shape, in free runs as well.
     """
-    shape = fitted_shape(as_read, case.search, scale)
     if shape is None or not leaves_noise(case, shape):
         return None
     if len(names.found.model.parts) == 1:

@@ -62,9 +62,7 @@ class GapScale:
 
     def excess(self, fit: Fitted) -> float:
         """Root mean square of a residual above the sensors' noise, over the spread of its channel."""
-        return float(
-            np.sqrt(max(np.nanmean((fit.residual / self.spread) ** 2) - np.mean((self.noise / self.spread) ** 2), 0.0))
-        )
+        return float(np.sqrt(max(self.relative(fit) ** 2 - np.mean((self.noise / self.spread) ** 2), 0.0)))
 
     def agrees(self, fit: Fitted) -> bool:
         """Whether a residual is no more than noise and a hundredth of the measurement's spread explain."""

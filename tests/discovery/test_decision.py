@@ -96,16 +96,15 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, 
     alone = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1,))), rivals=())
     proofs = iter([True, False, False, True, True])
     monkeypatch.setattr(decision, "free_run_error", lambda _, one: 0.1 if one == "shape" else 0.2)
-    monkeypatch.setattr(decision, "fitted_shape", lambda *_: "shape")
     monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
-    found = decision.shape_that_leaves_noise(case, as_read, None, names)
+    found = decision.shape_that_leaves_noise(case, as_read, "shape", names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
-    assert decision.shape_that_leaves_noise(case, as_read, None, names) is None  # not borne out
-    assert decision.shape_that_leaves_noise(case, as_read, None, alone) is None  # not preferred to a single name
-    assert decision.shape_that_leaves_noise(case, as_read, None, alone).word == "unnamed"
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None  # not borne out
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", alone) is None  # not preferred to a single name
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", alone).word == "unnamed"
     monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
-    assert decision.shape_that_leaves_noise(case, as_read, None, names) is None
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
 
 
 def test_a_verdict_carries_the_account_and_what_else_was_weighed(case, as_read, named):
