@@ -30,10 +30,10 @@ def test_what_stands_on_a_page_is_what_the_kept_cells_say(page, name, written):
     assert apart(written, printed(name)) == "", page
 
 
-def test_readme_and_docs_hold_both_starts():
-    assert {page for page, *_ in OURS} == {"README.md", "results.md", "chapter3.md"}
+def test_pages_hold_both_starts():
+    assert {page for page, *_ in OURS} == {"examples.md", "results.md", "chapter3.md"}
     for page, _, written in OURS:
-        assert "oracle" in written or page == "README.md"
+        assert "oracle" in written or page == "examples.md"
 
 
 def test_a_cell_computed_anew_is_the_kept_one():

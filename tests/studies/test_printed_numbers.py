@@ -59,13 +59,14 @@ def test_marks_are_whole_and_forms_known():
     for name, text in PAGES.items():
         assert text.count("<!-- printed by:") == text.count("<!-- end -->") == len(blocks(text)), name
     assert {block.form for _, block in EVERY} <= set(FORMS)
-    assert {"README.md", "discover.md", "reconstruct.md", "results.md"} <= {name for name, _ in EVERY}
+    assert {"README.md", "examples.md", "discover.md", "reconstruct.md", "results.md"} <= {name for name, _ in EVERY}
 
 
-def test_a_reader_finds_the_commands_of_every_block_of_the_readme():
-    for block in blocks(PAGES["README.md"]):
+@pytest.mark.parametrize("page", ["README.md", "examples.md"])
+def test_a_reader_finds_the_commands_of_every_block(page):
+    for block in blocks(PAGES[page]):
         for command in block.commands:
-            assert PAGES["README.md"].replace(f"printed by: {'; '.join(block.commands)}", "").count(command), command
+            assert PAGES[page].replace(f"printed by: {'; '.join(block.commands)}", "").count(command), command
 
 
 def test_one_command_has_one_answer_on_all_pages():
@@ -75,11 +76,11 @@ def test_one_command_has_one_answer_on_all_pages():
         assert apart(first, block.written) == "", name
 
 
-def test_friction_in_the_readme_is_that_of_the_results():
+def test_friction_in_the_examples_is_that_of_the_results():
     [block] = [block for _, block in EVERY if "emps.py" in block.commands[-1]]
     [friction] = re.findall(r"coulomb_friction at carriage, (\S+) N", block.written)
-    assert f"dry friction of {friction}." in PAGES["README.md"]
-    assert "exclude the published 20.4 N" in PAGES["README.md"]
+    assert f"dry friction of {friction}." in PAGES["examples.md"]
+    assert "exclude the published 20.4 N" in PAGES["examples.md"]
 
 
 @pytest.mark.slow
