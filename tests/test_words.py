@@ -51,6 +51,16 @@ def test_pages(page):
     assert found_in(prose(page.read_text(encoding="utf-8"))) == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_lines_of_prose_are_short(page):
+    lines = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL).splitlines()
+    assert [line for line in lines if len(line) > 160 and not line.startswith(("|", ">", "<!--", "!["))] == []
+
+
+def test_the_first_page_is_short():
+    assert len(PAGES[0].read_text(encoding="utf-8").splitlines()) <= 90
+
+
 def commands(command, name="gaitdisc"):
     """Every command with its name."""
     yield name, command
