@@ -52,12 +52,13 @@ def lab(tmp_path_factory):
     return folder
 
 
-def test_a_mapping_is_written_by_new_and_not_over_another(lab, tmp_path):
+def test_a_mapping_is_written_by_new_and_not_over_an_edited_one(lab, tmp_path):
     file = tmp_path / "pendulum.toml"
     done = CliRunner().invoke(app, ["new", str(file), "--from", str(lab / "pendulum.xml"), "--degrees"])
     assert done.exit_code == 0 and "columns pivot, drive" in done.output
+    file.write_text(f"{file.read_text()}\n# by hand\n")
     again = CliRunner().invoke(app, ["new", str(file), "--from", str(lab / "pendulum.xml")])
-    assert again.exit_code != 0 and "is there already" in str(again.exception)
+    assert again.exit_code != 0 and "was changed since" in str(again.exception)
 
 
 def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp_path):
