@@ -74,7 +74,7 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     search = case.search
     search = replace(search, candidates=(*search.candidates, *unnamed_terms(search.base, search.places)))
     as_read = near_runs(case, scale)
-    if scale.agrees(as_read.model.fit):
+    if scale.agrees(as_read.model.fit) or not as_read.gap:
         return None
     beam = Beam(search, scale, as_read)
     for parts in also:
@@ -84,6 +84,8 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     longer = on_longer_runs(case, scale, best) if best.model.explanations else None
     if longer:
         beam = Beam(search, scale, as_read_on(case, scale, as_read, longer))
+        if not beam.as_read.gap:
+            return None
         best = beam.select_forward(longer)
     now, small = beam.material(best)
     now = beam.plainest(now)

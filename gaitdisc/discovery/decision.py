@@ -14,7 +14,14 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
-from gaitdisc.discovery.held_out import Proof, free_run_error, proof_of, strays
+from gaitdisc.discovery.held_out import (
+    Proof,
+    free_run_error,
+    free_runs,
+    is_uninformative,
+    proof_of,
+    strays,
+)
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
@@ -54,13 +61,13 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     plain = None if exact else plainest(case, scale, named)
     if plain:
         return shape_that_leaves_noise(case, as_read, fitted_shape(as_read, case.search, scale), plain) or plain
-    suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
-    wanted = len(named.model.parts) > 1 or suspect
+    names = len(named.model.parts)
+    suspect = not names or (named.noise.is_autocorrelated and not (exact and case.search.base.inexact))
+    wanted = names > 1 or suspect
     shape = fitted_shape(as_read, case.search, scale) if wanted else None
     autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect else None
     if autocorrelated:
         return autocorrelated
-    names = len(named.model.parts)
     if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(case, shape, named))):
         unnamed = proven_shape(case, as_read, shape, (named, *rivals))
         if unnamed:
@@ -78,26 +85,28 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
             longer, rivals = alone
     proof = held_out_proof(case, as_read, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
-        return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
+        blind = is_uninformative(case, as_read, longer)
+        pushed = None if blind else with_random_pushes(case, as_read, as_read, [])
+        return pushed or Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
-    noise = leaves_noise(case, longer)
-    shape = shape if wanted or noise else fitted_shape(as_read, case.search, scale)
-    return (None if noise else shape_that_leaves_noise(case, as_read, shape, verdict)) or verdict
+    if not wanted and not leaves_noise(case, longer):
+        shape = fitted_shape(as_read, case.search, scale)
+    return shape_that_leaves_noise(case, as_read, shape, verdict) or verdict
 
 
 def shape_that_leaves_noise(
     case: Case, as_read: ScoredModel, shape: ScoredModel | None, names: Verdict
 ) -> Verdict | None:
-    """Return the verdict on one shape without a name that leaves mere noise where names do not.
+    """Return the verdict on one shape without a name that leaves mere noise and that unseen data prefer to names.
 
-    A single name, which is plainer, is refuted only where held-out data prefer the shape, in free runs as well.
+    Held-out data prefer it beyond chance, and in free runs as well: several names can imitate one law that has none.
     """
     if shape is None or not leaves_noise(case, shape):
         return None
-    if len(names.found.model.parts) == 1:
-        better = free_run_error(case, shape) < free_run_error(case, names.found)
-        if not better or not held_out_proof(case, names.found, shape).bears_out:
-            return None
+    if free_run_error(case, shape) > free_run_error(case, names.found):
+        return None
+    if not held_out_proof(case, names.found, shape).bears_out:
+        return None
     return proven_shape(case, as_read, shape, (names.found, *names.rivals))
 
 
@@ -210,18 +219,31 @@ def with_autocorrelation(
     as_read, named: the simulation as read and with what the search selected
     """
     plain, *found = compared([as_read, named, *([shape] if shape else [])], case.search.base)
-    moved = runs_that_pushes_move(case, as_read)
-    process_noise = random_push(case, moved)
     ordered = [one for one in found if explains(case, plain, one)]
-    if process_noise and not ordered:
-        if scale_of(case).excess(moved.model.fit) < CRITERIA.model_error:
-            return None
-        term = find_term_before(case, as_read, named, rivals)
-        return term or Verdict("process_noise", as_read, tuple(rivals), process_noise)
+    if not ordered:
+        return with_random_pushes(case, as_read, named, rivals)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
     if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(case, plain, found[1]))
     return None
+
+
+def with_random_pushes(
+    case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]
+) -> Verdict | None:
+    """Return the verdict on random pushes, or on a term that goes before them; None where they explain nothing.
+
+    The runs, or free runs of unseen data, where pushes add up, must err by more than noise and a simulation may.
+    """
+    (error, doubt), scale = free_runs(case, as_read), scale_of(case)
+    own_error = leaves_noise(case, as_read) or scale.excess(as_read.model.fit) < CRITERIA.model_error
+    if own_error and error - doubt - scale.noise_share < CRITERIA.model_error**2:
+        return None
+    push = random_push(case, runs_that_pushes_move(case, as_read))
+    if push is None:
+        return None
+    term = find_term_before(case, as_read, named, rivals)
+    return term or Verdict("process_noise", as_read, tuple(rivals), push)
 
 
 def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]) -> Verdict | None:
@@ -236,7 +258,9 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     """
     pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
     among = len(case.search.candidates)
+    span = as_read.shooting.segments.span
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
+    others = [one for one in others if one.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
         before, now = compared([as_read, one], case.search.base)

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.observation_map import RANK, ObservationMap
+from gaitdisc.discovery.own_states import driven_by_others
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.signals.derivatives import savgol_filter
+from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 SHARE_OF_PERIOD = 0.2
 OFTEN = 0.5  # of a trial's samples, at which the channels determine a state
+FORGOTTEN = 0.1  # of the greatest difference that two starts of a hidden state make, left at a trial's end
 TURNS = 4  # of rates and positions, where a channel sees both
 
 
@@ -42,8 +45,9 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
 
     simulation: names, and observations: any expressions of states, inputs and time
     period: the motion's main period [s]
-    returns: a state that the channels do not determine and that is no rate of one that they do begins at its
-        `initial`, or at 0, moved by what the channels say of it
+    returns: a state that the channels do not determine and that is no rate of one that they do follows its equation
+        where it forgets its start within a trial, from its `initial`, or from where a run before ended; else it stays
+        at its `initial`, or at 0, moved by what the channels say of it
     """
     machine, drive = compile_simulation(simulation), measured.drive
     observed, rate = measured.observed, drive.rate
@@ -52,7 +56,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     spread = np.where(spread > 0, spread, 1.0)
     pairs = [(machine.states.index(one), machine.states.index(other)) for one, other in rate_of.items()]
     initial = np.array([state.initial or 0.0 for state in simulation.states])
-    out = np.full((*observed.shape[:2], len(machine.states)), np.nan)
+    out, hidden = np.full((*observed.shape[:2], len(machine.states)), np.nan), np.ones(len(machine.states), bool)
     for trial, record in enumerate(observed):
         length = int(measured.samples[trial])
         width = min(window, length // 2 * 2 - 1)
@@ -61,8 +65,32 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
         slope = np.column_stack([savgol_filter(one, width, 3, 1, 1 / rate) for one in whole]) / spread
         t = drive.time0[trial] + np.arange(length) / rate
         seeing = ObservationMap(machine, t, drive.inputs[trial, :length], spread)
-        out[trial, :length] = _states(seeing, (smooth, slope), np.tile(initial, (length, 1)), pairs, rate)
+        out[trial, :length], known = _states(seeing, (smooth, slope), np.tile(initial, (length, 1)), pairs, rate)
+        hidden &= ~known
+    if hidden.any() and not hidden.all() and isinstance(simulation, Simulation):
+        out = _following(simulation, drive, out, hidden)
     return StateGuess(out)
+
+
+def _following(
+    simulation: Simulation, drive: Drive, states: NDArray[np.float64], hidden: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
+    machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden))))
+    driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
+    along, trials = replace(drive, inputs=driving), np.arange(len(states))
+    starts, runs = states[:, 0, hidden], []
+    for _ in range(2):
+        run, _ = machine.run(along, Rows(trials, 0 * trials, starts), states.shape[1] - 1)
+        runs.append(run)
+        starts = run[trials, drive.samples - 1]
+    apart = np.abs(runs[0] - runs[1])
+    if not np.isfinite(starts).all() or (apart[trials, drive.samples - 1] > FORGOTTEN * apart.max(axis=1)).any():
+        return states
+    out = states.copy()
+    said = [state.initial is not None for state, open_ in zip(simulation.states, hidden, strict=True) if open_]
+    out[..., hidden] = np.where(np.isfinite(states[..., hidden]), np.where(said, *runs), np.nan)
+    return out
 
 
 def _states(
@@ -71,8 +99,11 @@ def _states(
     begin: NDArray[np.float64],
     pairs: list[tuple[int, int]],
     rate: float,
-) -> NDArray[np.float64]:
-    """States of one trial (sample, state); a rate that the channels leave open is the slope of its position."""
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """States of one trial (sample, state), and which of them the channels say (state,).
+
+    A rate that they leave open is the slope of its position.
+    """
     smooth, slope = seen
     free = np.ones(begin.shape[1], bool)
     x, known = seeing.solved(smooth, begin, free)
@@ -90,7 +121,7 @@ def _states(
         x, known = seeing.solved(smooth, np.where(free, begin, x), free)
     for state in np.flatnonzero(often):
         x[:, state] = _bridged(x[:, state], known[:, state])
-    return x
+    return x, often | ~free
 
 
 def _bridged(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:

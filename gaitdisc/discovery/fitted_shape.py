@@ -21,7 +21,7 @@ from gaitdisc.discovery.unnamed_terms import MEANS, NAME
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
-FLAT_BUMPS = 7
+FLAT_BUMPS, FINE_BUMPS = 7, 15
 STRIDE_BUMPS = 10
 DEGREE = 3  # of a product of powers of two states
 SHARPNESS = 1.2  # of a bump's width against the distance to the next
@@ -51,15 +51,11 @@ def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search
     v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: _visited(axis, now, search) for axis in axes}
-    shapes = [_bumps(ranges, dict.fromkeys([one], FLAT_BUMPS)) for one in axes]
+    shapes = [_bumps(ranges, {one: count}) for one in axes for count in (FLAT_BUMPS, FINE_BUMPS)]
+    name, across = _bracketed(v or x), _bumps(ranges, {x: FLAT_BUMPS})
+    shapes.append([f"{piece}*tanh({name}/{SHARE_OF_SPEED * max(map(abs, ranges[v or x])):.4g})" for piece in across])
     if v:
-        speed = max(abs(one) for one in ranges[v])
-        name = _bracketed(v)
-        across = _bumps(ranges, {x: FLAT_BUMPS})
-        shapes += [
-            [f"{piece}*{name}" for piece in across],
-            [f"{piece}*tanh({name}/{SHARE_OF_SPEED * speed:.4g})" for piece in across],
-        ]
+        shapes.append([f"{piece}*{name}" for piece in across])
     if len(axes) > 1:
         shapes += [_bumps(ranges, dict.fromkeys(axes, BUMPS)), _powers(ranges)]
     return [_unnamed(place, pieces, x) for pieces in shapes]
@@ -109,11 +105,12 @@ def _cross_validated(scale: GapScale, search: Search, plain: CrossValidated, par
 
 
 def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:
-    """Shapes that promise most, to first order, with the factors that they promise it with."""
+    """Shapes that promise most, to first order, and more than their numbers cost if what is left were mere noise."""
     scorer = search.scorer(plain.shooting, plain.model)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
-    penalty = float(np.log(plain.shooting.known.sum() / CRITERIA.independent))
-    scores = sorted(scorer.scores(shapes), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
+    numbers, each = plain.shooting.known.sum(), CRITERIA.independent
+    worth = [one for one in scorer.scores(shapes) if each * one.gain > np.log(numbers) * len(one.candidate.slots)]
+    scores = sorted(worth, key=lambda one: np.log(numbers / each) * len(one.candidate.slots) - one.gain)
     return [Part(one.candidate, one.values) for one in scores[:FITTED]]
 
 

@@ -43,7 +43,9 @@ def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.floa
     drive = shooting.measured.drive
     inputs = np.concatenate([_bridged(shooting.past, drive.samples), drive.inputs], axis=2)
     along = Drive(drive.rate, drive.time0, inputs, drive.samples)
-    machine = compile_simulation(_driven_by_states(simulation, shooting.past.shape[2]))
+    machine = compile_simulation(
+        driven_by_others(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
+    )
     trials, versions, steps = len(drive.samples), len(values), int(drive.samples.max()) - 1
     begin = np.zeros(trials * versions, np.int64)
     trial = np.tile(np.arange(trials), versions)
@@ -56,16 +58,20 @@ def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.floa
     return runs.reshape(versions, trials, steps + 1, -1)
 
 
-def _driven_by_states(simulation: Simulation, count: int) -> Simulation:
-    """The equations of the states after the first ones, these being inputs."""
-    known, own = simulation.states[:count], simulation.states[count:]
-    equations = dict(simulation.equations)
-    return Simulation(
-        simulation.title,
-        own,
-        (*(Input(state.name, state.unit) for state in known), *simulation.inputs),
-        tuple(replace(one, low=None, high=None) for one in simulation.parameters),
-        equations=tuple((state.name, equations[state.name]) for state in own),
+def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation:
+    """Return the equations of some of the states, the others being inputs before the rest; nothing acts at ports."""
+    states, equations = [simulation.states[one] for one in own], dict(simulation.equations)
+    others = [one for one in simulation.states if one not in states]
+    return replace(
+        simulation,
+        states=tuple(states),
+        inputs=(*(Input(state.name, state.unit) for state in others), *simulation.inputs),
+        parameters=tuple(replace(one, low=None, high=None) for one in simulation.parameters),
+        equations=tuple((state.name, equations[state.name]) for state in states),
+        ports=(),
+        definitions=(*((port.name, "0") for port in simulation.ports), *simulation.definitions),
+        observations=(),
+        effects=(),
     )
 
 

@@ -84,7 +84,8 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, a
     monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
     monkeypatch.setattr("gaitdisc.discovery.decision.CRITERIA", replace(CRITERIA, half=half))
     monkeypatch.setattr("gaitdisc.discovery.decision.leaves_noise", lambda *_: False)
-    monkeypatch.setattr("gaitdisc.discovery.decision.plainest", lambda *_: None)
+    for name in ("plainest", "with_random_pushes"):
+        monkeypatch.setattr(f"gaitdisc.discovery.decision.{name}", lambda *_: None)
     verdict = decide(case, as_read)
     assert verdict.word == word
     assert verdict.proof.test.p < 0.05
@@ -92,17 +93,17 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, a
 
 
 def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, as_read, monkeypatch):
-    names = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1, 2))), rivals=("rival",))
-    alone = SimpleNamespace(found=SimpleNamespace(model=SimpleNamespace(parts=(1,))), rivals=())
-    proofs = iter([True, False, False, True, True])
-    monkeypatch.setattr(decision, "free_run_error", lambda _, one: 0.1 if one == "shape" else 0.2)
+    names = SimpleNamespace(found="names", rivals=("rival",))
+    proofs, errors = iter([True, True, False, True, False]), {"shape": 0.1, names.found: 0.2}
+    monkeypatch.setattr(decision, "free_run_error", lambda _, one: errors[one])
     monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
     found = decision.shape_that_leaves_noise(case, as_read, "shape", names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None  # not preferred to names
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None  # not borne out
-    assert decision.shape_that_leaves_noise(case, as_read, "shape", alone) is None  # not preferred to a single name
-    assert decision.shape_that_leaves_noise(case, as_read, "shape", alone).word == "unnamed"
+    errors["shape"] = 0.3
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
     monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
 

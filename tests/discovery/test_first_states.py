@@ -41,11 +41,12 @@ def test_beyond_the_end_of_a_trial_there_is_no_state():
     assert np.isnan(states[1, 200:]).all()
 
 
-def test_a_state_that_is_not_measured_begins_at_its_initial():
+@pytest.mark.parametrize(("rate", "expected"), [("-hidden", 0.7 * np.exp(-T)), ("0*hidden", np.full(len(T), 0.7))])
+def test_a_state_that_is_not_measured_follows_its_equation_where_it_forgets_its_start(rate, expected):
     text = MASS.replace("[inputs.push]", "[states.hidden]\ninitial = 0.7\n[inputs.push]")
-    text = text.replace("[equations]", '[equations]\nhidden = "-hidden"')
+    text = text.replace("[equations]", f'[equations]\nhidden = "{rate}"')
     states = _guess(X[None, :, None], simulation_of(text, "three.toml")).states
-    assert states[0, :, 2] == pytest.approx(0.7)
+    np.testing.assert_allclose(states[0, :, 2], expected, atol=1e-6)
 
 
 def test_starts_are_the_states_at_each_first_sample_and_a_run_replaces_them():
