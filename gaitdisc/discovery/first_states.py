@@ -76,7 +76,7 @@ def _following(
     simulation: Simulation, drive: Drive, states: NDArray[np.float64], hidden: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
     """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
-    machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden))))
+    machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden).tolist())))
     driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
     along, trials = replace(drive, inputs=driving), np.arange(len(states))
     starts, runs = states[:, 0, hidden], []
