@@ -29,7 +29,7 @@ def kernel(
 ) -> NDArray[np.float64]:
     """Covariance of a process of size one between points (a's point, b's point).
 
-    Not scikit-learn's: another rounding of distances turns the variance on inducing points (docs/results.md, variance).
+    Not scikit-learn's: another rounding of distances turns the variance on inducing points (studies/results/chapter3.md, variance).
     Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
     """
     a, b = a / lengths, b / lengths
