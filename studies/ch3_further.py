@@ -7,8 +7,7 @@ Exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Mate
 normal (`noise`); the start of a forecast by unscented and ensemble Kalman filters (`filters`); several trajectories,
 and a forecast whose beginning is learned from (`trajectories`); what of the missing rate lies within two standard
 deviations of the Gaussian process (`variance`). Each number is a file of its own in FOLDER, written whole: a run that
-was stopped goes on. Its tables are printed at the end; with `--keep` FOLDER becomes `studies/ch3_further.csv`, which
-`--print` prints from.
+was stopped goes on.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """The scripts of docs/library.md, run as they stand, and their pictures.
 
-    python studies/library_pictures.py
-
-Writes docs/pictures.
+python studies/library_pictures.py
 """
 
 from __future__ import annotations
