@@ -1,6 +1,8 @@
 """The scripts of docs/library.md, run as they stand, and their pictures.
 
-python studies/library_pictures.py
+    python studies/library_pictures.py
+
+Writes docs/pictures.
 """
 
 from __future__ import annotations
