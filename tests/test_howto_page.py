@@ -18,6 +18,7 @@ def test_every_block_of_the_page_and_every_script_of_one_participant_runs(tmp_pa
         runpy.run_path(str(STUDIES / script))
 
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "4000")  # as `told` sets it, so that it is taken back
     names = {}
     page = (DOCS / "howto.md").read_text(encoding="utf-8")
     for language, block in re.findall(r"```(\w*)\n(.*?)```", page, re.DOTALL):
