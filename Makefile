@@ -1,7 +1,7 @@
 # Two commands, each with all its own set-up: `make demo` and `make test`. Needs Python 3.11 or newer, and nothing else.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV   ?= .venv
-# The release that docs/results.md was measured with; any torch >= 2.4 does (make demo TORCH='torch>=2.4').
+# The release that studies/results was measured with; any torch >= 2.4 does (make demo TORCH='torch>=2.4').
 TORCH  ?= torch==2.13.0
 BIN    := $(VENV)/bin
 DEMO   ?= demo

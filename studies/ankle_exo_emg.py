@@ -2,11 +2,8 @@
 
     python studies/ankle_exo_emg.py [DATA]
 
-DATA holds the folder ankle_exo_emg_grf; by default ../shared/data/gait, or GAITDISC_DATA/gait. The source does not say
-what the settings C1 to C9 are, in which order they were walked, or what the EMG is scaled by. C1 cost the least energy
-and C6 the most, so C6 against C1 is tested first; but that choice was made on the same eight people. With n = 8 the
-smallest p is 2/256 = 0.0078, so that no family of more than six tests can show anything: gastrocnemius and soleus, with
-two electrodes a leg, count as one muscle each, and the family is the six muscles in one part of the stride.
+The source does not say what the settings C1 to C9 are, in which order they were walked, or what the EMG is scaled by.
+C1 cost the least energy and C6 the most, so C6 against C1 is tested first;
 """
 
 from __future__ import annotations
@@ -48,7 +45,10 @@ def log_ratios(walks: Walks, setting: str, part: str, faulty: Mapping[tuple[str,
         for muscle, heads in MUSCLES.items():
             electrodes = [name for name in electrodes_of(heads) if (person, name) not in faulty]
             both = [walks.curves[person, word] for word in (EASIEST, setting)]
-            levels = [[_level(curves, name, part) for curves in both] for name in electrodes]
+            levels = [
+                [one.loc[part_of_stride(one[f"Fz_{name[-1]}"].to_numpy()) == part, name].mean() for one in both]
+                for name in electrodes
+            ]
             if levels:
                 table.loc[person, muscle] = float(np.mean([np.log(other / easiest) for easiest, other in levels]))
     return table
@@ -71,11 +71,6 @@ def run(data: Path) -> tuple[Walks, dict[tuple[str, str], str], pd.DataFrame]:
     faulty = faulty_electrodes(walks)
     others = [setting for setting in SETTINGS if setting != EASIEST]
     return walks, faulty, pd.concat([contrast(walks, setting, faulty) for setting in others], ignore_index=True)
-
-
-def _level(curves: pd.DataFrame, name: str, part: str) -> float:
-    parts = part_of_stride(curves[f"Fz_{name[-1]}"].to_numpy())
-    return float(curves.loc[parts == part, name].mean())
 
 
 def _hardest_table(tests: pd.DataFrame) -> str:

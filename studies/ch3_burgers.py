@@ -6,8 +6,7 @@ The text has eps 0.01 and a pulse exp(+(x+2)^2), which is 10^43 high at the edge
 eps 0.1 and exp(-(x+2)^2). Its forecast improvement is of the absolute *mean* error, not the root mean square, of a run
 in which the pulse starts anew at 30 s while DMD's clock runs on: computed here as published, and right.
 
-The chapter has DMD without noise. Here stand all noises, and three methods beside it that learn the missing rate as a
-function of value, slope and bend of the field at a point, one function for all points: what is hidden is one.
+Beside DMD, and noise: three methods that learn the missing rate at each point as one function of the field there.
 """
 
 from __future__ import annotations

@@ -3,12 +3,10 @@
     python studies/ch3_further.py [FOLDER] [--seeds 6] [--tables methods noise filters trajectories variance] [--keep]
     python studies/ch3_further.py --print TABLE
 
-Exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Matern kernel (`methods`); noise that is not
-normal (`noise`); the start of a forecast by unscented and ensemble Kalman filters (`filters`); several trajectories,
-and a forecast whose beginning is learned from (`trajectories`); what of the missing rate lies within two standard
-deviations of the Gaussian process (`variance`). Each number is a file of its own in FOLDER, written whole: a run that
-was stopped goes on. Its tables are printed at the end; with `--keep` FOLDER becomes `studies/ch3_further.csv`, which
-`--print` prints from.
+`methods`: exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Matern kernel; `noise` that is
+not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `trajectories`: several, and a
+forecast whose beginning is learned from; `variance` of the Gaussian process. Each number is a file of its own in
+FOLDER: a run that was stopped goes on.
 """
 
 from __future__ import annotations

@@ -2,9 +2,8 @@
 
     python studies/ch3_measurement_bias.py [FOLDER] [--quick]
 
-The text has eps 0.01 and F(t) = x^3 as a force; the published code has a gain of 1.1 and x^3 as an acceleration. The
-known model is right, its measurement is not: the residual model (Eq. 3.5) learns the bias. So does a Kalman filter that
-has the bias among its states: the chapter's neutral result.
+The known model is right, its measurement is not: the residual model (Eq. 3.5) learns the bias. So does a Kalman filter
+that has the bias among its states: the chapter's neutral result.
 """
 
 from __future__ import annotations

@@ -3,9 +3,8 @@
     python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz] [--noises 0.01 0.1] [--quick]
     python studies/ch3_seeds.py FOLDER --keep
 
-Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With `--keep`
-nothing is computed: what FOLDER holds becomes `studies/ch3_cells.csv`, which `ch3_tables.py` prints from, and what
-`recommend` answers from.
+Each cell is a file in FOLDER: a run that was stopped goes on. `--keep` makes `studies/ch3_cells.csv` of them,
+which `ch3_tables.py` prints from, and what `recommend` answers from.
 """
 
 from __future__ import annotations

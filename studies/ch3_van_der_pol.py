@@ -4,8 +4,7 @@
 
 The text starts at (0.1, 5) and hides -eps x^3, the published code starts at (0.1, 0.1) and hides +0.01 x^3; the text
 gives no mu, the code 0.5. Both run, each as published (absolute noise, 4 Hz filter, central differences, tuned
-thresholds, SINDy's residual integrated) and done right. DMD forecasts here because the limit cycle makes the
-discrepancy periodic in time; it knows nothing of the state.
+thresholds, SINDy's residual integrated) and done right.
 """
 
 from __future__ import annotations

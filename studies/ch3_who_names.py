@@ -2,10 +2,8 @@
 
     python studies/ch3_who_names.py [FOLDER] [--quick]
 
-SINDy answers with terms, dynamic mode decomposition with a curve of time, Gaussian process and network with a curve of
-the states; `discover` with a name, a number and its interval. All learn from the same samples, the first 60 %, and
-forecast the rest. Below stand what section 3.5 leaves open: one state measured, a wrong parameter, a wrong start,
-random pushes.
+All learn from the same samples, the first 60 %, and forecast the rest. Below stand what section 3.5 leaves open: one
+state measured, a wrong parameter, a wrong start, random pushes.
 """
 
 from __future__ import annotations

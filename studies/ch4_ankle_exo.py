@@ -5,7 +5,7 @@
 The embedded cohort walks 240 s without and with the spring, its recordings are written as a laboratory's and read back,
 and what `gaitdisc ablate` does is done to them. FOLDER/report holds the figures (comparison is Fig. 4.2, reduction and
 residual-* Fig. 4.3, quantity Fig. 4.4) with their tables and CSV; FOLDER/printed.csv what the dissertation prints, and
-beside it what is found here. The cohort is another population and was not tuned to match.
+beside it what is found here.
 """
 
 from __future__ import annotations

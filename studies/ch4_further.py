@@ -3,12 +3,10 @@
     python studies/ch4_further.py [FOLDER] [--tables band people terms search curve] [--keep] [--quick]
     python studies/ch4_further.py --print TABLE
 
-welk007 runs a minute without and a minute with a spring between the feet, welk002 without; ten angles, the last 12.5 %
-of each run held out. `band`: what 90 % bands from refits on blocks cover; `people`: the same of forty simulated people
-who walk a minute in each condition, as `gaitdisc run` fits them. `terms`: which terms of a sparse Discrepancy
-are selected in refits on random halves of 16 blocks, beside a control: the first half of the run without the device
-against its second. `search`: layers, nodes and activations by successive halving. `curve`: the Discrepancy over the
-stride by Gaussian processes on the circle, random Fourier features and plain means, with the processes' own bands.
+`band`: what 90 % bands from refits on blocks cover; `people`: of forty simulated people, as `gaitdisc run` fits them.
+`terms`: which terms of a sparse Discrepancy are selected in refits on random halves of 16 blocks, beside a control.
+`search`: layers, nodes and activations by successive halving. `curve`: the Discrepancy over the stride by Gaussian
+processes, random Fourier features and plain means. The last 12.5 % of each run are held out.
 """
 
 from __future__ import annotations

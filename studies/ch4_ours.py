@@ -12,6 +12,7 @@ from gaitdisc.response.over_participants import r2_by_participant, representativ
 from gaitdisc.words import sideless
 
 ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]
+BELOW_EXO = ("knee_angle_r", "ankle_angle_r", "emg_ham_r", "emg_vas_r")  # in the dissertation
 
 
 def medians(run: gd.ResponseRun, model: str, walk: str = "exo") -> pd.Series:
@@ -68,28 +69,19 @@ def _emg_reduced(run: gd.ResponseRun) -> str:
     return _named(rows[rows["different"].astype(bool) & (rows["shift"] > 0)]) if len(rows) else "not tested"
 
 
-def _below_exo_by(run: gd.ResponseRun) -> str:
-    apart = medians(run, "exo") - medians(run, "augmented")
-    return ", ".join(f"{apart[name]:.4f}" for name in ("knee_angle_r", "ankle_angle_r", "emg_ham_r", "emg_vas_r"))
-
-
 def _at_one_second(run: gd.ResponseRun) -> str:
     rows = [medians.loc[1.0] for quantity in run.quantities if 1.0 in (medians := quantity.medians()).index]
     models, table = ("nominal", "augmented", "exo"), pd.DataFrame(rows)
     return ", ".join(f"{table[model].median():.2f}" for model in models) if len(table) else "none"
 
 
-def _lengths(run: gd.ResponseRun) -> str:
+def _lengths(run: gd.ResponseRun, enough: bool = False) -> str:
     if run.over is None or not len(rows := run.over.lengths):
         return "not tested"
+    if enough:
+        return f"{found:g}" if (found := run.over.enough_length()) else "not even 180"
     counts = rows[(rows["second"] == "exo") & rows["different"].astype(bool)].groupby("length_s").size()
     return "; ".join(f"{length:g} ({count} variables)" for length, count in counts.items()) or "none"
-
-
-def _enough(run: gd.ResponseRun) -> str:
-    if run.over is None or not len(run.over.lengths):
-        return "not tested"
-    return f"{found:g}" if (found := run.over.enough_length()) else "not even 180"
 
 
 OURS: dict[str, Callable[[gd.ResponseRun], str]] = {
@@ -107,7 +99,9 @@ OURS: dict[str, Callable[[gd.ResponseRun], str]] = {
         (r2_by_participant(run.responses, "augmented") - r2_by_participant(run.responses, "nominal")).median(), 100, 1
     ),
     "augmented_below_exo": lambda run: _named(_differ(run, "augmented", "exo", 1)),
-    "below_exo_by": _below_exo_by,
+    "below_exo_by": lambda run: ", ".join(
+        f"{one:.4f}" for one in (medians(run, "exo") - medians(run, "augmented"))[list(BELOW_EXO)]
+    ),
     "augmented_above_exo": lambda run: _named(_differ(run, "augmented", "exo", -1)),
     "exo_below_one": lambda run: _named(_differ(run, "exo", "perfect", 1)),
     "hip_reduction": _hip,
@@ -115,5 +109,5 @@ OURS: dict[str, Callable[[gd.ResponseRun], str]] = {
     "emg_reduced": _emg_reduced,
     "at_one_second": _at_one_second,
     "lengths_augmented_exo": _lengths,
-    "lengths_enough": _enough,
+    "lengths_enough": lambda run: _lengths(run, enough=True),
 }

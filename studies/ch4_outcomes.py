@@ -3,11 +3,9 @@
     python studies/ch4_outcomes.py [FOLDER] [--tables moments energy] [--keep] [--quick]
     python studies/ch4_outcomes.py --print TABLE
 
-`moments`: six children walk straight and turn (young_straight_and_turn; moments by the laboratory's own model, while a
-plate carries the foot). The turn stands for the other condition: Nominal is fitted to the other children's straight
-walks, Exo to their turns, Discrepancy to what Nominal misses there; each is scored on the turn of the child left out.
-`energy`: eight people under nine settings of an ankle exoskeleton (ankle_exo_emg_grf): the power that a person uses,
-from EMG and ground forces over the stride, by models of the others; null: the person's settings shuffled.
+`moments`: six children walk straight and turn; Nominal is fitted to the other children's straight walks, Exo to their
+turns, and each is scored on the turn of the child left out. `energy`: the power of eight people under nine settings of
+an ankle exoskeleton from EMG and ground forces, by models of the others; null: the person's settings shuffled.
 """
 
 from __future__ import annotations

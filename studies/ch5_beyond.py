@@ -3,12 +3,9 @@
     python studies/ch5_beyond.py [FOLDER] [--tables few speed spread simulated] [--keep] [--quick]
     python studies/ch5_beyond.py --print TABLE
 
-`few`: a runner in a condition that no model saw, after ten strides of it: the program's linear correction beside models
-fitted anew to these strides, to all walks with these strides weighed ten times, and SHRED descended further on them.
-`speed`: parametric models: how long a stride lasts, as one more input, on walks left out (twelve walks of one person).
-`spread`: the interval that five SHREDs' spread gives (an ensemble UQ-SHRED) beside the conformal one of the program.
-`simulated`: models of simulated walkers on a real one (DA-SHRED): as they are, with the readings given the simulated
-mean and size, with SHRED's latent states given the simulated mean and covariance; then fitted to that person.
+`few`: a runner in a condition that no model saw, after ten strides of it. `speed`: how long a stride lasts, as one more
+input (parametric models). `spread`: the interval that five SHREDs' spread gives (UQ-SHRED). `simulated`: models of
+simulated walkers on a real one (DA-SHRED), with readings or latent states aligned.
 """
 
 from __future__ import annotations

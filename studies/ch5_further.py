@@ -3,10 +3,9 @@
     python studies/ch5_further.py [FOLDER] [--tables text latent population ahead turns] [--keep] [--quick]
     python studies/ch5_further.py --print TABLE
 
-`text`: SHRED as the dissertation's code has it, on 100 readings, beside ours: a runner, and a field (12 months).
-`latent`: the latent state of Fig. 5.1 beside the states' modes, drawn into FOLDER. `population`: each of ten real
-people by models of the others. `ahead`: forecasts of running by a model for each time ahead, and by carrying SHRED's
-latent state on (linear, SINDy). `turns`: forecasts of children who turn, by models of the other children.
+`text`: SHRED as the dissertation's code has it, beside ours. `latent`: the latent state of Fig. 5.1 beside the states'
+modes. `population`: each of ten real people by models of the others. `ahead`: forecasts of running by a model for each
+time ahead, and by carrying SHRED's latent state on. `turns`: forecasts of children who turn.
 """
 
 from __future__ import annotations

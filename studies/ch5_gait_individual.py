@@ -3,9 +3,8 @@
     python studies/ch5_gait_individual.py [FOLDER] [DATA] [--quick]
 
 The embedded cohort (12 people, 60 s, ten angles: it has no pelvis, so the two "random" sensor sets are none of its),
-one person's twelve treadmill walks (18 states) and two runners (18 states). Linear, SDN and SHRED as in the table;
-beside them what it lacks, ridge on delays and ridge on random Fourier features. The split is temporal with a gap; for
-one person of each kind, windows drawn at random stand beside it, which leak. Then noise, and lost readings.
+one person's twelve treadmill walks (18 states) and two runners (18 states). The split is temporal with a gap; for one
+person of each kind, windows drawn at random stand beside it, which leak. Then noise, and lost readings.
 """
 
 from __future__ import annotations

@@ -2,10 +2,8 @@
 
     python studies/ch5_gait_population.py [FOLDER] [DATA] [--quick] [--without-networks]
 
-The embedded cohort, each of its twelve people reconstructed by models of ten others (the next in the
-list is who the models are chosen by), and then corrected by ten strides of which the states are known. There are no
-real recordings of three people in the same task here: of the two runners one is reconstructed in each condition by what
-was learned in the other.
+The embedded cohort, each of its twelve people reconstructed by models of ten others (the next in the list is who the
+models are chosen by), and then corrected by ten strides of which the states are known.
 """
 
 from __future__ import annotations

@@ -3,9 +3,8 @@
     python studies/ch5_turbulence.py [FOLDER] [--quick] [--models 8] [--nodes 48] [--cut 40]
 
 The database's flow (1024 nodes, Re_lambda above 400) does not come with the package. A forced isotropic flow is
-computed instead, with 48 nodes and Re_lambda near 29: a stand-in, on which no printed number can be reproduced. Its
-snapshots lie in FOLDER/flow, its models' errors in FOLDER/cells; a run that was stopped goes on. The text's 125,000
-values are those of --nodes 64 --cut 50.
+computed instead, with 48 nodes and Re_lambda near 29: a stand-in, on which no printed number can be reproduced. A run
+that was stopped goes on. The text's 125,000 values are those of --nodes 64 --cut 50.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     python studies/cohort_muscles.py [--quick]
 
-docs/cohort.md holds the tables that it prints, with what the sources are worth.
+studies/results/cohort.md holds the tables that it prints, with what the sources are worth.
 """
 
 from __future__ import annotations

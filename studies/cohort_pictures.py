@@ -12,10 +12,7 @@ from pathlib import Path
 from command_line import argument, command_line
 
 GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("picture", "PNG", Path("cohort.png")),
-    argument("--seconds", "of each walk", 30.0),
+    __name__, __doc__, argument("picture", "PNG", Path("cohort.png")), argument("--seconds", "of each walk", 30.0)
 )  # before the slow imports
 
 import matplotlib as mpl

@@ -2,9 +2,9 @@
 
     python studies/contact_bias.py [DATA] [--quick]
 
-DATA holds the folder young_straight_and_turn (events and plates) and further walks as C3D files; by default
-../shared/data/gait, or GAITDISC_DATA/gait. Differences are markers' or angles' contact minus the other's [ms], before
-the program corrects them by a plate; contacts farther apart than 250 ms are no pair.
+DATA holds the folder young_straight_and_turn (events and plates) and further walks as C3D files. Differences are
+markers' or angles' contact minus the other's [ms], before the program corrects them by a plate; contacts farther apart
+than 250 ms are no pair.
 """
 
 from __future__ import annotations

@@ -4,8 +4,7 @@
 
 People drawn from a seed, outside both cohorts, walk twice 36 s: Nominal, and with one thing hidden. Each is written as
 a study (angles .mot; EMG, forces, markers .c3d; moments .sto of inverse dynamics, the pressure 3 mm off) and searched
-by `gaitdisc discover STUDY --participant ID`; `--fit` stops at the fit of both walks, which says what changed. Beside
-stand the models of chapter 4 on the same held-out strides [N m].
+by `gaitdisc discover STUDY --participant ID`; `--fit` stops at the fit of both walks, which says what changed.
 """
 
 from __future__ import annotations

@@ -2,10 +2,9 @@
 
     python studies/emps.py [DATA] [--quick]
 
-DATA holds DATA_EMPS.mat of Janot, Gautier and Brunot (2019), nonlinearbenchmark.org, by default
-../shared/data/hidden_effect/emps (or GAITDISC_DATA/hidden_effect/emps), and DATA_EMPS_PULSES.mat where it was got too:
-there the motor gives pulses that the first record has not. The record is cut into stretches of half a second; the last
-quarter of them, and all of the second file, are never fitted: in each only the start is found.
+DATA holds DATA_EMPS.mat of Janot, Gautier and Brunot (2019), nonlinearbenchmark.org, and DATA_EMPS_PULSES.mat where it
+was got too: there the motor gives pulses that the first record has not. The record is cut into stretches of half a
+second; the last quarter of them, and all of the second file, are never fitted: in each only the start is found.
 """
 
 from __future__ import annotations

@@ -4,9 +4,7 @@
 
 The record is made by the engine itself with the hidden effect in its own form, four trials of 4 s at 100 Hz under sums
 of sines at each control; angles in degrees with noise, low-passed at 6 Hz, as a laboratory hands them over. `discover`
-is given the model without the effect, the mapping that `gaitdisc new` writes, and the table. Printed are, case by case,
-what was named, whether name and place are right, whether the interval holds the hidden number, by how much runs of the
-engine itself err before and after, how the effect went into the model's own file, and the processor time.
+is given the model without the effect, the mapping that `gaitdisc new` writes, and the table.
 """
 
 from __future__ import annotations

@@ -44,19 +44,16 @@ def false_alarms(
     for _ in range(studies):
         shared = np.sqrt(correlation) * rng.standard_normal((3, participants, 1))
         r2 = shared + np.sqrt(1 - correlation) * rng.standard_normal((3, participants, variables))
-        p = np.array([table[_smaller_sum(r2[b] - r2[a])] for a, b in PAIRS])
+        differences = np.stack([r2[b] - r2[a] for a, b in PAIRS])
+        ranks = np.abs(differences).argsort(axis=1).argsort(axis=1) + 1
+        positive = np.where(differences > 0, ranks, 0).sum(axis=1)
+        p = table[np.minimum(positive, ranks.sum(axis=1) - positive)]  # of the smaller sum of ranks
         by_pair = [bool(gd.holm_sidak(row).rejected.any()) for row in p]
         alarms["one pair"] += by_pair[0]
         alarms["pair"] += any(by_pair)
         alarms["all"] += bool(gd.holm_sidak(p).rejected.any())
         alarms["variable"] += any(gd.holm_sidak(column).rejected.any() for column in p.T)
     return {name: count / studies for name, count in alarms.items()}
-
-
-def _smaller_sum(differences: NDArray[np.float64]) -> NDArray[np.intp]:
-    ranks = np.abs(differences).argsort(axis=0).argsort(axis=0) + 1
-    positive = np.where(differences > 0, ranks, 0).sum(axis=0)
-    return np.minimum(positive, ranks.sum(axis=0) - positive)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@
 Each person's recordings are laid out as a laboratory has them, one fault is planted into the files' own bytes, and the
 command line runs: new, check, run beside made controls. Said: a warning or refusal that the same person without the
 fault does not have names what is faulty. Clinical: no sentence stands out that the person does not have without it.
-OUT/faults.csv gets a row each, and a second call goes on where the first ended; OUT/cases holds every study.
 People: six of ../shared/data, and of other laboratories whatever lies in OTHERS/<half>/<who>/<static|walk>/*.c3d.
 --healthy writes what is said of the same people without faults, with all their trials; --made of made people.
 """

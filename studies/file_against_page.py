@@ -4,8 +4,7 @@
 
 The same people as in faults_on_pages.py, with all their trials. `gaitdisc export` gives each cycle at 101 points; the
 file's own values are taken between its frames at these very points, by lines and by a cubic spline, and whichever lies
-nearer counts, so that the table shows filters, signs and axes and not the way of interpolation. A channel may be the
-negative of the file's (moments are internal, conventions.md); which is, is printed.
+nearer counts. A channel may be the negative of the file's (moments are internal, conventions.md); which is, is printed.
 """
 
 from __future__ import annotations
@@ -21,7 +20,6 @@ GIVEN = command_line(
     argument("--others", "people of other laboratories", str(SHARED / "people")),
 )  # before the slow imports
 
-import csv
 import re
 import tomllib
 from collections import defaultdict
@@ -29,7 +27,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from as_a_user import rows_of, told
+import pandas as pd
+from as_a_user import told
 from c3d_in_place import InPlace
 from faults_on_pages import jobs_of, laid_out
 from markdown_table import markdown_table
@@ -82,35 +81,32 @@ def of_person(job: Any) -> list[dict[str, Any]]:
         told("new", folder / "study", "--from", folder / "rec")
         told("run", folder / "study", "-q")
     told("export", folder / "study" / "run", "--out", folder / "tables")
-    files = files_of(folder / "study")
-    ends = {
-        (row["condition"], row["trial"], row["side"], round(float(row["start_s"]), 4)): float(row["end_s"])
-        for row in rows_of(folder / "tables" / "cycles.csv")
-        if row["kept"] == "True"
-    }
-    cycles: dict[tuple[str, ...], dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
-    for row in rows_of(folder / "tables" / "curves.csv"):
-        if row["unit"] in LIMITS:
-            key = (row["condition"], row["trial"], row["side"], row["channel"], row["unit"])
-            cycles[key][float(row["start_s"])].append(float(row["value"]) if row["value"] else np.nan)
+    files, counts = {}, defaultdict(int)  # recording of each trial of a condition, which are counted from 1
+    for trial in tomllib.loads((folder / "study" / "study.toml").read_text("utf-8"))["participants"][0]["trials"]:
+        counts[trial["condition"]] += 1
+        files[trial["condition"], str(counts[trial["condition"]])] = folder / "study" / trial["files"][0]
+    words, key = {"trial": str}, ["condition", "trial", "side", "start_s"]
+    kept = pd.read_csv(folder / "tables" / "cycles.csv", dtype=words).round({"start_s": 4}).query("kept")
+    ends = kept.set_index(key)["end_s"]
+    curves = pd.read_csv(folder / "tables" / "curves.csv", dtype=words).set_index("start_s")
     rows = []
-    for (condition, trial, side, channel, unit), each in cycles.items():
+    of_channel = curves[curves["unit"].isin(LIMITS)].groupby([*key[:3], "channel", "unit"], sort=False)
+    for names, each in of_channel:
+        condition, trial, side, channel, unit = map(str, names)
         own, leg = without_side(channel)
-        if leg not in ("", side):
-            continue
         file = InPlace(files[condition, trial])
-        held = of_file(file, own, side)
+        held = of_file(file, own, side) if leg in ("", side) else None
         if held is None:
             continue
         differences = [
-            apart(file, held, start, ends[condition, trial, side, round(start, 4)], np.array(curve))
-            for start, curve in each.items()
+            apart(file, held, start, ends[condition, trial, side, round(start, 4)], each.loc[start, "value"].to_numpy())
+            for start in dict.fromkeys(each.index)
         ]
         all_of = np.concatenate([one for one, _ in differences])
         if np.isfinite(all_of).any():
             rms, largest = float(np.sqrt(np.nanmean(all_of**2))), float(np.nanmax(np.abs(all_of)))
             signs = "".join(sorted({"+-"[sign < 0] for _, sign in differences}))
-            values = (job.who, f"{condition} {trial}", channel, unit, len(each), signs, rms, largest)
+            values = (job.who, f"{condition} {trial}", channel, unit, len(differences), signs, rms, largest)
             rows.append(dict(zip(COLUMNS, values, strict=True)))
     return rows
 
@@ -121,35 +117,17 @@ def without_side(channel: str) -> tuple[str, str]:
     return (match[1] + (match[3] or ""), match[2]) if match else (channel, "")
 
 
-def files_of(study: Path) -> dict[tuple[str, str], Path]:
-    """Recording of each trial of a condition, which are counted from 1."""
-    settings = tomllib.loads((study / "study.toml").read_text(encoding="utf-8"))
-    found: dict[tuple[str, str], Path] = {}
-    counts: dict[str, int] = defaultdict(int)
-    for trial in settings["participants"][0]["trials"]:
-        counts[trial["condition"]] += 1
-        found[trial["condition"], str(counts[trial["condition"]])] = study / trial["files"][0]
-    return found
-
-
 if __name__ == "__main__":
     out = Path(GIVEN.out).resolve()
     rows = []
     for job in jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), pages=False):
         rows += of_person(job)
         print(f"{job.who}: {len(rows)} channels", flush=True)
-    with (out / "values.csv").open("w", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, COLUMNS)
-        table.writeheader()
-        table.writerows(rows)
-    kinds = defaultdict(list)
-    for row in rows:
-        kinds[without_side(row["channel"])[0], row["unit"]].append(row)
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    table.to_csv(out / "values.csv", index=False)
     lines = []
-    for (name, unit), own in sorted(kinds.items(), key=lambda item: (item[0][1], item[0][0])):
-        rms = [row["rms"] for row in own]
-        within = sum(one <= LIMITS[unit] for one in rms)
-        signs = "".join(sorted({row["sign"] for row in own}))
-        cycles = sum(row["cycles"] for row in own)
-        lines.append((name, unit, len(own), cycles, within, f"{np.median(rms):.4f}", f"{max(rms):.4f}", signs))
+    for (unit, name), own in table.groupby(["unit", table["channel"].map(lambda one: without_side(str(one))[0])]):
+        within, signs = int((own["rms"] <= LIMITS[str(unit)]).sum()), "".join(sorted(set(own["sign"])))
+        rms = (f"{own['rms'].median():.4f}", f"{own['rms'].max():.4f}")
+        lines.append((name, unit, len(own), own["cycles"].sum(), within, *rms, signs))
     print(markdown_table("channel | unit | legs and trials | cycles | within | median rms | largest rms | sign", lines))

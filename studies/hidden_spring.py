@@ -7,7 +7,7 @@ One person of the embedded cohort walks 24 s on the exoskeleton, 286.5 N m/rad o
 the walk's own muscle moments with errors added that moments from EMG and inverse dynamics have at their best: those of
 the plantarflexors waver by 10 %, those of all other muscles by 3 N m (standard deviations), and the centre of pressure
 by 3 mm. The simulation is `tracked_ankle.toml` with that person's mass of the foot, and it states these errors: none
-changes faster than 6 Hz, a memory of 0.04 s; 3 mm are 2.4 N m at a force of 800 N.
+changes faster than 6 Hz, a memory of 0.04 s.
 """
 
 from __future__ import annotations

@@ -4,9 +4,7 @@
 
 A two-link leg with a stop at its knee, an ankle with an exoskeleton's spring, an elbow with dry friction, a standing
 person with delayed feedback, a chain of four masses with a spring that stiffens; and each of them with nothing hidden.
-Numbers are drawn anew for each seed. As measured records come: white noise, every number of the file off within its
-bounds, the record low-passed (Butterworth of order 2, forwards and back) and the filter not stated. Four trials of 8 s
-at 100 Hz, the last one held out.
+Numbers are drawn anew for each seed. Four trials of 8 s at 100 Hz, the last one held out.
 """
 
 from __future__ import annotations

@@ -4,11 +4,10 @@
 
 Bodies are real ones (a straight walk of HC030A with Plug-in Gait and Oxford foot markers, subject01 of gait10dof with
 clusters of three): each marker is put where its segment, as followed in the recording, has it, so that the angles are
-known. Skin: every marker slides on its segment in all three directions by sines of a stride's first two harmonics
-with random phases, half of it in common with the markers of its segment; sizes are the root mean square in each
-direction on the thigh, half of that on shank and pelvis, a quarter on the foot. Dropout: every marker of the real
-recording is lost for 0.2 s at random times, so that on the mean a share of all samples is missing. Errors are root
-mean squares over frames, legs and draws [deg]. FOLDER takes the picture.
+known. Skin: every marker slides on its segment in all three directions by sines of a stride's first two harmonics with
+random phases, half of it in common with the markers of its segment; sizes are the root mean square in each direction on
+the thigh, half of that on shank and pelvis, a quarter on the foot. Dropout: every marker of the real recording is lost
+for 0.2 s at random times. Errors are root mean squares over frames, legs and draws [deg].
 """
 
 from __future__ import annotations

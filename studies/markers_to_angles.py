@@ -3,10 +3,9 @@
     python studies/markers_to_angles.py [DATA] [--out FOLDER] [--quick]
 
 DATA holds gait/young_straight_and_turn and gait/young_static (C3D with Plug-in Gait's own angles) and opensim_gait10dof
-(OpenSim's inverse kinematics in a planar model); by default ../shared/data, or GAITDISC_DATA. Differences are root mean
-squares over all frames of a trial [deg]; at hip, knee and ankle after the difference of the two in the static trial.
-Two of the six people were held back while the program was written, and stand in columns of their own. FOLDER takes the
-pictures of the curves over each other.
+(OpenSim's inverse kinematics in a planar model). Differences are root mean squares over all frames of a trial [deg]; at
+hip, knee and ankle after the difference of the two in the static trial. Two of the six people were held back while the
+program was written, and stand in columns of their own. FOLDER takes the pictures of the curves over each other.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
     python studies/moments.py [DATA] [--picture moments.png] [--quick]
 
-DATA holds gait/young_straight_and_turn, gait/young_static and opensim_gait10dof; by default ../shared/data. Errors are
-rms over a clean step on a plate, median and largest over the steps [N m/kg, W/kg]. `markers`: segments from the markers
-by the package; `bones`: Plug-in Gait's own segments, to test kinetics alone. Two people are kept back.
+DATA holds gait/young_straight_and_turn, gait/young_static and opensim_gait10dof. Errors are rms over a clean step on a
+plate, median and largest over the steps [N m/kg, W/kg]. `markers`: segments from the markers by the package; `bones`:
+Plug-in Gait's own segments, to test kinetics alone. Two people are kept back.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     python studies/no_discrepancy.py [--quick]
 
-docs/cohort.md holds what it prints. Both walks of a pair come from the same model with another seed, so the true
+results/cohort.md holds what it prints. Both walks of a pair come from the same model with another seed, so the true
 difference is zero; what 30 held-out seconds show of it scatters.
 """
 

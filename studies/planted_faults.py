@@ -2,9 +2,9 @@
 
     python studies/planted_faults.py [DATA] [--only WORD] [--held-back] [--quick]
 
-DATA holds gait and opensim_gait10dof; by default ../shared/data. Each case is a copy of real files in which one meaning
-is turned: mm for m, degrees for radians, left for right. It is given to what a user runs: `check` of a study and, where
-there is a static trial, `moments`. Found: a new warning or refusal (or a note that it was turned back) has the words.
+DATA holds gait and opensim_gait10dof. Each case is a copy of real files in which one meaning is turned: mm for m,
+degrees for radians, left for right. It is given to what a user runs: `check` of a study and, where there is a static
+trial, `moments`. Found: a new warning or refusal (or a note that it was turned back) has the words.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
     python studies/pooled_cycles.py [DATA] [--quick]
 
-DATA holds the folder young_straight_and_turn; by default ../shared/data/gait, or GAITDISC_DATA/gait. First the folder
-as it is; then with the files' events withheld, so that contacts and foot offs are those of markers, moved by the steps
-that the plates saw. Differences are found minus the file's own [ms].
+DATA holds the folder young_straight_and_turn. First the folder as it is; then with the files' events withheld, so that
+contacts and foot offs are those of markers, moved by the steps that the plates saw. Differences are found minus the
+file's own [ms].
 """
 
 from __future__ import annotations

@@ -61,17 +61,12 @@ def fenced(printed: str) -> str:
     return f"```\n{printed.rstrip()}\n```"
 
 
-def as_printed(printed: str) -> str:
-    """Markdown as the command prints it."""
-    return printed.strip("\n")
-
-
 FORMS: dict[str, Callable[[str], str]] = {
     "sentence": quoted,
     "two sentences": first_two,
     "scores": scores,
     "code": fenced,
-    "markdown": as_printed,
+    "markdown": lambda printed: printed.strip("\n"),
     "measured": fenced,
 }
 

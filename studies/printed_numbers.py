@@ -18,7 +18,7 @@ from command_line import SHARED, argument, command_line
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument("pages", "Markdown files (default: README.md and all of docs)", nargs="*", type=Path),
+    argument("pages", "Markdown files (default: README.md, docs, studies/results)", nargs="*", type=Path),
     argument("--only", "only blocks whose command holds this word", ""),
     argument("--check", "compare, and write nothing", False),
 )  # before the slow imports
@@ -35,8 +35,8 @@ PROJECT = Path(__file__).parents[1]
 
 
 def pages() -> list[Path]:
-    """README and the pages of docs."""
-    return [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]
+    """README, the pages of docs, and the results behind them."""
+    return [PROJECT / "README.md", *sorted(PROJECT.glob("docs/*.md")), *sorted(PROJECT.glob("studies/results/*.md"))]
 
 
 def run(commands: tuple[str, ...], folder: Path, done: dict[str, str]) -> str:

@@ -2,8 +2,8 @@
 
     python studies/real_files.py [DATA]
 
-DATA holds the folders young_straight_and_turn, opensim_walks and c3d_reader_samples; by default ../shared/data/gait, or
-GAITDISC_DATA/gait. Each row is a promise and what was found.
+DATA holds the folders young_straight_and_turn, opensim_walks and c3d_reader_samples. Each row is a promise and what was
+found.
 """
 
 from __future__ import annotations

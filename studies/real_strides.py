@@ -2,8 +2,7 @@
 
     python studies/real_strides.py [DATA]
 
-DATA holds the folders exotendon_run, treadmill_walk_ik and treadmill_c3d_emg; by default ../shared/data/gait, or
-GAITDISC_DATA/gait. Each row is a promise and what was found.
+DATA holds the folders exotendon_run, treadmill_walk_ik and treadmill_c3d_emg. Each row is a promise and what was found.
 """
 
 from __future__ import annotations

@@ -5,8 +5,7 @@
 WALKS are a mapping ([tracked], docs/engines.md) and its kinematics, then the next pair. Angles get noise that went
 through the low-pass. At each ankle and knee, one at a time: a one-sided spring that takes its moment from the muscles
 that pull its way, the stronger muscles' moment late, or less of it; each drawn, 0.6 to 1.4 times 300 (knee 60) N m/rad,
-40 ms, 25 %. Beside: the largest residual at the joint with the ground, which is all that residual reduction works on,
-and a plain regression of what is left on angle and rate, learned from the other blocks of time.
+40 ms, 25 %.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
 
-# of body weight; walks at hand reach 11 % and, where only one foot's stance is seen, 9 %: docs/kinetics.md
+# of body weight; walks at hand reach 11 % and, where only one foot's stance is seen, 9 %: studies/results
 LARGEST_RMS, LARGEST_MEAN = 15.0, 12.0
 FEWEST_FRAMES = 10
 

@@ -106,7 +106,7 @@ def moments(
     Examples
     --------
     >>> import gaitdisc as gd
-    >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_moment_r"]  # doctest: +SKIP
+    >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_angle_r_moment"]  # doctest: +SKIP
     """
     trial = trial_of(walk)
     standing, measures = _standing(static)

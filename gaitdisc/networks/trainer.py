@@ -61,7 +61,7 @@ def train(
 
     Only the first decay starts from scratch. Each further one goes on from the weights of the one before, for a third
     of the epochs at half the learning rate, so that a further decay is also a further descent. That takes 0.6 of the
-    time of descents from scratch; R2 on signals like gait was the same (docs/results.md, "Training speed").
+    time of descents from scratch; R2 on signals like gait was the same (studies/results/speed.md).
 
     The hidden layers are not descended again on all samples: checked on a further block of the training part of two
     runs of 60 s (ten angles; two seeds), keep-and-solve had a mean R2 of 0.9842 and 0.9794, refit-and-solve 0.9843 and

@@ -42,7 +42,7 @@ class TrainingSettings:
     arithmetic: str = "auto"
     # `float32`, or `bfloat16`: torch multiplies in bfloat16 while descending, and keeps weights, losses and the readout
     # in float32 and better. It pays for an LSTM (1.5 to 1.7 times as fast on a processor that has bfloat16), not for
-    # the GRU of 64 (docs/results.md)
+    # the GRU of 64 (studies/results/chapter5.md)
     precision: str = "float32"
     # whether inputs may be missing (NaN); the network has to know what to do with them, as `Shred` with `masked`
     missing_inputs: bool = False

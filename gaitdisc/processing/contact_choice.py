@@ -29,7 +29,7 @@ OTHER_FOOT_S = 0.1  # markers are early by 21 to 74 ms, and steps are 0.4 s apar
 SAME_STEP_S = 0.4  # less than half a stride: events that were marked this late still belong to the plate's step
 SEEN_LATE = ("markers", "angles")  # detectors that see no ground, so that their contacts need a plate to be right
 MOST_OFFSET_S = 0.15  # twice the largest bias seen: what lies farther off is no bias of a detector but another event
-EARLY_MS = {"markers": 50.0, "angles": 38.0}  # median against plates in 20 and 14 trials of walking, docs/results.md
+EARLY_MS = {"markers": 50.0, "angles": 38.0}  # median against plates in 20 and 14 trials of walking, studies/results
 EARLY_RANGE = {"markers": "21 to 74 ms in 20 trials", "angles": "23 to 61 ms in 14 trials"}
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 

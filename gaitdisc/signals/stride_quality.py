@@ -198,7 +198,7 @@ def late_change_findings(recording: Recording, strides: Strides, alpha: float = 
     returns: a warning where p is `alpha` or less and the shift is one stride-to-stride standard deviation or more, a
         note where the trial has too few strides to say. Its kind is `late change` from 2.5 standard deviations on,
         `drift` below: people drift slowly, by more than series that forget from stride to stride would, and p says
-        that they do (docs/results.md), but it is the same gait
+        that they do (studies/results/chapter4.md), but it is the same gait
     """
     file = recording.source.file
     try:

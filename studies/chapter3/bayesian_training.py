@@ -31,12 +31,10 @@ def train_bayesian(samples: Samples, nodes: int = NODES, seed: int = 0) -> Train
 
     Minimises noise * sum (y - f(x, w))^2 + weights * sum w^2 (scaled samples) by Levenberg-Marquardt steps. `weights`
     and `noise` are what makes at most 300 samples, evenly in time, likeliest, renewed after each step; then the
-    weights descend on all samples with both as they are. A Gaussian process is fitted in the same two turns. No sample
-    is held back, and nothing is stopped early.
+    weights descend on all samples with both as they are. No sample is held back.
 
     Source: MacKay 1992, Neural Computation 4:415 and 4:448; Foresee and Hagan 1997, ICNN 3:1930. The published code of
-        chapter 3 trains logsig-radbas-purelin layers of ten nodes so (MATLAB's `trainbr`), on all samples in both
-        turns.
+        chapter 3 trains logsig-radbas-purelin layers of ten nodes so (MATLAB's `trainbr`).
     """
     samples.trainable(LEAST_SAMPLES)
     x_scale, y_scale = scale_of(samples.x), scale_of(samples.y)

@@ -33,11 +33,7 @@ from .starts import forecast_start
 
 METHODS = ("sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn")
 RECONSTRUCTION, ORACLE, FORECAST = PARTS = ("reconstruction", "oracle forecast", "forecast")
-PART_WORDS = {
-    RECONSTRUCTION: "reconstruction",
-    ORACLE: "forecast, oracle start",
-    FORECAST: "forecast, estimated start",
-}
+PART_WORDS = {RECONSTRUCTION: "reconstruction", ORACLE: "forecast, oracle start", FORECAST: "forecast, estimated start"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -135,8 +135,7 @@ def fit_exact_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK) -> D
     Amplitudes fit all columns, not the first alone.
 
     Source: Tu, Rowley, Luchtenburg, Brunton, Kutz 2014, J. Comput. Dyn. 1:391; Eqs. 2.5 to 2.9 of the dissertation.
-        Under noise its eigenvalues are biased inwards (Dawson et al. 2016, Exp. Fluids 57:42), which the optimised one
-        is not.
+        Under noise its eigenvalues are biased inwards (Dawson et al. 2016, Exp. Fluids 57:42).
     """
     hankel = delayed(samples, delays, rank)
     outputs, dt = len(hankel.size), float(samples.time[1] - samples.time[0])

@@ -29,7 +29,7 @@ def kernel(
 ) -> NDArray[np.float64]:
     """Covariance of a process of size one between points (a's point, b's point).
 
-    Not scikit-learn's: another rounding of distances turns the variance on inducing points (docs/results.md, variance).
+    Not scikit-learn's: another rounding of distances turns the variance on inducing points (studies/results).
     Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
     """
     a, b = a / lengths, b / lengths
@@ -101,8 +101,7 @@ def fit_gaussian_process(
     far apart from each other.
 
     Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 2.26, 4.17, 5.9, 8.26,
-        8.27. The published code uses MATLAB's `fitrgp` with one length scale for all inputs; here each input has its
-        own.
+        8.27. The published code uses MATLAB's `fitrgp`, which has one length scale for all inputs.
     """
     samples.trainable(LEAST_SAMPLES)
     scale, offset, size = scale_of(samples.x), samples.y.mean(axis=0), samples.y.std(axis=0)

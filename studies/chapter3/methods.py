@@ -66,9 +66,7 @@ def fitted(samples: Samples, method: Method, settings: MethodSettings, seed: int
     """Fit a method to samples.
 
     Each output has a network of its own, as it has a Gaussian process of its own in the published code: trained
-    together, a rate in which nothing is missing decides by its noise how the others are smoothed. The networks are
-    trained as the published ones, by Levenberg-Marquardt with Bayesian regularisation: stochastic descent, stopped by
-    an inner block of a few seconds, left a bias that the forecast gathers (docs/results.md, chapter 3).
+    together, a rate in which nothing is missing decides by its noise how the others are smoothed.
     """
     fits: dict[str, Callable[[], Model]] = {
         "sindy": lambda: fit_sindy(samples, settings.degree, settings.threshold, settings.bags, seed),

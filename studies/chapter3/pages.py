@@ -18,16 +18,7 @@ from gaitdisc.report.panels import Look, Room, decades, in_style, legend, lines_
 from gaitdisc.report.table import Table, save_table, words_table
 from gaitdisc.words import unit_text
 
-from .cell import (
-    FORECAST,
-    ORACLE,
-    PART_WORDS,
-    PARTS,
-    RECONSTRUCTION,
-    DiscrepancyCell,
-    PartAccuracy,
-    cells_table,
-)
+from .cell import FORECAST, ORACLE, PART_WORDS, PARTS, RECONSTRUCTION, DiscrepancyCell, PartAccuracy, cells_table
 from .naming import Naming, namings_table
 from .recommend import measured_cells
 from .record import System
@@ -372,12 +363,6 @@ def naming_table(namings: Sequence[Naming], name: str) -> Table:
     return Table(name, caption, columns, tuple(rows), table)
 
 
-def seeds_of(found: pd.DataFrame) -> tuple[str, float]:
-    """Most frequent answer of the seeds, `right` where it is, and its share."""
-    counts = found["answer"].where(~found["right"], "right").value_counts(sort=False)
-    return str(counts.idxmax()), float(counts.max() / len(found))
-
-
 def _answers(found: pd.DataFrame) -> str:
     if not len(found):
         return ""
@@ -397,7 +382,9 @@ def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
     table, rows = namings_table(namings), []
     for tool in TOOL_WORDS:
         for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):
-            rows.append((case, tool, noise, *seeds_of(found), _forecast(found)))
+            counts = found["answer"].where(~found["right"], "right").value_counts(sort=False)
+            share = float(counts.max() / len(found))  # of the seeds, for their most frequent answer
+            rows.append((case, tool, noise, str(counts.idxmax()), share, _forecast(found)))
     tiles = pd.DataFrame(rows, columns=pd.Index(["case", "tool", "noise", "kind", "share", "forecast"]))
     cases, noises = list(dict.fromkeys(table["case"])), sorted(table["noise"].unique())
     tools = list(dict.fromkeys(tiles["tool"]))

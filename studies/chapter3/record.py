@@ -178,9 +178,7 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
     The noise's power density is the median of that above 0.75 of half the rate, taken as white; signal stands out where
     the density, as the mean of five neighbours, is above five times that.
 
-    Source: Welch 1967, IEEE Trans. Audio Electroacoust. 15:70, with segments of a quarter of the record. It stands for
-        the published code's 4 Hz, which suits neither system: it costs the Lorenz system its turns and leaves the Van
-        der Pol oscillator most of the noise.
+    Source: Welch 1967, IEEE Trans. Audio Electroacoust. 15:70, with segments of a quarter of the record.
     """
     length = max(32, len(values) // 4)
     frequency, density = welch(values, rate_hz, nperseg=min(length, len(values)), detrend="linear")
@@ -189,11 +187,6 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
     loud = np.flatnonzero(wide > ABOVE * floor)
     highest = frequency[loud[-1]] if loud.size else 0.0
     return float(np.clip(MARGIN * highest, 4 * rate_hz / len(values), 0.45 * rate_hz))
-
-
-def edge_samples(rate_hz: float, cutoff_hz: float = 4.0) -> int:
-    """Samples at each end that the filter's start and end still shape."""
-    return int(np.ceil(EDGE_PERIODS / cutoff_hz * rate_hz))
 
 
 @dataclass(frozen=True)
@@ -320,7 +313,7 @@ def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64],
     y = np.asarray(record.filtered)
     if made.published:
         return y, np.gradient(y, made.dt_s, axis=0) - system.known(y), 0
-    edge = edge_samples(1.0 / made.dt_s) if made.noise else 0
+    edge = int(np.ceil(EDGE_PERIODS / 4.0 / made.dt_s)) if made.noise else 0  # shaped by a filter of 4 Hz
     inner = slice(edge + 1, len(y) - edge - 1)
     error = flow_error(system.known, y, made.dt_s)[inner.start - 1 : inner.stop - 1]
     return y[inner], error, inner.start
@@ -364,9 +357,8 @@ def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[
     """Rate that the known model lacks, from how far it misses the neighbours of each sample, (sample - 2, state).
 
     The known model runs from the state at k forwards to k + 1 and backwards to k - 1; half the difference of what it
-    misses there, over the step, is what was missing in its rates at k. Error: of order dt^2 in the *missing* rate,
-    while a central difference has it in the *whole* rate, which for the Lorenz system at 0.01 s is larger than what is
-    to be found.
+    misses there, over the step, is what was missing in its rates at k. The error is of order dt^2 in the
+    *missing* rate; that of a central difference is so in the *whole* rate.
     """
     ahead, behind = y[2:] - flow(known, y[1:-1], dt_s), y[:-2] - flow(known, y[1:-1], -dt_s)
     return (ahead - behind) / (2 * dt_s)

@@ -199,8 +199,7 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
     """Read HDF5 cut-outs, one or several snapshots in each file.
 
     Source: Li et al. 2008, A public turbulence database cluster and applications to study Lagrangian evolution of
-        velocity increments in turbulence. The layout is that of the service's files in public use, not of a stated
-        standard.
+        velocity increments in turbulence.
     """
     if quantity not in NAMES:
         raise ReadError(f"a cut-out holds {' or '.join(NAMES)}", f"requested: {quantity!r}", "Name one of them.")

@@ -304,9 +304,8 @@ def unseen_path(
 ) -> list[FieldCell]:
     """Error on a path never fitted, beside that on the fitted one.
 
-    The dissertation says of its network that it "cannot extrapolate to unseen sensor location trajectories". Here that
-    error is stated: for a model fitted on one path, on many, and on many with each sensor's place fed in beside its
-    reading. The test times are those of the split, and were not fitted on any path.
+    For a model fitted on one path, on many, and on many with each sensor's place beside its reading. The test times are
+    those of the split, and were not fitted on any path.
     """
     if len(routes) < 2 or {route.sensors for route in routes} != {unseen.sensors}:
         counts = ", ".join(str(route.sensors) for route in routes) or "none"

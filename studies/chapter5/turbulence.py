@@ -139,8 +139,7 @@ class Stepper:
     whatever the flow does.
 
     Source: Rogallo 1981, Numerical experiments in homogeneous turbulence (integrating factor); Lamorgese, Caughey and
-        Pope 2005 (deterministic forcing of constant power). The database's solver holds the energy of two shells
-        instead.
+        Pope 2005 (deterministic forcing of constant power).
     """
 
     box: Box

@@ -1,14 +1,6 @@
 import numpy as np
 import pytest
-from chapter3.burgers import (
-    LENGTH,
-    POINTS,
-    BurgersRates,
-    burgers,
-    places,
-    slope_and_bend,
-    smoothed_in_space,
-)
+from chapter3.burgers import LENGTH, POINTS, BurgersRates, burgers, places, slope_and_bend, smoothed_in_space
 from chapter3.record import Conditions, recorded
 
 from gaitdisc.errors import SamplingError

@@ -2,13 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from chapter5.pages import (
-    boxes_figure,
-    field_table,
-    histograms_figure,
-    latent_figure,
-    medians_table,
-)
+from chapter5.pages import boxes_figure, field_table, histograms_figure, latent_figure, medians_table
 from chapter5.reconstruct_field import FieldCell, error_counts
 from texts import says
 

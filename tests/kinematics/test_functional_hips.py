@@ -6,14 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from manufactured_body import (
-    MEASURES,
-    PLUG_IN_GAIT,
-    RAJAGOPAL,
-    known_angles,
-    markers_of,
-    static_of,
-)
+from manufactured_body import MEASURES, PLUG_IN_GAIT, RAJAGOPAL, known_angles, markers_of, static_of
 from texts import says
 
 from gaitdisc.kinematics.calibration import calibrated

@@ -8,13 +8,7 @@ import pytest
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.reconstruction import (
-    MEASURES,
-    RECONSTRUCTION,
-    Reconstruction,
-    enough_sensors,
-    mean_over_people,
-)
+from gaitdisc.results.reconstruction import MEASURES, RECONSTRUCTION, Reconstruction, enough_sensors, mean_over_people
 
 
 @pytest.fixture

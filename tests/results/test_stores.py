@@ -192,11 +192,7 @@ def test_saved_is_loaded(mismatch, tmp_path):
         np.testing.assert_array_equal(again.curves[name], curves)
     pd.testing.assert_frame_equal(again.regions, mismatch.regions)
     pd.testing.assert_frame_equal(again.summary, mismatch.summary)
-    assert (again.exchange, again.findings, again.channels) == (
-        mismatch.exchange,
-        mismatch.findings,
-        mismatch.channels,
-    )
+    assert (again.exchange, again.findings, again.channels) == (mismatch.exchange, mismatch.findings, mismatch.channels)
 
 
 def test_a_changed_table_of_a_mismatch_is_reported(mismatch, tmp_path):

@@ -8,13 +8,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
-from gaitdisc.signals.butterworth import (
-    effective_cutoff_hz,
-    highpassed,
-    lowpassed,
-    needed_samples,
-    short_run_findings,
-)
+from gaitdisc.signals.butterworth import effective_cutoff_hz, highpassed, lowpassed, needed_samples, short_run_findings
 from gaitdisc.signals.gaps import filled
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")

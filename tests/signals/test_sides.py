@@ -20,10 +20,7 @@ def test_the_knee_of_the_side_peaks_in_swing(made):
 
 def test_swapped_sides_are_refused_with_what_was_seen(made):
     walk, contacts = made.walk(12)
-    with pytest.raises(
-        StrideError,
-        match=r"knee_angle_l.*(19|20|21) %, knee_angle_r.*(69|70|71) %: left.*right",
-    ):
+    with pytest.raises(StrideError, match=r"knee_angle_l.*(19|20|21) %, knee_angle_r.*(69|70|71) %: left.*right"):
         verify_sides(walk, right_strides(contacts, "l"))
 
 

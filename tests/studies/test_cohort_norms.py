@@ -1,4 +1,4 @@
-"""The embedded cohort walks as people do, in the numbers that the table in docs/cohort.md prints."""
+"""The embedded cohort walks as people do, in the numbers that the table in studies/results/cohort.md prints."""
 
 from __future__ import annotations
 

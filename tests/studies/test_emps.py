@@ -38,6 +38,6 @@ def test_the_model_is_the_published_one_without_friction(study):
 def test_the_results_page_has_what_the_quick_run_prints(study, found):
     from printed_blocks import apart, blocks
 
-    text = (PROJECT / "docs" / "results.md").read_text(encoding="utf-8")
+    text = (PROJECT / "studies" / "results" / "discovery.md").read_text(encoding="utf-8")
     [block] = [block for block in blocks(text) if "emps.py" in block.commands[-1]]
     assert apart("\n".join(block.written.splitlines()[1:3]), "\n".join(study.lines(found)[:2])) == ""

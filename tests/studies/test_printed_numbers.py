@@ -2,11 +2,12 @@ import re
 import shlex
 
 import pytest
+from claims import printed
 from command_line import SHARED
 from printed_blocks import FORMS, Block, apart, blocks, difference, first_two, quoted, renewed, scores
-from printed_numbers import answer, pages
+from printed_numbers import PROJECT, answer, pages
 
-PAGES = {page.name: page.read_text(encoding="utf-8") for page in pages()}
+PAGES = {page.relative_to(PROJECT).as_posix(): page.read_text(encoding="utf-8") for page in pages()}
 EVERY = [(name, block) for name, text in PAGES.items() for block in blocks(text)]
 
 
@@ -59,10 +60,12 @@ def test_marks_are_whole_and_forms_known():
     for name, text in PAGES.items():
         assert text.count("<!-- printed by:") == text.count("<!-- end -->") == len(blocks(text)), name
     assert {block.form for _, block in EVERY} <= set(FORMS)
-    assert {"README.md", "examples.md", "discover.md", "reconstruct.md", "results.md"} <= {name for name, _ in EVERY}
+    assert {"README.md", "docs/examples.md", "docs/discover.md", "studies/results/chapter3.md"} <= {
+        name for name, _ in EVERY
+    }
 
 
-@pytest.mark.parametrize("page", ["README.md", "examples.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/examples.md"])
 def test_a_reader_finds_the_commands_of_every_block(page):
     for block in blocks(PAGES[page]):
         for command in block.commands:
@@ -79,8 +82,8 @@ def test_one_command_has_one_answer_on_all_pages():
 def test_friction_in_the_examples_is_that_of_the_results():
     [block] = [block for _, block in EVERY if "emps.py" in block.commands[-1]]
     [friction] = re.findall(r"coulomb_friction at carriage, (\S+) N", block.written)
-    assert f"dry friction of {friction}." in PAGES["examples.md"]
-    assert "exclude the published 20.4 N" in PAGES["examples.md"]
+    assert f"dry friction of {friction}." in PAGES["docs/examples.md"]
+    assert "exclude the published 20.4 N" in PAGES["docs/examples.md"]
 
 
 @pytest.mark.slow
@@ -92,3 +95,8 @@ def test_every_block_is_what_its_command_prints(last, tmp_path):
     if "DATA" in last and not SHARED.is_dir():
         pytest.skip(f"real recordings are absent: {SHARED} (set GAITDISC_DATA)")
     assert difference(block, str(answer(block, tmp_path, {}))) == ""
+
+
+@pytest.mark.parametrize("block", [block for _, block in EVERY if "claims.py" in block.commands[-1]])
+def test_claims_are_what_the_results_behind_them_say(block):
+    assert printed(block.commands[-1].split()[-1]) == block.written
