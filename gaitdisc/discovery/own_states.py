@@ -71,6 +71,7 @@ def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation
         ports=(),
         definitions=(*((port.name, "0") for port in simulation.ports), *simulation.definitions),
         observations=(),
+        sensors=(),
         effects=(),
     )
 

@@ -45,6 +45,7 @@ def test_beyond_the_end_of_a_trial_there_is_no_state():
 def test_a_state_that_is_not_measured_follows_its_equation_where_it_forgets_its_start(rate, expected):
     text = MASS.replace("[inputs.push]", "[states.hidden]\ninitial = 0.7\n[inputs.push]")
     text = text.replace("[equations]", f'[equations]\nhidden = "{rate}"')
+    text = text.replace('[observations]\nx = "x"', '[observations.x]\nexpression = "x"\nsd = 0.01')
     states = _guess(X[None, :, None], simulation_of(text, "three.toml")).states
     np.testing.assert_allclose(states[0, :, 2], expected, atol=1e-6)
 
