@@ -24,7 +24,7 @@ TAKEN = re.compile(r"\{([^{}@]+) @ ([^{}]+)\}|\"([^\"]+)\"")
 NUMBER = re.compile(r"\d+(?:[.,]\d+)*|(?<!\w)\.\d+")
 
 
-def section(place: str) -> str:
+def read_section(place: str) -> str:
     """The text below a heading that begins with the words behind the page's name."""
     page, _, heading = place.partition(": ")
     parts = re.split(r"^(?=#+ )", (RESULTS / page).read_text(encoding="utf-8"), flags=re.MULTILINE)
@@ -32,7 +32,7 @@ def section(place: str) -> str:
     return found.replace("**", "")
 
 
-def cell(text: str, row: str, column: str) -> str:
+def find_cell(text: str, row: str, column: str) -> str:
     """The one cell of the tables in a text with this row and column."""
     head: list[str] = []
     found = set()
@@ -46,12 +46,12 @@ def cell(text: str, row: str, column: str) -> str:
     return found.pop()
 
 
-def filled(words: str, text: str, free: bool) -> str:
+def fill(words: str, text: str, free: bool) -> str:
     """The words of one column with their numbers; `free` ones may have numbers that stand anywhere in the text."""
 
-    def one(taken: re.Match[str]) -> str:
+    def take(taken: re.Match[str]) -> str:
         if taken[3] is None:
-            return cell(text, taken[1], taken[2])
+            return find_cell(text, taken[1], taken[2])
         if taken[3] not in " ".join(text.split()):
             raise ValueError(f"{taken[3]!r} stands on no page of its row")
         return taken[3]
@@ -59,20 +59,20 @@ def filled(words: str, text: str, free: bool) -> str:
     loose = set(NUMBER.findall(TAKEN.sub("", words))) - (set(NUMBER.findall(text)) if free else set())
     if loose:
         raise ValueError(f"{words!r}: numbers without a source: {sorted(loose)}")
-    return TAKEN.sub(one, words)
+    return TAKEN.sub(take, words)
 
 
-def printed(subject: str) -> str:
+def write_table(subject: str) -> str:
     """The table of a subject; its first column says what is claimed, the last one where the numbers stand."""
     rows, claims = [], tomllib.loads(CLAIMS.read_text(encoding="utf-8"))[subject]
     columns = [name for name in claims[0] if name not in ("at", "command")]
     for claim in claims:
-        text = "\n".join(section(place) for place in claim["at"])
+        text = "\n".join(read_section(place) for place in claim["at"])
         files = ", ".join(dict.fromkeys(place.partition(": ")[0] for place in claim["at"]))
-        row = [filled(claim[name], text, name == columns[0]) for name in columns]
+        row = [fill(claim[name], text, name == columns[0]) for name in columns]
         rows.append((*row, *([f"`{claim['command']}`"] if "command" in claim else []), files))
     return markdown_table(" | ".join([*columns, *(["command"] if "command" in claims[0] else []), "file"]), rows)
 
 
 if __name__ == "__main__":
-    print(printed(GIVEN.subject))
+    print(write_table(GIVEN.subject))

@@ -1,11 +1,11 @@
-"""All code of docs/howto.md runs as it stands, and so do the scripts of one participant."""
+"""All code of docs/howto.md and docs/fields.md runs as it stands, and so do the scripts of one participant."""
 
 import re
 import runpy
 
 import pandas as pd
 from as_a_user import told
-from library_pictures import DOCS
+from library_pictures import DOCS, blocks
 
 import gaitdisc as gd
 
@@ -35,3 +35,7 @@ def test_every_block_of_the_page_and_every_script_of_one_participant_runs(tmp_pa
     run("participant_discover.py", "P01", "shank.toml", "trials.csv")
     assert gd.read_simulation("found/P01_augmented.toml").effects and gd.load("responses/P01")
     assert gd.load("found/P01").effects[0].place == "knee" and gd.load("models/P01") and page.count("\n## ") == 10
+
+
+def test_fields_runs_from_top_to_bottom():
+    exec("".join(blocks(DOCS / "fields.md")), {})

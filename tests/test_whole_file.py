@@ -20,10 +20,7 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path):
 def test_a_full_disk_is_told_and_loses_nothing(tmp_path):
     path = tmp_path / "table.csv"
     path.write_text("old")
-    with (
-        pytest.raises(WriteError, match=r"table.csv.*be written whole.*left"),
-        whole_file(path),
-    ):
+    with pytest.raises(WriteError, match=r"table.csv.*be written whole.*left"), whole_file(path):
         raise OSError(errno.ENOSPC, "No space left on device")
     assert path.read_text() == "old"
 

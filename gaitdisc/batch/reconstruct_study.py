@@ -25,7 +25,7 @@ from gaitdisc.sensing.model_folder import SensingModel, load_model
 from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Reconstructor, Sensing, fitting_device, sensing
 from gaitdisc.sensing.sensor_search import search_sensors
-from gaitdisc.sensing.state_errors import LEVEL, coverage
+from gaitdisc.sensing.state_errors import INTERVAL_LEVEL, coverage
 from gaitdisc.sensing.windows import RULES, Lags, Parts, split_by_subject, split_by_trial, split_within, windows_of
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 
@@ -240,7 +240,7 @@ def reconstruct_recording(
             error = states[name][both] - filtered[name][both]
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
-    return ReconstructedRecording(kept, out, rmse, inside, LEVEL)
+    return ReconstructedRecording(kept, out, rmse, inside, INTERVAL_LEVEL)
 
 
 def _for_person(saved: SensingModel, calibration: Path, cutoff_hz: float) -> Reconstructor:

@@ -16,7 +16,7 @@ from gaitdisc.recording.autocorrelation import autocorrelation_time
 from gaitdisc.statistics.r2 import r2
 
 DRAWS = 1000
-LEVEL = 0.95
+LEVEL, INTERVAL_LEVEL = 0.95, 0.9  # of an error over trials; of the interval of a state
 COLUMNS = ("state", "unit", "rmse", "low", "high", "relative_l2", "r2")
 
 
@@ -143,7 +143,7 @@ def _interval(
     return low, high
 
 
-def half_widths(errors: NDArray[np.float64], level: float = 0.9) -> NDArray[np.float64]:
+def half_widths(errors: NDArray[np.float64], level: float = INTERVAL_LEVEL) -> NDArray[np.float64]:
     """Half width of the interval of every state: the split conformal quantile of the absolute errors.
 
     With n independent errors, the one of rank (n + 1) `level` covers a further error with a probability of `level`.

@@ -7,13 +7,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, UnitError
-from gaitdisc.ingest.columns import (
-    check_written_names,
-    column_in_unit,
-    mapped_label,
-    named_channel,
-    split_unit,
-)
+from gaitdisc.ingest.columns import check_written_names, column_in_unit, mapped_label, named_channel, split_unit
 
 
 def test_units_stand_in_brackets_at_the_end():

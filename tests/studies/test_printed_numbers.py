@@ -2,7 +2,7 @@ import re
 import shlex
 
 import pytest
-from claims import printed
+from claims import write_table
 from command_line import SHARED
 from printed_blocks import FORMS, Block, apart, blocks, difference, first_two, quoted, renewed, scores
 from printed_numbers import PROJECT, answer, pages
@@ -99,4 +99,4 @@ def test_every_block_is_what_its_command_prints(last, tmp_path):
 
 @pytest.mark.parametrize("block", [block for _, block in EVERY if "claims.py" in block.commands[-1]])
 def test_claims_are_what_the_results_behind_them_say(block):
-    assert printed(block.commands[-1].split()[-1]) == block.written
+    assert write_table(block.commands[-1].split()[-1]) == block.written
