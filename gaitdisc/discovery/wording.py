@@ -54,7 +54,9 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
     if discovery.verdict == "process_noise":
         where = at_place(effects[0].kind, effects[0].place)
         push = estimate_text(effects[0].estimates["strength"])
-        return f"Random pushes of {push} (standard deviation) come {where}; nothing that repeats itself is missing."
+        alone = discovery.held_out is not None and discovery.held_out.of.endswith("quarter")
+        repeats = "one trial cannot show whether they repeat" if alone else "no effect that repeats was found"
+        return f"Random pushes of {push} (standard deviation) act {where}; {repeats}."
     if discovery.verdict == "wrong_initial_condition":
         starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
         return f"Only the start is wrong: the trials begin with {starts}; the dynamics agree to within the noise."
