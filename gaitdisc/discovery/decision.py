@@ -237,7 +237,8 @@ def with_random_pushes(
     """
     (error, doubt), scale = free_runs(case, as_read), scale_of(case)
     own_error = leaves_noise(case, as_read) or scale.excess(as_read.model.fit) < CRITERIA.model_error
-    if own_error and error - doubt - scale.noise_share < CRITERIA.model_error**2:
+    noise = case.noise_floor(as_read.noise.size) / scale.spread
+    if own_error and error - doubt - np.mean(noise**2) < CRITERIA.model_error**2:
         return None
     push = random_push(case, runs_that_pushes_move(case, as_read))
     if push is None:

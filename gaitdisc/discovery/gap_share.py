@@ -52,11 +52,6 @@ class GapScale:
         """Mean square that a simulation that lacks nothing may leave, in squares of `size`."""
         return float(np.mean((np.maximum(self.noise, CRITERIA.model_error * self.spread) / self.size) ** 2))
 
-    @property
-    def noise_share(self) -> float:
-        """Variance of the sensors' noise over that of its channel."""
-        return float(np.mean((self.noise / self.spread) ** 2))
-
     def mean_square(self, fit: Fitted) -> float:
         """Mean square of a residual, in squares of `size`."""
         return float(np.nanmean((fit.residual / self.size) ** 2))
@@ -67,7 +62,7 @@ class GapScale:
 
     def excess(self, fit: Fitted) -> float:
         """Root mean square of a residual above the sensors' noise, over the spread of its channel."""
-        return float(np.sqrt(max(self.relative(fit) ** 2 - self.noise_share, 0.0)))
+        return float(np.sqrt(max(self.relative(fit) ** 2 - np.mean((self.noise / self.spread) ** 2), 0.0)))
 
     def agrees(self, fit: Fitted) -> bool:
         """Whether a residual is no more than noise and a hundredth of the measurement's spread explain."""
