@@ -19,7 +19,6 @@ from gaitdisc.ingest.array_file import open_arrays
 from gaitdisc.ingest.reader_process import ReaderProcess
 
 KNEE = np.arange(12.0).reshape(4, 3)
-STEPS = {"name": "walk", "knee": KNEE, "trial": np.array([{"grf": 10 * KNEE}, {"grf": 20 * KNEE}], dtype=object)}
 
 
 def _cells(*arrays):

@@ -1,3 +1,9 @@
+"""Studies of chapter 5's gait: one person, many, and sets of sensors."""
+
+from __future__ import annotations
+
+import ch5_gait_individual
+import ch5_gait_population
 import numpy as np
 import pandas as pd
 import pytest
@@ -92,3 +98,38 @@ def test_one_panel_a_disturbance_and_one_line_a_model():
     assert (len(noise.get_lines()), len(missing.get_lines())) == (1, 2)
     assert list(np.asarray(noise.get_lines()[0].get_xdata())) == [0.0, 10.0]
     assert says(figure.caption, "masked shred", "which are lost")
+
+
+def test_the_table_of_the_dissertation_is_that_of_the_text():
+    rows = ch5_gait_individual.gait.printed("individual").set_index(["sensors", "model"])["mean"]
+    assert len(rows) == 4 * 3
+    assert rows["3 sagittal", "shred"] == 0.064 and rows["1 random", "linear"] == 1.096
+
+
+def test_the_runners_and_the_treadmill_walks_are_found(gait_data, tmp_path):
+    found = ch5_gait_individual.gait.exotendon(gait_data)
+    assert [len(person.trials) for person in found.participants] == [2, 1]
+    assert len(ch5_gait_individual.gait.treadmill(gait_data, tmp_path).participants[0].trials) == 12
+
+
+@pytest.mark.slow
+def test_history_divides_the_error_and_windows_drawn_at_random_hide_it(tmp_path):
+    result = ch5_gait_individual.run(quick=True, folder=tmp_path)
+    rmse = result.table[result.table["sensors"] == "3 sagittal"].set_index("model")["rmse_deg"]
+    assert rmse["delay ridge"] < 0.35 * rmse["linear"]
+    text = result.page.read_text(encoding="utf-8")
+    assert "random (leaks)" in text and "the norm of the error" in text
+
+
+def test_what_calibration_brings_is_said_in_degrees_and_percent():
+    table = pd.DataFrame(
+        {"sensors": "3 sagittal", "model": ["shred", "shred, calibrated"], "rmse_deg": [4.0, 1.0], "participant": "W01"}
+    )
+    [said] = ch5_gait_population.calibration_sentences(table)
+    assert says(said, "3 sagittal", "shred", "4.00 to 1.00 deg", "-75 %")
+
+
+@pytest.mark.slow
+def test_ten_strides_of_a_new_person_halve_the_error(tmp_path):
+    rmse = ch5_gait_population.run(quick=True, folder=tmp_path).table.groupby(["sensors", "model"])["rmse_deg"].mean()
+    assert rmse["3 sagittal", "delay ridge, calibrated"] < 0.5 * rmse["3 sagittal", "delay ridge"]
