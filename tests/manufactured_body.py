@@ -1,7 +1,5 @@
 """A body of rigid segments that moves by known joint angles, and the markers that a laboratory would see of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bad inputs that a laboratory meets: one refusal each, in words; the rest goes on; the exit code tells."""
 
-from __future__ import annotations
-
 import json
 import zipfile
 from dataclasses import replace

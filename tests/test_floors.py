@@ -1,7 +1,5 @@
 """Imports go downwards only; rooms on one floor do not import each other (docs/design.md)."""
 
-from __future__ import annotations
-
 import ast
 from functools import cache
 from pathlib import Path

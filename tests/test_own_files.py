@@ -1,7 +1,5 @@
 """Files written whole, those that a command may replace, and one that writes at a time."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

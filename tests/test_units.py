@@ -1,7 +1,5 @@
 """Units of channels and composite units."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -214,7 +214,7 @@ def reconstruct_recording(
     cutoff_hz: -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's
     calibration: kinematics of the same person that hold the sensors and every state, some ten strides: the model is
         corrected for the person by them. Its intervals stay as they are, and are too wide then
-    missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.missing.WAYS`
+    missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.windows.WAYS`
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
     if calibration is not None:

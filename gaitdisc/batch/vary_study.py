@@ -10,17 +10,16 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.processed_walks import processed_walks, response_key, unit_keys
 from gaitdisc.batch.public_words import words_of
 from gaitdisc.batch.run_study import response_settings, run_study
-from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.processing.filter_null import filter_null_of
-from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
 from gaitdisc.response.modalities import (

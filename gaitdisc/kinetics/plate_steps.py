@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.kinetics.platform import Platform
-from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
+from gaitdisc.kinetics.platform import LEAST_LOAD_N, Platform, Wrench
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import read_only, runs
 from gaitdisc.signals.derivatives import differentiated

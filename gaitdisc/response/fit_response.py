@@ -66,7 +66,7 @@ def fit_response(
     """Fit all models to the first part of both walks and score them on the held-out last part.
 
     nominal, exo: whole walks of one participant without and with the device, with the same channels
-    null_r2: R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`)
+    null_r2: R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.r2`)
     banded: whether predictions get a band from refits on blocks
     Source: Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: ridge regressions with phase harmonics and
         without, and the null of the filters, stand beside every network, and the Nominal model is scored on held-out

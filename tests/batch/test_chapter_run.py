@@ -1,7 +1,5 @@
 """Parts of chapters run as programs, the literature of a result, and the installation they need."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Demonstrations: of responses, of a clinic, of planted people."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Walks and pooled cycles of a participant, kept on disk under a key and taken from there."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np
@@ -10,9 +8,16 @@ from driven_walker import DrivenWalker
 from manufactured_body import RAJAGOPAL, known_angles, markers_of, static_of
 from texts import says
 
-from gaitdisc.batch.processed_walks import computed_cycles, cycles_key, processed_walks, walks_and_errors
+from gaitdisc.batch.processed_walks import (
+    computed_cycles,
+    cycles_key,
+    processed_walks,
+    response_key,
+    unit_key,
+    unit_keys,
+    walks_and_errors,
+)
 from gaitdisc.batch.run_study import computed_unit, run_study
-from gaitdisc.batch.unit_key import response_key, unit_key, unit_keys
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.reading import read_trial

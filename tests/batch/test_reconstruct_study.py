@@ -1,7 +1,5 @@
 """Reconstruction, of a study's walks and of one recording: which windows, which targets, which answer."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

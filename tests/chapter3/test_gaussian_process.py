@@ -1,7 +1,5 @@
 """Gaussian processes, their kernels, and networks trained by Bayes' rule."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chapter3.bayesian_training import _drawn, _outputs, train_bayesian
@@ -11,7 +9,7 @@ from sklearn.gaussian_process.kernels import RBF, Matern
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
-from gaitdisc.recording.autocorrelation import autocorrelation_time
+from gaitdisc.recording.arrays import autocorrelation_time
 
 RNG = np.random.default_rng(0)
 X = RNG.uniform(-2, 2, (700, 2))

@@ -1,7 +1,5 @@
 """Rates: known, learned, stochastic, local; a run with a learned term in it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chapter3.augmented_run import learned_rate, learned_term, on_states, with_learned_rates

@@ -1,7 +1,5 @@
 """A system's record, its noise, its error signal, and the effect that is hidden in it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

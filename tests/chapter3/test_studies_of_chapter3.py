@@ -1,7 +1,5 @@
 """The studies of chapter 3 answer as the chapter says."""
 
-from __future__ import annotations
-
 import ch3_burgers
 import ch3_lorenz
 import ch3_measurement_bias

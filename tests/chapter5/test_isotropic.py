@@ -1,7 +1,5 @@
 """A forced isotropic flow against its own laws."""
 
-from __future__ import annotations
-
 import ch5_turbulence
 import numpy as np
 import pytest

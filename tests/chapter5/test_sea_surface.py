@@ -1,7 +1,5 @@
 """A sea's surface from netCDF files, its season, and the study of it."""
 
-from __future__ import annotations
-
 import ch5_sea_surface
 import numpy as np
 import pytest

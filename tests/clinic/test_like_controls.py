@@ -1,7 +1,5 @@
 """Controls of the like age and speed, at the leg length of the person (Hof 1996), and a reference made of them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is read of a person's cycles: values beside the reference, profile scores, an index, consistency, contrasts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rules of what stands out: the table that holds them, and what each of them finds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from made_clinic import ANKLE, made_controls, made_person

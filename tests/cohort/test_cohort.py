@@ -1,7 +1,5 @@
 """Who the people are, the published curves of their habit, the hallmark of each kind, what our models make of them."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a leg has learnt: a foot that stands goes with the belt, a whole table, commands that allow for the spring."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

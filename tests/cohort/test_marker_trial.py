@@ -1,7 +1,5 @@
 """Markers over belts, moving or still, give back through the package's own kinematics and kinetics what was walked."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Muscles, and static optimisation of many phases at once, against a solver for one and what it promises."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import minimize

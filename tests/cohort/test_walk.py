@@ -1,7 +1,5 @@
 """The laws of the walking model; without noise commands, equations of motion and ground agree with the habit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`gaitdisc angles` and `gaitdisc moments`: files of angles, moments and powers, with all that was inferred said."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from manufactured_body import (

@@ -1,7 +1,5 @@
 """Small verbs and what all share: check, new, cite, doctor, options, exit codes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from unittest.mock import patch

@@ -1,7 +1,5 @@
 """A clinic's pages and references, whole files whatever stops their writing."""
 
-from __future__ import annotations
-
 import errno
 import os
 import random

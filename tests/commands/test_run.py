@@ -1,7 +1,5 @@
 """Verbs of a study: run, ablate, modalities and sensitivity, apply."""
 
-from __future__ import annotations
-
 import pytest
 
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED

@@ -1,7 +1,5 @@
 """A pendulum expanded along a run answers as MuJoCo does; the engine's own runs meet a record that it made."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

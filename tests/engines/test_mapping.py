@@ -1,7 +1,5 @@
 """Mapping files: written from a model, read again; what the model or a record contradicts is refused in words."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """A double pendulum of OpenSim: forces, masses, its own runs, its text, refusals, and a process that dies."""
 
-from __future__ import annotations
-
 import io
 import os
 import pickle

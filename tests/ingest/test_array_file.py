@@ -1,7 +1,5 @@
 """Variables of .mat and .npz files: paths through structs and cells, and files that are damaged or hostile."""
 
-from __future__ import annotations
-
 import io
 import pickle
 import random

@@ -1,7 +1,5 @@
 """A trial out of variables of .mat, .npz and HDF5: channels, units and clocks that the study names."""
 
-from __future__ import annotations
-
 import random
 import sys
 

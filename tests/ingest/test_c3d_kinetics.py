@@ -1,7 +1,5 @@
 """Plug-in Gait's kinetics as moments of the muscles, per kg whatever the file states; measures of a person."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

@@ -1,7 +1,5 @@
 """Labels, events and analog channels of a C3D file."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

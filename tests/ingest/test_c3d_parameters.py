@@ -1,7 +1,5 @@
 """Header, parameters and layout of a C3D file: what each field means, and which of them contradict each other."""
 
-from __future__ import annotations
-
 import zipfile
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Points and segments of a C3D file in metres; a scale that is 0, infinite or no number never gives other numbers."""
 
-from __future__ import annotations
-
 import struct
 
 import ezc3d

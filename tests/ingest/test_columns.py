@@ -1,7 +1,5 @@
 """What labels of columns mean: maps, units, OpenSim's names."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

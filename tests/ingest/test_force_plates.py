@@ -1,7 +1,5 @@
 """Force plates of each type: corners, origins, wrenches, and files that say of them what cannot be."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

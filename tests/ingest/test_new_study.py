@@ -1,7 +1,5 @@
 """A draft of a study from real folders and from made ones; what came since is added, what stands in it stays."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

@@ -1,7 +1,5 @@
 """Who walked: what file names tell, and mass, sex and stature from a table beside the recordings."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Bytes, hash and lines of a file; files written as they are read."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """ezc3d in a process of its own: what comes back, and what is said where the process dies."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

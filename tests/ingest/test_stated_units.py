@@ -1,7 +1,5 @@
 """Units that a file states against its numbers: every planted mistake is found, no clean trial is accused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

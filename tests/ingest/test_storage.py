@@ -1,7 +1,5 @@
 """OpenSim storage files: headers of both styles, real files of every dialect, and the round trip of ours."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numbers of a table, its clock, and its columns as streams; what is none is said, forces that lack are refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """The study as an object, and its file: loaded, written with every default, equal to its JSON Schema."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from pathlib import Path

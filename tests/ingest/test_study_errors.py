@@ -1,7 +1,5 @@
 """Every slip in a study file, of one key or of several together, is said with file, line, key, what to do."""
 
-from __future__ import annotations
-
 import pytest
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError

@@ -1,7 +1,5 @@
 """Which trials belong together, and who is refused: what check and run share."""
 
-from __future__ import annotations
-
 import pytest
 from texts import says
 

@@ -1,7 +1,5 @@
 """Frames and joint centres of a standing person whose bones are known, hips found by circling too."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Poses: rotations, angles of Cardan, rigid bodies from their markers, joint centres against published equations."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

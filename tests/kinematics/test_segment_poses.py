@@ -1,7 +1,5 @@
 """Segments through a trial: each over its own points, held together at joints, carried over gaps; their angles."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

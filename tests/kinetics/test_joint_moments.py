@@ -1,7 +1,5 @@
 """Joint moments of segments with published inertia."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -9,11 +7,10 @@ from scipy.spatial.transform import Rotation
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import FootPoints, Person, inertia_table, leg_inertia, segment_lengths
-from gaitdisc.kinetics.foot_loads import FootLoad
-from gaitdisc.kinetics.joint_moments import KineticsSettings, joint_moments, legs
+from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, joint_moments, legs
 from gaitdisc.kinetics.newton_euler import GRAVITY, joint_wrenches
 from gaitdisc.kinetics.plate_steps import FootPath
-from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.kinetics.platform import Wrench
 from gaitdisc.signals.derivatives import differentiated
 
 TIME = np.arange(120) / 100

@@ -1,7 +1,5 @@
 """Wrenches on plates and feet: where a force acts, whose it is, what a plate that stands askew says."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import ezc3d
@@ -12,10 +10,9 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinetics.foot_loads import foot_loads, swings
+from gaitdisc.kinetics.joint_moments import foot_loads, swings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
-from gaitdisc.kinetics.platform import Platform, platforms
-from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.kinetics.platform import Platform, Wrench, platforms
 from gaitdisc.recording import Recording, Surface, Trial
 from gaitdisc.recording.trial import Event
 

@@ -1,7 +1,5 @@
 """From a trial to moments and powers, and the balance of forces that tells whether they can be right."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -13,12 +11,11 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.kinetics.foot_loads import FootLoad
-from gaitdisc.kinetics.joint_moments import KineticsSettings, legs
+from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, legs
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import FootPath
+from gaitdisc.kinetics.platform import Wrench
 from gaitdisc.kinetics.trial_kinetics import ForceBalance, force_balance, trial_kinetics
-from gaitdisc.kinetics.wrench import Wrench
 
 # Mass as PROCESSING states it; both plates of each straight walk are clean
 WALKS = {"HC002D/straight/HC002D06": 32.1, "HC030A/straight/HC030A05": 45.8, "HC036A/turn/HC036A23": 33.0}

@@ -1,7 +1,5 @@
 """Saved results read back, and pictures on the caller's own axes."""
 
-from __future__ import annotations
-
 import json
 
 import matplotlib as mpl

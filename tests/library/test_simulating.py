@@ -1,7 +1,5 @@
 """Running a simulation over time, against closed forms; a model as a script names it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -14,7 +12,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import write_mapping
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
-from gaitdisc.library.models import model_of
+from gaitdisc.library.simulating import model_of
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation_file import bundled

@@ -1,7 +1,5 @@
 """What a script asks of walks: what may be given, contacts, angles, moments, fitness, the response to a device."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

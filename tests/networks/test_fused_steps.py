@@ -1,7 +1,5 @@
 """Compiled steps of the trainer against torch's."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np
@@ -13,8 +11,16 @@ from torch import nn
 
 from gaitdisc.networks.descent import TorchSteps
 from gaitdisc.networks.feedforward import FeedForward
-from gaitdisc.networks.fused_kernels import BLOCK, exponential, gradient, layers, mean_squared_error
-from gaitdisc.networks.fused_steps import FusedSteps, can_be_fused, matrices_then_offsets
+from gaitdisc.networks.fused_steps import (
+    BLOCK,
+    FusedSteps,
+    can_be_fused,
+    exponential,
+    gradient,
+    layers,
+    matrices_then_offsets,
+    mean_squared_error,
+)
 from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
 
 

@@ -1,7 +1,5 @@
 """The networks: feed-forward, SHRED, and windows that carry over."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A network that is trained: a model, saved and loaded, and how many threads it takes."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

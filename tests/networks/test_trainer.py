@@ -1,7 +1,5 @@
 """The one trainer: best weights restored, the same seed the same weights, settings that are refused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Markers, or segments alone, become angles and moments; a trial that has angles keeps them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cycles pooled over trials that wait on disk: a made walk cut into short trials gives those of the whole."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """From files of a trial to a walk: one time base, filters, and the null that they leave."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +12,7 @@ from gaitdisc.ingest.study import Filters, HeldOut, Models, Quality
 from gaitdisc.processing.filter_null import filter_null, filter_null_of
 from gaitdisc.processing.process import is_raw, on_one_base, processed, quality_findings
 from gaitdisc.recording import Recording, Trial
-from gaitdisc.statistics.band_limit_null import analytic_null
+from gaitdisc.statistics.r2 import analytic_null
 
 
 def with_values(trial, key, values):

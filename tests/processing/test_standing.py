@@ -1,7 +1,5 @@
 """Angles and moments from markers inside a study: those that the same steps give by hand, and what is said without."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Cycles whose events are known: their channels, forces of the ground, pelvis and foot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

@@ -1,7 +1,5 @@
 """Two walks side by side, and a single stride of each."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """No command and no `.save` writes onto an input, onto a file of somebody else, or onto one that a user changed."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os
@@ -111,7 +109,7 @@ def run_once(_):
 def refused_words(monkeypatch, capsys, *words):
     """Run a command that is refused, and return the one line that it prints."""
     monkeypatch.setattr("sys.argv", ["gaitdisc", *words])
-    monkeypatch.setattr("gaitdisc.batch.watched_folder.WatchedFolder.changes", run_once)
+    monkeypatch.setattr("gaitdisc.commands.watch.WatchedFolder.changes", run_once)
     monkeypatch.setattr("gaitdisc.commands.watch._grown", lambda *_: [])
     before = signal.getsignal(signal.SIGTERM)
     try:

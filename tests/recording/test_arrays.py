@@ -1,7 +1,5 @@
 """Rows that stand together, angles that wrap around, how long a signal resembles itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,8 +7,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides, Trial
-from gaitdisc.recording.arrays import mean_where_known, read_only, runs, spans_s
-from gaitdisc.recording.autocorrelation import autocorrelation_time
+from gaitdisc.recording.arrays import autocorrelation_time, mean_where_known, read_only, runs, spans_s
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped, wrapped
 
 

@@ -1,7 +1,5 @@
 """A trial, and what it carries: findings, cycles, measures of the person."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

@@ -1,7 +1,5 @@
 """Ridge, with phase harmonics and on Fourier features."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What all participants say together: tests of pairs, other comparisons, their tables and figures."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

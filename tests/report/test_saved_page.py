@@ -1,7 +1,5 @@
 """Every result that is saved is drawn again from its folder: the same page as of the result in memory."""
 
-from __future__ import annotations
-
 import json
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Sentences of a study, and names of every sign that means something to a page, a terminal or a spreadsheet."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from html.parser import HTMLParser
 from xml.etree import ElementTree

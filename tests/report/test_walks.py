@@ -1,7 +1,5 @@
 """The variance explained, and the walks that it rests on."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The four models of a participant on known walks: samples, blocks, bands of refits that cover what they promise."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

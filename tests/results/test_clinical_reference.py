@@ -1,7 +1,5 @@
 """A published reference as a table; a made one, whose numbers are known; what is read beside it."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 from dataclasses import replace

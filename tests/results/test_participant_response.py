@@ -1,7 +1,5 @@
 """Results of a study of responses: what they hold, and what does not belong together."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

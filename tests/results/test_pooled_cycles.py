@@ -1,7 +1,5 @@
 """Cycles of a person, summaries of a walk, and the clinical variables of a leg's curves."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is kept: JSON with a hash of its own, units of a study, kinds; what was changed since is refused and named."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from dataclasses import asdict, replace

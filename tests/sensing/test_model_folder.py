@@ -1,7 +1,5 @@
 """A model saved, as ONNX too, and loaded elsewhere."""
 
-from __future__ import annotations
-
 import json
 import sys
 from dataclasses import replace

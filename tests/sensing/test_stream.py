@@ -1,7 +1,5 @@
 """Readings one by one as they come, calibrated first."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,9 +7,9 @@ import pytest
 
 from gaitdisc.errors import SchemaError, ShapeError, StrideError
 from gaitdisc.sensing.calibration import PENALTIES, calibrated, first_strides, rehearsed
-from gaitdisc.sensing.missing import with_missing
 from gaitdisc.sensing.model_folder import SensingModel, Stream
 from gaitdisc.sensing.reconstructor import MASKED, STATIC, fit_reconstructor
+from gaitdisc.sensing.windows import with_missing
 
 RIDGES = ("linear", "delay ridge", "fourier ridge")
 

@@ -1,7 +1,5 @@
 """The filter, gaps that it must not cross, and a low-pass that a record has been through."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

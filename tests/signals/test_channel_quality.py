@@ -1,7 +1,5 @@
 """Signals that cannot be right: plateaus, spikes, drifting forces, flat channels."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

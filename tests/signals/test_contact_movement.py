@@ -1,7 +1,5 @@
 """Contacts and foot off from paths that are known, from real files against their own events, and late changes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

@@ -1,7 +1,5 @@
 """Initial contacts: events of force and of angles, and who detects what."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

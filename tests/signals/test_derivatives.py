@@ -1,7 +1,5 @@
 """Derivatives by local polynomials of curves whose derivatives are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

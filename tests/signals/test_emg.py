@@ -1,7 +1,5 @@
 """EMG: envelopes, the order of steps, units, and a trial whose size is another than it states."""
 
-from __future__ import annotations
-
 import csv
 
 import numpy as np

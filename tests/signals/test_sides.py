@@ -1,7 +1,5 @@
 """Left and right: labels, and channels that follow the one or the other foot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

@@ -1,7 +1,5 @@
 """Strides, their quality and period, and where somebody walks."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 
@@ -16,8 +14,7 @@ from gaitdisc.recording import Strides
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.stride_quality import outlying, stride_distances, stride_findings, without_outlying
-from gaitdisc.signals.strides import cut_strides
-from gaitdisc.signals.walking import measured_walking, stride_period, verify_walking
+from gaitdisc.signals.strides import cut_strides, measured_walking, stride_period, verify_walking
 
 
 def contacts(durations, start=1.0):

@@ -1,7 +1,5 @@
 """R2, tables that belong together by their labels, and groups of people."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

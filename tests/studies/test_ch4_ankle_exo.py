@@ -1,7 +1,5 @@
 """Studies of chapter 4: angles, and EMG."""
 
-from __future__ import annotations
-
 import sys
 import tomllib
 

@@ -1,7 +1,5 @@
 """Studies of chapter 5's gait: one person, many, and sets of sensors."""
 
-from __future__ import annotations
-
 import ch5_gait_individual
 import ch5_gait_population
 import numpy as np

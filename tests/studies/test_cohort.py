@@ -1,7 +1,5 @@
 """The cohort against published facts and its own laws: norms, muscles, family-wise errors, pooled cycles, contacts."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import cohort_muscles

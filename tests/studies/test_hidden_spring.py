@@ -1,7 +1,5 @@
 """Studies that hide an effect and find it: springs, joints, chains, a knee with memory, EMPS."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

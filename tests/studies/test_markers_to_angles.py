@@ -1,7 +1,5 @@
 """Studies of angles and moments: other software, skin that slides, markers that drop out, real strides."""
 
-from __future__ import annotations
-
 import re
 
 import gait10dof_segments

@@ -1,7 +1,5 @@
 """The exoskeleton's spring is named in gait, from files and in the hidden-effects study."""
 
-from __future__ import annotations
-
 import device_from_files
 import hidden_effects_in_gait
 import pytest

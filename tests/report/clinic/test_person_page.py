@@ -1,7 +1,5 @@
 """A person's page, its PDF, and the index of all."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import re
