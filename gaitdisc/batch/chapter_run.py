@@ -56,7 +56,10 @@ def run_part(
     if lack is not None:
         raise lack
     folder = out / part.name
-    begun = {"part": part.name, "quick": quick, "code": _code()}
+    digest = hashlib.sha256(code_sha256().encode())
+    for path in sorted(path for path in studies_folder().rglob("*") if path.suffix in (".py", ".csv", ".toml")):
+        digest.update(path.read_bytes())
+    begun = {"part": part.name, "quick": quick, "code": digest.hexdigest()[:12]}
     if _stands(folder, begun):
         return Made(folder, True)
     claim_folder(folder, NAME, PRINTED, mended=(NAME,))
@@ -125,11 +128,3 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
 
 def _data_folder(data: Path | None) -> Path:
     return data or Path(os.environ.get("GAITDISC_DATA", studies_folder().parents[1] / "shared" / "data"))
-
-
-def _code() -> str:
-    """Hash of the package and of the studies."""
-    digest = hashlib.sha256(code_sha256().encode())
-    for path in sorted(path for path in studies_folder().rglob("*") if path.suffix in (".py", ".csv", ".toml")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]

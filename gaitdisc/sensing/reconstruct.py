@@ -150,15 +150,10 @@ def _summary(tested: Reconstructed, channels: Sequence[Channel], what: Sensing) 
     readings = tested.windows.x[:, -count:][:, angles]
     errors = angles_error(tested, channels[count:], readings)
     if len({channel.unit for channel in channels[count:]}) == 1 and channels[-1].unit != "deg":
-        errors |= _alike(tested)
+        measured = tested.windows.y
+        relative = float(np.linalg.norm(tested.states - measured) / np.linalg.norm(measured))
+        errors |= {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, tested.states)))}
     return {"strides": tested.strides, **errors}
-
-
-def _alike(tested: Reconstructed) -> dict[str, float]:
-    """Errors without unit of states that are no angles but all of one unit: muscles, forces, moments."""
-    measured = tested.windows.y
-    relative = float(np.linalg.norm(tested.states - measured) / np.linalg.norm(measured))
-    return {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, tested.states)))}
 
 
 FOLDS = 5
