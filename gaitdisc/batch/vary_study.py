@@ -25,8 +25,7 @@ from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_
 from gaitdisc.response.modalities import (
     LENGTHS_S,
     Setting,
-    compare_modalities,
-    compare_settings,
+    compare_variants,
     fit_data_quantity,
     fit_without,
     settings_around,
@@ -71,7 +70,7 @@ def vary_study(
             run.exo,
             question,
             computed,
-            compare_modalities(computed) if question == "modalities" else compare_settings(computed),
+            compare_variants(computed, question),
             (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
             (min(lengths), max(lengths)),
             run.renewed,

@@ -21,7 +21,7 @@ from gaitdisc.report.variants import (
     variant_tables,
     write_variants,
 )
-from gaitdisc.response.modalities import AS_STUDIED, compare_modalities, compare_settings
+from gaitdisc.response.modalities import AS_STUDIED, compare_variants
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
 
@@ -42,7 +42,9 @@ def variant_run(count=8):
         ]
         table = pd.DataFrame(rows, columns=["variant", "variable", "model", "kind", "r2", "n"])
         people.append(Variants(f"P{number:02d}", "modalities", table, {}))
-    return VariantRun("study", "exo", "modalities", tuple(people), compare_modalities(people), (), (7.5, 7.5))
+    return VariantRun(
+        "study", "exo", "modalities", tuple(people), compare_variants(people, "modalities"), (), (7.5, 7.5)
+    )
 
 
 def test_falls_are_medians_over_the_variables_of_a_group():
@@ -105,7 +107,9 @@ def variant_run_sensitivity(count=8, four_hz=0.0):
                 rows.append((variant, variable, "nominal", "null", 0.5, 99))
         table = pd.DataFrame(rows, columns=["variant", "variable", "model", "kind", "r2", "n"])
         people.append(Variants(f"P{number:02d}", "sensitivity", table, {"EMG 4 Hz": "too short; found 3 s"}))
-    return VariantRun("study", "exo", "sensitivity", tuple(people), compare_settings(people), (), (7.5, 7.5))
+    return VariantRun(
+        "study", "exo", "sensitivity", tuple(people), compare_variants(people, "sensitivity"), (), (7.5, 7.5)
+    )
 
 
 def test_medians_of_a_setting():
