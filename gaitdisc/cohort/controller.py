@@ -15,15 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, leg_of
-from gaitdisc.cohort.ground import gate, habitual_force, pressure_centre
 from gaitdisc.cohort.habit import activity
 from gaitdisc.cohort.leg_path import (
     PHASES,
     belt_held,
     by_phase,
+    gate,
     habit_angles,
+    habitual_force,
     hip_motion,
     pressed_point,
+    pressure_centre,
     staged,
     thigh_shank_foot,
 )

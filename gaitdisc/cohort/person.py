@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.recording.body_measures import LEG_OF_STATURE
+from gaitdisc.recording.trial import LEG_OF_STATURE
 
 STIFFNESS = 5.0  # N m/deg, Ebers (2023), section 4.2.1
 SHANK_KG, FOOT_KG = 0.6, 0.4  # worn in both conditions; general knowledge of such devices

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.controller import learnt_table
-from gaitdisc.cohort.ground import Belt
+from gaitdisc.cohort.leg_path import Belt
 from gaitdisc.cohort.motion import (
     NOISE,
     NOISE_STEPS,
@@ -25,7 +25,7 @@ from gaitdisc.cohort.motion import (
 from gaitdisc.cohort.muscles import strength_of
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, MUSCLES, SHANK_KG, Person, Spring
 from gaitdisc.errors import StrideError
-from gaitdisc.recording.body_measures import LEG_OF_STATURE
+from gaitdisc.recording.trial import LEG_OF_STATURE
 
 WARM_UP_S = 8.0  # walked before the recording begins
 QUICK_HZ, SLOW_HZ = 1000.0, 100.0

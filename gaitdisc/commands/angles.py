@@ -35,7 +35,7 @@ def angles(
     from gaitdisc.ingest.writing import write_recording
     from gaitdisc.kinematics.motion import moved_body, segment_angles
     from gaitdisc.own_files import claim_file
-    from gaitdisc.recording.body_measures import BodyMeasures
+    from gaitdisc.recording.trial import BodyMeasures
 
     claim_file(out)
     walk = read_trial(trial)

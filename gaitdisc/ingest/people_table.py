@@ -14,7 +14,7 @@ from typing import Literal
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.recording.body_measures import LENGTHS_M, MASS_KG
+from gaitdisc.recording.trial import LENGTHS_M, MASS_KG
 from gaitdisc.spreadsheet import unquoted
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")

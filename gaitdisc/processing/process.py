@@ -24,9 +24,8 @@ from gaitdisc.signals.channel_quality import channel_findings, drift_findings, p
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.derivatives import trajectory
 from gaitdisc.signals.emg import emg_findings, enveloped
-from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.gaps import filled, spike_findings, without_spikes
 from gaitdisc.signals.sides import verify_sides
-from gaitdisc.signals.spikes import spike_findings, without_spikes
 from gaitdisc.signals.stride_quality import late_change_findings
 from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
 from gaitdisc.signals.strides import cut_strides, verify_walking

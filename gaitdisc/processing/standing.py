@@ -28,7 +28,7 @@ from gaitdisc.processing.markers_to_moments import (
 from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 from gaitdisc.signals.direction import marker_position
 from gaitdisc.signals.emg import FEWEST, OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
 

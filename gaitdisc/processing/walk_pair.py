@@ -19,8 +19,8 @@ from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.emg import ENVELOPE_HZ, enveloped
+from gaitdisc.signals.gaps import without_spikes
 from gaitdisc.signals.sides import verify_sides
-from gaitdisc.signals.spikes import without_spikes
 from gaitdisc.signals.stride_quality import without_outlying
 from gaitdisc.signals.strides import MAX_S, MIN_S, cut_strides, verify_walking
 

@@ -15,7 +15,7 @@ from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
-from gaitdisc.recording.body_measures import LEG_OF_STATURE
+from gaitdisc.recording.trial import LEG_OF_STATURE
 from gaitdisc.response.fit_response import ResponseSettings, fit_linear, held_out_part
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.statistics.r2 import r2

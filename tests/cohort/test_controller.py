@@ -10,15 +10,16 @@ from hypothesis import strategies as st
 from gaitdisc.cohort.body import cycle_rate, leg_of
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.controller import COLUMNS, engaged_moment, learnt_table
-from gaitdisc.cohort.ground import habitual_force, pressure_centre
 from gaitdisc.cohort.leg_path import (
     PHASES,
     belt_held,
     by_phase,
     contact_path,
     habit_angles,
+    habitual_force,
     hip_motion,
     pressed_point,
+    pressure_centre,
     staged,
     thigh_shank_foot,
 )

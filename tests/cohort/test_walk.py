@@ -8,7 +8,7 @@ import pytest
 from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.controller import COLUMNS, learnt_table
-from gaitdisc.cohort.ground import STANCE, Belt, gate, habitual_force, pressure_centre
+from gaitdisc.cohort.leg_path import STANCE, Belt, gate, habitual_force, pressure_centre
 from gaitdisc.cohort.motion import NOISE, NOISE_STEPS, STEP_S, Worn, moved
 from gaitdisc.cohort.muscles import strength_of
 from gaitdisc.cohort.person import Spring, drawn

@@ -14,7 +14,7 @@ from gaitdisc.ingest.trial_sets import (
     static_trial,
     trial_sets,
 )
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 
 def _trial(condition, session=None, file="a.c3d"):

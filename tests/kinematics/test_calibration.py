@@ -34,7 +34,7 @@ from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinematics.pose import DavisHip, harrington_hip
 from gaitdisc.recording import Recording
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 
 def with_methods(name: str, **methods: str) -> MarkerSet:

@@ -17,7 +17,7 @@ from gaitdisc.processing.markers_to_moments import computed_trial, without_excha
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.processing.two_sources import line_angles
 from gaitdisc.recording import Strides
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 from gaitdisc.signals.butterworth import lowpassed
 
 MARKERS = Kinematics(angles="markers", marker_set="plug_in_gait")

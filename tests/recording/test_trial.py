@@ -11,7 +11,7 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError, UnitError
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 FORCE = Channel("ground_force_r_vy", "vertical_force", "N", "r")

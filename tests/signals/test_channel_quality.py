@@ -22,7 +22,7 @@ from gaitdisc.signals.channel_quality import (
     swing_baseline,
 )
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.signals.spikes import spike_findings, spikes, without_spikes
+from gaitdisc.signals.gaps import spike_findings, spikes, without_spikes
 
 FORCE = Channel("ground_force_r_vy", "vertical_force", "N", "r")
 
