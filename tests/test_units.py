@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import UnitError
-from gaitdisc.units import convert, dimension_of, inner_unit, known_units, parsed_unit, rate_unit, unit_factor
+from gaitdisc.units import convert, dimension_of, inner_unit, known_units, parsed_unit, unit_factor
 
 
 @pytest.mark.parametrize(
@@ -46,10 +46,6 @@ def test_a_length_is_no_angle():
 def test_unknown_unit_lists_the_known():
     with pytest.raises(UnitError, match=r"'ell'.*not.*deg, rad, m"):
         inner_unit("ell")
-
-
-def test_rates():
-    assert [rate_unit("deg", order) for order in (0, 1, 2)] == ["deg", "deg/s", "deg/s2"]
 
 
 def test_every_unit_of_a_recording_is_in_the_one_table():

@@ -134,11 +134,6 @@ def test_whoever_walks_otherwise_is_far_below_and_few_controls_give_none():
     assert index == {} and says(why, "30 controls", "6")
 
 
-def test_a_coefficient_computed_by_hand():
-    """0 2 4 and 1 3 5: within 1.5 / (3 * 1) = 0.5, about the grand mean 17.5 / 5 = 3.5, so the root of 6/7."""
-    assert multiple_correlation(np.array([[0.0, 2.0, 4.0], [1.0, 3.0, 5.0]])) == pytest.approx(np.sqrt(6 / 7))
-
-
 def test_equal_cycles_are_one_and_what_is_not_defined_is_not_a_number():
     curve = np.sin(np.linspace(0, 6, 101))
     assert multiple_correlation(np.tile(curve, (3, 1))) == pytest.approx(1.0)

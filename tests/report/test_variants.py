@@ -5,11 +5,9 @@ import pandas as pd
 import pytest
 from texts import says
 
-from gaitdisc.report.figure import save_figure
 from gaitdisc.report.variants import (
     ALL,
     falls,
-    family_words,
     modalities_figure,
     modalities_sentences,
     modalities_table,
@@ -72,22 +70,9 @@ def test_the_sentences_name_the_largest_falls_and_what_they_cannot_say():
     assert "cannot replace" in last
 
 
-def test_the_figure_says_n_and_split(tmp_path):
-    figure = modalities_figure(variant_run())
-    assert figure is not None
-    assert "n = 8 participants" in figure.caption
-    assert "last 7.5 s" in figure.caption
-    save_figure(figure, tmp_path)
-    assert (tmp_path / "modalities.csv").is_file()
-
-
 def test_nobody_is_no_figure():
     assert modalities_figure(variant_run(0)) is None
     assert modalities_sentences(variant_run(0)) == ("Nobody's models could be fitted.",)
-
-
-def test_families_are_named_as_they_are_read():
-    assert family_words("hip_flexion") == "hip flexion"
 
 
 MODELS = {"nominal": 0.8, "augmented": 0.9, "exo": 0.91}
