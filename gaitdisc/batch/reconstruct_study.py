@@ -43,8 +43,8 @@ class ReconstructionSettings:
     """How a study is reconstructed."""
 
     split: str = "temporal"  # a word of `gaitdisc.sensing.windows.RULES` or of `ACROSS`
-    history_s: float = 1.0  # reach of a window, and time from one reading to the next [s]
-    spacing_s: float = 0.04  # reach of a window, and time from one reading to the next [s]
+    history_s: float = 1.0  # reach of a window [s]
+    spacing_s: float = 0.04  # from one of its readings to the next [s]
     kinds: tuple[str, ...] = tuple(KINDS)
     # walks of this condition alone, of both where it is empty; with the split `condition`, those that are tested
     condition: str = ""

@@ -30,12 +30,12 @@ RISE, FALL = 0.10, 0.16  # shares of the stance over which the gate opens and cl
 class Belt(NamedTuple):
     """How firmly the belt holds a foot."""
 
-    along: float = 6000.0  # stiffness [N/m, N/m, N m/rad]
-    up: float = 12000.0  # stiffness [N/m, N/m, N m/rad]
-    turn: float = 120.0  # stiffness [N/m, N/m, N m/rad]
-    along_damping: float = 180.0  # [N s/m, N s/m, N m s/rad]
-    up_damping: float = 360.0  # [N s/m, N s/m, N m s/rad]
-    turn_damping: float = 3.0  # [N s/m, N s/m, N m s/rad]
+    along: float = 6000.0  # stiffness [N/m]
+    up: float = 12000.0  # stiffness [N/m]
+    turn: float = 120.0  # stiffness [N m/rad]
+    along_damping: float = 180.0  # [N s/m]
+    up_damping: float = 360.0  # [N s/m]
+    turn_damping: float = 3.0  # [N m s/rad]
 
 
 def gate(phase: NDArray[np.float64]) -> NDArray[np.float64]:

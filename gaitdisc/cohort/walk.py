@@ -53,8 +53,8 @@ class TrueWalk:
     person: Person
     device: Spring
     seed: int
-    quick_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clocks at 1000 and 100 Hz
-    slow_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clocks at 1000 and 100 Hz
+    quick_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clock at 1000 Hz
+    slow_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clock at 100 Hz
     # (quick,) [strides], of the right foot, counted on; a whole number is a contact. The left foot is half a stride off
     phase: NDArray[np.float64] = field(repr=False)
     force: NDArray[np.float64] = field(repr=False)  # (quick, 2, 2) [N], side; forwards, upwards

@@ -107,8 +107,8 @@ class JointPart(NamedTuple):
     joint: str
     angle: str  # angle that a positive part drives, without its side: `knee_angle`
     axis: int  # 0 nearer segment's z, 1 floating, 2 farther segment's y
-    right: int  # sign of the positive angle about the axis, for each leg
-    left: int  # sign of the positive angle about the axis, for each leg
+    right: int  # sign of the positive angle about the axis, right leg
+    left: int  # the same of the left leg
 
     def sign(self, side: str) -> int:
         """Sign of the positive angle about the axis."""

@@ -94,8 +94,8 @@ class PlateStep:
 
     platform: str
     side: str  # `r` or `l`; empty where the foot is unknown
-    start: float  # [s], of the loading
-    end: float  # [s], of the loading
+    start: float  # of the loading [s]
+    end: float  # of the loading [s]
     reason: str = ""  # why it cannot be used; empty where one foot alone stepped on it with all of its sole
     # false where the recording begins or ends in it: its forces are right, and it is no whole stance
     whole: bool = True

@@ -228,9 +228,9 @@ class Trajectory:
     """
 
     time: NDArray[np.float64]  # (time,) [s], even
-    x: NDArray[np.float64]  # (time, channel) [unit, unit/s, unit/s2], state and its time derivatives
-    xdot: NDArray[np.float64]  # (time, channel) [unit, unit/s, unit/s2], state and its time derivatives
-    xddot: NDArray[np.float64]  # (time, channel) [unit, unit/s, unit/s2], state and its time derivatives
+    x: NDArray[np.float64]  # (time, channel) [unit], state
+    xdot: NDArray[np.float64]  # (time, channel) [unit/s], its derivative
+    xddot: NDArray[np.float64]  # (time, channel) [unit/s2], its second derivative
     phi: NDArray[np.float64]  # (time,) [% stride], 0 <= phi < 100, NaN outside of strides
     channels: tuple[Channel, ...]
     usable: NDArray[np.bool_]  # (time, channel), false where x, xdot or xddot is missing or not to be trusted

@@ -259,8 +259,8 @@ class Fit:
     model: Model
     decay: float  # weight decay of a network, penalty of a ridge regression
     epochs: int  # epochs trained; 0 where nothing is descended
-    n_training: int  # samples of the whole training part, and of the inner block that chose the decay
-    n_inner: int  # samples of the whole training part, and of the inner block that chose the decay
+    n_training: int  # samples of the whole training part
+    n_inner: int  # samples of the inner block that chose the decay
     seconds: float  # Wall-clock time [s]
 
 
@@ -268,9 +268,9 @@ class Fit:
 class ResponseModels:
     """The models of one participant."""
 
-    nominal: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
-    exo: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
-    discrepancy: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
+    nominal: Fit  # Eq. 4.2
+    exo: Fit  # Eq. 4.3, of the same inputs and outputs
+    discrepancy: Fit  # Eq. 4.4, of the same inputs and outputs
 
     @property
     def augmented(self) -> Augmented:

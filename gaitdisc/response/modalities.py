@@ -162,8 +162,8 @@ class Setting:
     """
 
     name: str
-    angles_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
-    emg_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
+    angles_hz: float  # low-pass of the joint angles [Hz]
+    emg_hz: float  # low-pass of the rectified EMG [Hz]
     share: float = 1.0  # share of the training part that is used, from its beginning; 1 for all of it
 
 

@@ -49,8 +49,8 @@ class ParticipantResponse:
     """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), tested on held-out walking."""
 
     participant: str
-    inputs: tuple[str, ...]  # names of what goes in and what is predicted
-    outputs: tuple[str, ...]  # names of what goes in and what is predicted
+    inputs: tuple[str, ...]  # names of what goes in
+    outputs: tuple[str, ...]  # names of what is predicted
     units: tuple[str, ...]  # unit of each output, a second derivative
     # variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
     # ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted), r2,

@@ -225,10 +225,10 @@ CYCLES = Kind(
 class WalkSummary:
     """One walk of one person, small enough to keep."""
 
-    subject: str  # pseudonym; the study's word for the condition
-    condition: str  # pseudonym; the study's word for the condition
-    duration_s: float  # length and rate of the processed recording
-    rate_hz: float  # length and rate of the processed recording
+    subject: str  # pseudonym
+    condition: str  # the study's word
+    duration_s: float  # of the processed recording
+    rate_hz: float  # of the processed recording
     detector: str
     channels: tuple[Channel, ...]
     # (stride, phase, channel) [channel's unit], every kept stride on 101 points; of a walk that was loaded it is read

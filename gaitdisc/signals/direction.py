@@ -20,8 +20,8 @@ LEAST_SPEED = 0.3  # m/s of the pelvis in the laboratory: slower is a treadmill,
 class Direction:
     """Forwards and upwards in the laboratory's axes."""
 
-    forward: NDArray[np.float64]  # (3,), unit vectors; forward is the mean one where walking turns
-    up: NDArray[np.float64]  # (3,), unit vectors; forward is the mean one where walking turns
+    forward: NDArray[np.float64]  # (3,), unit vector, the mean one where walking turns
+    up: NDArray[np.float64]  # (3,), unit vector
     how: str  # `given`, or what they were inferred from
     # (time, 3), forward at each sample of the markers, where it follows the path of the pelvis
     headings: NDArray[np.float64] | None = None
