@@ -17,7 +17,7 @@ from gaitdisc.batch.chapter_parts import OUT, Part, studies_folder
 from gaitdisc.errors import SchemaError, TrainingError
 from gaitdisc.own_files import claim_folder
 from gaitdisc.results.provenance import code_sha256
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.unit_folder import read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 from gaitdisc.write_lock import write_lock
 

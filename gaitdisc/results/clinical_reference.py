@@ -14,7 +14,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
 from gaitdisc.results.leg_curves import BY_NAME, LegCurves
 from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.unit_folder import read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv
 from gaitdisc.whole_file import write_whole
 

@@ -15,9 +15,8 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.kind import CSV, Kind, Saved
-from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.unit_folder import unit_name
+from gaitdisc.results.unit_folder import lies_on_disk, may_lie_on_disk, unit_name
 
 CYCLE_COLUMNS = (
     "trial",

@@ -14,8 +14,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import real_array
-from gaitdisc.results.on_disk import DamagedError
-from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
+from gaitdisc.results.unit_folder import DamagedError, check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.sensing.reconstructor import (
     ENSEMBLE,
     KINDS,

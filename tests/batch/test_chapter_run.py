@@ -23,7 +23,7 @@ from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, CURVES, REGION_COLUMNS, Exchange, Mismatch
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.reconstruction import Reconstruction
-from gaitdisc.results.sealed_json import sealed_text
+from gaitdisc.results.unit_folder import sealed_text
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST
 
 WORKS = """

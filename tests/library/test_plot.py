@@ -47,7 +47,7 @@ def test_a_folder_without_a_result_is_refused(tmp_path):
 
 
 def test_a_discovery_that_was_edited_or_is_of_another_format_is_refused(tmp_path):
-    from gaitdisc.results.sealed_json import read_sealed, sealed_text
+    from gaitdisc.results.unit_folder import read_sealed, sealed_text
 
     file = manufactured().save(tmp_path) / "discovery.json"
     data = read_sealed(file)

@@ -109,7 +109,7 @@ def run_once(_):
 def refused_words(monkeypatch, capsys, *words):
     """Run a command that is refused, and return the one line that it prints."""
     monkeypatch.setattr("sys.argv", ["gaitdisc", *words])
-    monkeypatch.setattr("gaitdisc.commands.watch.WatchedFolder.changes", run_once)
+    monkeypatch.setattr("gaitdisc.batch.watched_folder.WatchedFolder.changes", run_once)
     monkeypatch.setattr("gaitdisc.commands.watch._grown", lambda *_: [])
     before = signal.getsignal(signal.SIGTERM)
     try:

@@ -12,7 +12,7 @@ from texts import says
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.clinical_reference import FILE, Limits, Score, load_reference, read_published, save_reference
-from gaitdisc.results.sealed_json import sealed_text
+from gaitdisc.results.unit_folder import sealed_text
 
 
 def test_every_second_percent_becomes_a_band_on_101_points(tmp_path):

@@ -17,16 +17,25 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.report.saved_page import draw_saved
 from gaitdisc.results import kind as kinds
-from gaitdisc.results import on_disk
+from gaitdisc.results import unit_folder
 from gaitdisc.results.kind import Kind, Saved, load_saved
-from gaitdisc.results.on_disk import lies_on_disk
 from gaitdisc.results.over_participants import TESTS
 from gaitdisc.results.participant_response import RESPONSE, load_run
 from gaitdisc.results.pooled_cycles import WALK
 from gaitdisc.results.provenance import Refusal, code_sha256, installed_versions, made_now
-from gaitdisc.results.sealed_json import OWN, check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.results.study_run import UNITS, created_before, save_run
-from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding, unit_name
+from gaitdisc.results.unit_folder import (
+    OWN,
+    check_files,
+    file_sha256,
+    lies_on_disk,
+    load_unit,
+    read_sealed,
+    save_unit,
+    sealed_text,
+    stored_finding,
+    unit_name,
+)
 
 NUMBERS = st.floats(allow_nan=False) | st.integers() | st.text() | st.booleans() | st.none()
 
@@ -93,7 +102,7 @@ def test_arrays_are_read_when_they_are_looked_at(response, stored, monkeypatch):
     np.testing.assert_array_equal(stored.held_out.measured, response.held_out.measured)
     assert stored.residuals.keys() == response.residuals.keys()
     read = []
-    monkeypatch.setattr(on_disk.np, "load", lambda *_, **__: read.append(1))
+    monkeypatch.setattr(unit_folder.np, "load", lambda *_, **__: read.append(1))
     assert stored.held_out.time is stored.held_out.time  # what was just read is not read again
     assert read == []
 
@@ -106,7 +115,7 @@ def test_a_response_that_goes_to_another_process_takes_no_arrays_along(response,
 def test_arrays_that_changed_or_went_since_the_run_was_loaded_are_reported(response, tmp_path):
     RESPONSE.save(response, tmp_path, "key")
     changed, gone = RESPONSE.load(tmp_path), RESPONSE.load(tmp_path)
-    on_disk._arrays.cache_clear()
+    unit_folder._arrays.cache_clear()
     (tmp_path / "arrays.npz").write_bytes(b"other")
     with pytest.raises(SchemaError, match=r"arrays.npz.*changed since it was"):
         _ = changed.held_out

@@ -14,7 +14,7 @@ from gaitdisc.errors import ChannelError, SamplingError, SchemaError, UnitError
 from gaitdisc.networks.shred import ShallowDecoder, Shred
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
-from gaitdisc.results.sealed_json import file_sha256
+from gaitdisc.results.unit_folder import file_sha256
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.onnx_file import write_onnx
 from gaitdisc.sensing.reconstructor import Reconstructor, fit_reconstructor

@@ -27,17 +27,13 @@ def test_the_held_out_error_falls_near_the_noise(row):
 
 
 @pytest.fixture(scope="module")
-def device_from_files_row():
+def files():
     return device_from_files.run(1, 777101, True).iloc[0]
 
 
-def test_the_exoskeletons_spring_is_named_from_the_files(device_from_files_row):
-    assert device_from_files_row["right"]
+def test_the_exoskeletons_spring_is_named_from_the_files(files):
+    assert files["right"]
 
 
-def test_the_named_effect_leaves_less_of_the_moment_than_the_device_walks_own_muscle_model(device_from_files_row):
-    assert (
-        device_from_files_row["Nominal + named effect"]
-        < device_from_files_row["Exo"]
-        < device_from_files_row["Nominal"]
-    )
+def test_the_named_effect_leaves_less_of_the_moment_than_the_device_walks_own_muscle_model(files):
+    assert files["Nominal + named effect"] < files["Exo"] < files["Nominal"]
