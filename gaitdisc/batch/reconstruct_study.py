@@ -20,9 +20,8 @@ from gaitdisc.recording import Recording, Samples
 from gaitdisc.results.provenance import Refusal, made_now
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.model_folder import SensingModel, load_model
-from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
+from gaitdisc.sensing.reconstruct import BASELINES, Fits, PersonReconstruction, reconstruct
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Reconstructor, Sensing, fitting_device, sensing
 from gaitdisc.sensing.sensor_search import search_sensors
 from gaitdisc.sensing.state_errors import LEVEL, coverage
