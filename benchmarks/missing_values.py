@@ -36,9 +36,8 @@ from sensing_walks import Person, chosen_walks
 
 from gaitdisc.recording import Samples
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.sensing.missing import filled, hidden, with_missing
 from gaitdisc.sensing.reconstructor import FEATURES, MASKED, Reconstructor, fit_reconstructor
-from gaitdisc.sensing.windows import Parts, split_within
+from gaitdisc.sensing.windows import Parts, filled, hidden, split_within, with_missing
 
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 RUNS_S = (0.0, 0.2)

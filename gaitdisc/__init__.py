@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from gaitdisc.errors import GaitdiscError as GaitdiscError
     from gaitdisc.ingest.c3d import C3DReader as C3DReader
     from gaitdisc.ingest.reading import read_trial as read
-    from gaitdisc.ingest.writing import write_recording as write
+    from gaitdisc.ingest.reading import write_recording as write
     from gaitdisc.library import plot as plot
     from gaitdisc.library.comparing import compare as compare
     from gaitdisc.library.comparing import paired_tests as paired_tests
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
 # name -> module, and the name there; in the order of the reference
 _HOME = {
     "read": ("ingest.reading", "read_trial"),
-    "write": ("ingest.writing", "write_recording"),
+    "write": ("ingest.reading", "write_recording"),
     "C3DReader": ("ingest.c3d", "C3DReader"),
     "check": ("library.loading", "check"),
     "example_files": ("library.examples", "example_files"),

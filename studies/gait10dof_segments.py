@@ -18,9 +18,8 @@ from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import joint_wrenches, segment_motion
 from gaitdisc.kinetics.plate_steps import foot_paths
-from gaitdisc.kinetics.platform import platforms
+from gaitdisc.kinetics.platform import Wrench, platforms
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
-from gaitdisc.kinetics.wrench import Wrench
 
 FEET = {"r": ("R.Heel", "R.Toe.Tip"), "l": ("L.Heel", "L.Toe.Tip")}
 JOINTS = {"ankle_angle": "foot", "knee_angle": "shank", "hip_flexion": "thigh"}

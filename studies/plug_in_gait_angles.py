@@ -13,7 +13,7 @@ from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 Row = tuple[str, ...]
 WRITTEN_WITH, HELD_BACK = ("HC002D", "HC030A", "HC031A", "HC032A"), ("HC033A", "HC036A")

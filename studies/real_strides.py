@@ -19,7 +19,7 @@ from markdown_table import markdown_table
 
 import gaitdisc as gd
 from gaitdisc.signals.channel_quality import plateaus
-from gaitdisc.signals.walking import verify_walking
+from gaitdisc.signals.strides import verify_walking
 
 Row = tuple[str, str, str]
 RUNNING_STRIDES = {"natural2": 83, "exotendon3": 88, "manual_ik": 90}

@@ -8,8 +8,6 @@ unit. Pages are those of the saved folders in tests/data/saved. Refusals and fin
 them, `{name}` where a value stands.
 """
 
-from __future__ import annotations
-
 import ast
 import contextlib
 import difflib

@@ -1,7 +1,5 @@
 """Where real recordings lie, and the skip where they do not."""
 
-from __future__ import annotations
-
 import gc
 import os
 from pathlib import Path

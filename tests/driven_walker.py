@@ -8,8 +8,6 @@ the missing effect is known to the last digit, which is what a test needs. The p
 The habitual curves are smooth curves of ordinary size (hip 40 deg, knee 60 deg, ankle 27 deg of range), not norm data.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

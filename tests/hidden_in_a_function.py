@@ -1,7 +1,5 @@
 """A simulation that is a Python function of ten lines, and short records of what it lacks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

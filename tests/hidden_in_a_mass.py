@@ -1,7 +1,5 @@
 """Small systems whose missing effect is known, because it was hidden here: a mass on a spring, two rods, a neuron."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Made people of a clinic: curves of the shape of walking, each with an offset of its own: answers are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

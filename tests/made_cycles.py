@@ -1,7 +1,5 @@
 """Pooled cycles of known shape: one angle and one moment a side, every cycle a constant on top of a sine."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

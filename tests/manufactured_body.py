@@ -1,7 +1,5 @@
 """A body of rigid segments that moves by known joint angles, and the markers that a laboratory would see of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,7 +7,7 @@ import numpy as np
 from gaitdisc.channel import Channel
 from gaitdisc.kinematics.pose import harrington_hip, rotation_of
 from gaitdisc.recording import Recording, Source
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 WIDTH, DEPTH, THIGH, SHANK, HEIGHT = 0.24, 0.15, 0.40, 0.38, 0.07
 RADIUS = 0.007

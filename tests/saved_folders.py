@@ -7,8 +7,6 @@ program changes, for they are what people have. `engine` needs MuJoCo, `tracked`
 ../shared/data. Networks take two passes: what they learn is of no interest here.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

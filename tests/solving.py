@@ -1,7 +1,5 @@
 """One trial solved with an adaptive step: the reference that fixed steps are checked by."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

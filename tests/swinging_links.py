@@ -1,7 +1,5 @@
 """Links on hinges whose motion is written down: exact poses, accelerations and Lagrange's moments."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.spatial.transform import Rotation
 

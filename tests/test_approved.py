@@ -1,7 +1,5 @@
 """Whatever a user reads is as it was approved; `python tests/approve.py` shows what differs, `--yes` approves it."""
 
-from __future__ import annotations
-
 import pytest
 from approve import SAVED, Words, difference, draw_pages, list_help, list_templates, read_approved
 

@@ -1,7 +1,5 @@
 """Bad input of a run, end to end through the command line: what is said, and that the others go on."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

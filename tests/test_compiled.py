@@ -12,7 +12,7 @@ import gaitdisc
 from gaitdisc import compiled as room
 from gaitdisc.compiled import compiled
 
-CODE = "from gaitdisc.networks.fused_kernels import exponential; import numpy as np; print(exponential(np.float32(1)))"
+CODE = "from gaitdisc.networks.fused_steps import exponential; import numpy as np; print(exponential(np.float32(1)))"
 
 
 def test_arguments_of_numba_are_passed_on():

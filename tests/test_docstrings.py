@@ -1,7 +1,5 @@
 """What the library offers is documented whole; elsewhere a docstring names real parameters alone, in order."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import pkgutil

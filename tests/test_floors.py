@@ -1,7 +1,5 @@
 """Imports go downwards only; rooms on one floor do not import each other (docs/design.md)."""
 
-from __future__ import annotations
-
 import ast
 from functools import cache
 from pathlib import Path
@@ -109,9 +107,9 @@ def test_the_report_reads_results_and_computes_none():
 
 def test_what_saves_and_what_lays_out_knows_no_kind():
     """Files that every subject saves and draws by import no noun that is saved."""
-    everywhere = ("results/kind", "results/study_run", "results/unit_folder", "results/sealed_json", "results/on_disk")
+    everywhere = ("results/kind", "results/study_run", "results/unit_folder")
     laid_out = ("report/page", "report/table", "report/figure", "report/panels", "report/saved_page")
-    allowed = {"kind", "study_run", "unit_folder", "sealed_json", "on_disk", "provenance"}
+    allowed = {"kind", "study_run", "unit_folder", "provenance"}
     strays = [
         f"{file}.py imports {name}"
         for file in (*everywhere, *laid_out)

@@ -1,7 +1,5 @@
 """The names of `import gaitdisc as gd`: loaded when first used, seen by type checkers, documented with an example."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 from pathlib import Path

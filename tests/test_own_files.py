@@ -1,7 +1,13 @@
-"""Which files a command may replace; every command and every `.save`: tests/promises/test_nothing_is_lost.py."""
+"""Files written whole, those that a command may replace, and one that writes at a time."""
 
+import errno
 import json
-from concurrent.futures import ProcessPoolExecutor
+import os
+import socket
+import subprocess
+import sys
+import warnings
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
 
@@ -11,8 +17,9 @@ from manufactured_discovery import manufactured
 from gaitdisc.errors import WriteError
 from gaitdisc.own_files import LIST, claim_file, claim_folder, guarded, note_inputs, under_this_guard
 from gaitdisc.results.discovery_folder import save_discovery
-from gaitdisc.results.sealed_json import sealed_text
-from gaitdisc.whole_file import remove_file, write_whole
+from gaitdisc.results.unit_folder import sealed_text
+from gaitdisc.whole_file import remove_file, whole_file, write_whole
+from gaitdisc.write_lock import write_lock
 
 EXPORT, REPORT = "gaitdisc export", "gaitdisc report"
 
@@ -140,3 +147,180 @@ def test_a_link_that_leads_nowhere_is_no_file_of_ours(tmp_path):
     (tmp_path / "a.csv").symlink_to(tmp_path / "none")
     with pytest.raises(WriteError, match=r"a\.csv exists and was not"):
         write(tmp_path / "a.csv")
+
+
+def test_an_interrupted_write_leaves_the_old_file(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    with pytest.raises(KeyboardInterrupt), whole_file(path) as part:
+        part.write_text("half")
+        raise KeyboardInterrupt
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == ["table.csv"]
+
+
+def test_a_full_disk_is_told_and_loses_nothing(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    with (
+        pytest.raises(WriteError, match=r"table.csv.*be written whole.*left"),
+        whole_file(path),
+    ):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert path.read_text() == "old"
+
+
+def test_missing_folders_are_made(tmp_path):
+    with whole_file(tmp_path / "a" / "b" / "c.txt") as part:
+        part.write_text("new")
+    assert (tmp_path / "a" / "b" / "c.txt").read_text() == "new"
+
+
+def test_a_folder_that_is_a_file_is_told(tmp_path):
+    (tmp_path / "a").write_text("")
+    with pytest.raises(WriteError, match="choose another folder"), whole_file(tmp_path / "a" / "c.txt"):
+        pass
+
+
+@pytest.mark.parametrize("fails", ["os.fsync", "Path.replace"])
+def test_a_disk_that_fills_at_the_last_moment(tmp_path, monkeypatch, fails):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(f"gaitdisc.whole_file.{fails}", full)
+    with pytest.raises(WriteError, match=r"a\.txt.*be written whole.*left"):
+        write_whole(path, "new")
+    monkeypatch.undo()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_others_may_read_the_file_as_any_other(tmp_path):
+    mask = os.umask(0o022)
+    try:
+        assert write_whole(tmp_path / "a.txt", "x").stat().st_mode & 0o777 == 0o644
+    finally:
+        os.umask(mask)
+
+
+def test_the_folder_is_free_again_afterwards(tmp_path):
+    for _ in range(2):
+        with write_lock(tmp_path / "run"):
+            assert (tmp_path / "run" / ".lock").exists()
+    assert not (tmp_path / "run" / ".lock").exists()
+
+
+def test_another_thread_reads_who_holds_the_folder(tmp_path):
+    words = rf"\(pid {os.getpid()}\) .*{tmp_path}/.*--out"
+    with write_lock(tmp_path), ThreadPoolExecutor(1) as pool, pytest.raises(WriteError, match=words):
+        pool.submit(taken, tmp_path).result()
+
+
+def test_within_itself_a_folder_is_held_once(tmp_path):
+    with write_lock(tmp_path):
+        taken(tmp_path)
+        assert (tmp_path / ".lock").exists()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_is_held_beside_others_of_its_folder(tmp_path):
+    with write_lock(tmp_path, ".lock-a.csv"), ThreadPoolExecutor(1) as pool:
+        pool.submit(taken, tmp_path, ".lock-b.csv").result()
+        with pytest.raises(WriteError, match=rf"is writing to {tmp_path}/a\.csv\. Wait.*delete \.lock-a\.csv"):
+            pool.submit(taken, tmp_path, ".lock-a.csv").result()
+
+
+def taken(*where):
+    with write_lock(*where):
+        pass
+
+
+def test_the_lock_of_a_dead_process_is_taken_over(tmp_path):
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    (tmp_path / ".lock").write_text(json.dumps({"pid": dead.pid, "host": socket.gethostname()}))
+    with write_lock(tmp_path):
+        assert json.loads((tmp_path / ".lock").read_text())["pid"] == os.getpid()
+
+
+def test_a_lock_from_another_machine_is_respected(tmp_path):
+    (tmp_path / ".lock").write_text(json.dumps({"pid": 1, "host": "elsewhere"}))
+    with pytest.raises(WriteError, match=r"1.*elsewhere"), write_lock(tmp_path):
+        pass
+
+
+def test_a_lock_that_was_never_finished_is_taken_over(tmp_path):
+    (tmp_path / ".lock").write_text("")
+    with write_lock(tmp_path):
+        pass
+
+
+def test_a_folder_that_cannot_be_made(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(WriteError, match="--out"), write_lock(tmp_path / "file" / "run"):
+        pass
+
+
+def test_a_number_that_another_process_has_by_now_holds_nothing(tmp_path):
+    """A container that is started again gives the same numbers to its processes, this one's own among them."""
+    for pid in (os.getpid(), os.getppid()):
+        (tmp_path / ".lock").write_text(json.dumps({"pid": pid, "host": socket.gethostname()}))
+        with write_lock(tmp_path):
+            pass
+
+
+def test_of_many_that_start_at_once_one_gets_the_folder_until_it_is_killed(tmp_path):
+    code = (
+        "import sys, time; from pathlib import Path; from gaitdisc.write_lock import write_lock\n"
+        "from gaitdisc.errors import WriteError\n"
+        "try:\n    with write_lock(Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()\n"
+        "except WriteError as error: print(error)"
+    )
+    started = [
+        subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdin=-1, stdout=-1, text=True) for _ in range(3)
+    ]
+    said = [process.stdout.readline() for process in started if process.stdout]
+    for process in started:
+        process.kill()
+        process.communicate()
+    assert said.count("held\n") == 1
+    assert all("is writing to" in line for line in said if line != "held\n")
+    assert (tmp_path / ".lock").exists()
+    with write_lock(tmp_path):
+        pass
+
+
+def test_what_a_killed_run_left_unfinished_is_cleared_away(tmp_path):
+    unit = tmp_path / "responses" / "P01"
+    unit.mkdir(parents=True)
+    (unit / ".part-r2-abc.csv").write_text("half")
+    (unit / "r2.csv").write_text("whole")
+    with write_lock(tmp_path, run=True):
+        assert [file.name for file in unit.iterdir()] == ["r2.csv"]
+
+
+def test_a_disk_without_locks_is_refused_and_keeps_no_mark(tmp_path, monkeypatch):
+    """A mere file in place of a lock would stay when its run is killed."""
+
+    def unknown(*_):
+        raise OSError(errno.ENOSYS, "Function not implemented")
+
+    monkeypatch.setattr("fcntl.flock", unknown)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with (
+            pytest.raises(WriteError, match=r"write and lock.*no.*--out"),
+            write_lock(tmp_path, run=True),
+        ):
+            pass
+        taken(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_that_fails_frees_its_folder(tmp_path):
+    with pytest.raises(ZeroDivisionError), write_lock(tmp_path):
+        raise ZeroDivisionError
+    assert not list(tmp_path.iterdir())

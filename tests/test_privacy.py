@@ -1,7 +1,5 @@
 """Words that a recording brings may say who a person is: planted everywhere in one, they stand in no result."""
 
-from __future__ import annotations
-
 import base64
 import re
 import zipfile

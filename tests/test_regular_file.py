@@ -1,7 +1,5 @@
 """Pipes, sockets, devices, folders and huge files: refused in words by every reader, in no time."""
 
-from __future__ import annotations
-
 import json
 import os
 import socket

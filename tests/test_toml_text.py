@@ -1,7 +1,5 @@
 """TOML nested deeper than anybody writes: one refusal in every file that a user writes in TOML."""
 
-from __future__ import annotations
-
 import tomllib
 
 import pytest

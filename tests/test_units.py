@@ -1,10 +1,14 @@
+"""Units of channels and composite units."""
+
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import UnitError
-from gaitdisc.units import convert, inner_unit, known_units, parsed_unit, rate_unit, unit_factor
+from gaitdisc.units import convert, dimension_of, inner_unit, known_units, parsed_unit, unit_factor
 
 
 @pytest.mark.parametrize(
@@ -44,11 +48,42 @@ def test_unknown_unit_lists_the_known():
         inner_unit("ell")
 
 
-def test_rates():
-    assert [rate_unit("deg", order) for order in (0, 1, 2)] == ["deg", "deg/s", "deg/s2"]
-
-
 def test_every_unit_of_a_recording_is_in_the_one_table():
     for unit in known_units():
         factor = unit_factor(unit, inner_unit(unit))
         assert factor is not None and np.isfinite(factor), unit
+
+
+@pytest.mark.parametrize(
+    ("unit", "to", "factor"),
+    [
+        ("deg", "rad", math.pi / 180),
+        ("rad", "deg", 180 / math.pi),
+        ("deg/s2", "rad/s^2", math.pi / 180),
+        ("N mm", "N m", 1e-3),
+        ("N m s/rad", "kg m^2/s/rad", 1.0),
+        ("kg m^2", "N m s^2", 1.0),
+        ("1/s^2", "Hz^2", 1.0),
+        ("%", "1", 0.01),
+        ("N/kg", "m/s^2", 1.0),
+        ("kN", "N", 1000.0),
+        ("mV", "V", 1e-3),
+    ],
+)
+def test_factors(unit, to, factor):
+    assert unit_factor(unit, to) == pytest.approx(factor, rel=1e-12)
+
+
+def test_what_measures_something_else_has_no_factor():
+    assert math.isnan(unit_factor("N", "N m"))
+    assert math.isnan(unit_factor("deg", "1"))
+
+
+@pytest.mark.parametrize("unit", ["furlong", "N m rad-", "", "m^^2", "x" * 10_000])
+def test_unknown_units_are_not_guessed(unit):
+    assert unit_factor(unit, "m") is None
+
+
+def test_an_angle_has_no_dimension():
+    assert dimension_of("rad/s") == dimension_of("1/s")
+    assert dimension_of("furlong") is None

@@ -18,10 +18,10 @@ class Part(NamedTuple):
     name: str
     study: str
     makes: str
-    minutes: float  # of one core, about, whole and with `--quick`
-    quick_minutes: float  # of one core, about, whole and with `--quick`
+    minutes: float  # of one core, about
+    quick_minutes: float  # of one core, about, with `--quick`
     words: tuple[str, ...] = (OUT,)  # what the study is called with
-    quick_words: tuple[str, ...] = (OUT, "--quick")  # what the study is called with
+    quick_words: tuple[str, ...] = (OUT, "--quick")  # and with `--quick`
     libraries: tuple[str, ...] = ()
     data: str = ""  # folder of recordings or fields without which there is nothing to compute
 

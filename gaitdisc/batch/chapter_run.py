@@ -17,7 +17,7 @@ from gaitdisc.batch.chapter_parts import OUT, Part, studies_folder
 from gaitdisc.errors import SchemaError, TrainingError
 from gaitdisc.own_files import claim_folder
 from gaitdisc.results.provenance import code_sha256
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.unit_folder import read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 from gaitdisc.write_lock import write_lock
 
@@ -56,7 +56,10 @@ def run_part(
     if lack is not None:
         raise lack
     folder = out / part.name
-    begun = {"part": part.name, "quick": quick, "code": _code()}
+    digest = hashlib.sha256(code_sha256().encode())
+    for path in sorted(path for path in studies_folder().rglob("*") if path.suffix in (".py", ".csv", ".toml")):
+        digest.update(path.read_bytes())
+    begun = {"part": part.name, "quick": quick, "code": digest.hexdigest()[:12]}
     if _stands(folder, begun):
         return Made(folder, True)
     claim_folder(folder, NAME, PRINTED, mended=(NAME,))
@@ -125,11 +128,3 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
 
 def _data_folder(data: Path | None) -> Path:
     return data or Path(os.environ.get("GAITDISC_DATA", studies_folder().parents[1] / "shared" / "data"))
-
-
-def _code() -> str:
-    """Hash of the package and of the studies."""
-    digest = hashlib.sha256(code_sha256().encode())
-    for path in sorted(path for path in studies_folder().rglob("*") if path.suffix in (".py", ".csv", ".toml")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]

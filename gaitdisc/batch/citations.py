@@ -21,7 +21,7 @@ from gaitdisc.results.mismatch import Mismatch
 from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.reconstruction import Reconstruction
-from gaitdisc.results.sealed_json import read_sealed
+from gaitdisc.results.unit_folder import read_sealed
 from gaitdisc.results.variants import VariantRun
 
 MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib

@@ -29,7 +29,11 @@ def compare_files(
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two recordings, second minus first; `cutoff_hz` [Hz]: -3 dB of one pass, angles and moments."""
-    names = _names(first, second)
+    one, other = (
+        "_".join(word for word in re.split(r"[\W_]+", path.stem) if _public(word)) for path in (first, second)
+    )
+    one, other = _apart(one, other)
+    names = (one, other) if one and other and one != other else ("first walk", "second walk")
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
     trials = [
         public.known_channels(
@@ -89,15 +93,6 @@ def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary]
     if refusals:
         return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
     return walks[nominal].summary(), walks[device].summary()
-
-
-def _names(first: Path, second: Path) -> tuple[str, str]:
-    """What two walks are called: the words in which their files' names differ, where these are no one's own."""
-    one, other = (
-        "_".join(word for word in re.split(r"[\W_]+", path.stem) if _public(word)) for path in (first, second)
-    )
-    one, other = _apart(one, other)
-    return (one, other) if one and other and one != other else ("first walk", "second walk")
 
 
 def _public(word: str) -> bool:

@@ -19,7 +19,7 @@ from gaitdisc.ingest.study import Study
 from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.joint_record import JointRecord, joint_record
-from gaitdisc.processing.study_walks import StudyWalks
+from gaitdisc.processing.process import StudyWalks
 from gaitdisc.recording import Finding, Samples, Trial
 from gaitdisc.regression.changed_moment import NORMAL_95, Changed, changed_moment
 from gaitdisc.regression.foot_mass import foot_mass

@@ -46,14 +46,6 @@ def checks() -> Iterator[Check]:
         yield _read_back(what, written)
 
 
-def _walk() -> Recording:
-    """Two seconds of a force that no rounding changes."""
-    time = np.arange(2000) / 1000
-    channel = vocabulary().named("emg_sol_r")
-    assert channel is not None
-    return Recording(time, np.round(np.sin(time) * 1024)[:, None] / 1024, (channel,))
-
-
 def _knee() -> Recording:
     time = np.arange(200) / 100
     channel = vocabulary().named("knee_angle_r")
@@ -81,7 +73,10 @@ def _read_back(what: str, written: Callable[[Path], tuple[Recording, str]]) -> C
 def _c3d(folder: Path) -> tuple[Recording, str]:
     from gaitdisc.ingest.c3d_writing import write_c3d
 
-    made = _walk()
+    time = np.arange(2000) / 1000
+    channel = vocabulary().named("emg_sol_r")
+    assert channel is not None
+    made = Recording(time, np.round(np.sin(time) * 1024)[:, None] / 1024, (channel,))
     write_c3d([made], folder / "walk.c3d")
     return made, "walk.c3d"
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.errors import SchemaError, StrideError
 from gaitdisc.ingest.study import Study
-from gaitdisc.processing.walk import Walk
+from gaitdisc.processing.process import Walk
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.parts import Input, Parameter, Port, State

@@ -1,25 +1,63 @@
-"""A participant's walks filtered and cut into strides, and the cycles pooled of all trials, kept on disk by key."""
+"""A participant's walks and the cycles of all trials, kept on disk under a hash of files, settings and code."""
 
 from __future__ import annotations
 
 import hashlib
+import json
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
-from gaitdisc.batch.unit_key import person_key, unit_key
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, not_compared, static_trial, trial_sets
-from gaitdisc.processing.study_walks import StudyWalks
-from gaitdisc.processing.walk import Walk
+from gaitdisc.processing.process import StudyWalks, Walk
 from gaitdisc.recording import Trial
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles, cycles_name
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.results.provenance import Refusal, code_sha256
+
+
+def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
+    """Key of each of the two walks of a complete participant, by condition."""
+    keys = {}
+    for word in study.conditions.both:
+        trial = participant.trials_of(word)[0]
+        standing = static_trial(study, participant, trial.session or "")
+        circled = functional_trial(study, participant, trial.session or "")
+        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, standing, circled) if one)]
+        keys[word] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
+    return keys
+
+
+def person_key(study: Study, participant: Participant) -> str:
+    """What the study says of a person's body, and the bytes of its marker-set file."""
+    said = f"{participant.mass_kg} {participant.height_m} {participant.sex} {participant.age_years}"
+    named = study.kinematics.marker_set if study.kinematics else ""
+    own = named.endswith(".toml") and study.path_of(named).is_file()
+    return f"{said} {file_sha256(study.path_of(named))}" if own else said
+
+
+def response_key(keys: Mapping[str, str]) -> str:
+    """Key of what is fitted to both walks."""
+    return hashlib.sha256("".join(keys.values()).encode()).hexdigest()
+
+
+def unit_key(study: Study, trial: PlannedTrial) -> str:
+    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code."""
+    settings = study.model_dump(mode="json", exclude={"participants", "title"})
+    parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
+    for file in trial.files:
+        try:
+            parts.append(file_sha256(study.path_of(file)))
+        except OSError as error:
+            parts.append(f"{file}: {error.strerror}")
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
 def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:

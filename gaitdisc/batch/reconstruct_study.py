@@ -20,9 +20,8 @@ from gaitdisc.recording import Recording, Samples
 from gaitdisc.results.provenance import Refusal, made_now
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.model_folder import SensingModel, load_model
-from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
+from gaitdisc.sensing.reconstruct import BASELINES, Fits, PersonReconstruction, reconstruct
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Reconstructor, Sensing, fitting_device, sensing
 from gaitdisc.sensing.sensor_search import search_sensors
 from gaitdisc.sensing.state_errors import INTERVAL_LEVEL, coverage
@@ -43,8 +42,8 @@ class ReconstructionSettings:
     """How a study is reconstructed."""
 
     split: str = "temporal"  # a word of `gaitdisc.sensing.windows.RULES` or of `ACROSS`
-    history_s: float = 1.0  # reach of a window, and time from one reading to the next [s]
-    spacing_s: float = 0.04  # reach of a window, and time from one reading to the next [s]
+    history_s: float = 1.0  # reach of a window [s]
+    spacing_s: float = 0.04  # from one of its readings to the next [s]
     kinds: tuple[str, ...] = tuple(KINDS)
     # walks of this condition alone, of both where it is empty; with the split `condition`, those that are tested
     condition: str = ""
@@ -214,7 +213,7 @@ def reconstruct_recording(
     cutoff_hz: -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's
     calibration: kinematics of the same person that hold the sensors and every state, some ten strides: the model is
         corrected for the person by them. Its intervals stay as they are, and are too wide then
-    missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.missing.WAYS`
+    missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.windows.WAYS`
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
     if calibration is not None:

@@ -8,15 +8,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.batch.processed_walks import computed_cycles, cycles_key
+from gaitdisc.batch.processed_walks import computed_cycles, cycles_key, response_key, unit_keys
 from gaitdisc.batch.public_words import public_settings, public_title
-from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
-from gaitdisc.processing.walk import Walk
+from gaitdisc.processing.process import Walk
 from gaitdisc.results.kind import Kind
 from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
 from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse, ResponseRun

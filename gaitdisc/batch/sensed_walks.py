@@ -18,7 +18,7 @@ from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitErro
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Models, Participant, Study
 from gaitdisc.ingest.trial_sets import is_walk
-from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.results.provenance import Refusal
 

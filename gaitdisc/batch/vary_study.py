@@ -10,24 +10,22 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.processed_walks import processed_walks, response_key, unit_keys
 from gaitdisc.batch.public_words import words_of
 from gaitdisc.batch.run_study import response_settings, run_study
-from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.processing.filter_null import filter_null_of
-from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
 from gaitdisc.response.modalities import (
     LENGTHS_S,
     Setting,
-    compare_modalities,
-    compare_settings,
+    compare_variants,
     fit_data_quantity,
     fit_without,
     settings_around,
@@ -72,7 +70,7 @@ def vary_study(
             run.exo,
             question,
             computed,
-            compare_modalities(computed) if question == "modalities" else compare_settings(computed),
+            compare_variants(computed, question),
             (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
             (min(lengths), max(lengths)),
             run.renewed,

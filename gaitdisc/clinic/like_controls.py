@@ -31,8 +31,8 @@ Number = Callable[[ReferenceLeg], float | None]
 class LikeControls:
     """Controls that a person is read beside, at the person's leg length where it is known."""
 
-    curves: Legs  # of the like age and speed, for curves; of the like age at any speed, for times and distances
-    values: Legs  # of the like age and speed, for curves; of the like age at any speed, for times and distances
+    curves: Legs  # of the like age and speed
+    values: Legs  # of the like age at any speed, for times and distances
     words: tuple[str, ...] = ()  # who they are, and what could not be allowed for
 
 

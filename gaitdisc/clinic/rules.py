@@ -34,13 +34,13 @@ class Rule:
     """One number of a leg that may stand out."""
 
     name: str
-    variable: str  # clinical variable or spatiotemporal value; the other is empty
-    value: str  # clinical variable or spatiotemporal value; the other is empty
+    variable: str  # clinical variable; empty where it is a value
+    value: str  # spatiotemporal value; empty where it is a variable
     part: str
     take: str
     least: float  # smallest distance to the reference's mean that is spoken of
-    less: str  # what too small and too large a number is called; empty where it is nothing
-    more: str  # what too small and too large a number is called; empty where it is nothing
+    less: str  # what too small a number is called; empty where it is nothing
+    more: str  # what too large a number is called; empty where it is nothing
 
     @property
     def unit(self) -> str:

@@ -25,14 +25,14 @@ class Leg(NamedTuple):
 
     thigh_m: float
     shank_m: float
-    s1: float  # first moments S1, S2 [kg m]
-    s2: float  # first moments S1, S2 [kg m]
-    foot_kg: float  # mass of the foot, and its centre from the ankle
-    foot_forward_m: float  # mass of the foot, and its centre from the ankle
-    foot_down_m: float  # mass of the foot, and its centre from the ankle
-    i1: float  # M11, M22, M33, which do not depend on the angles [kg m2]
-    i2: float  # M11, M22, M33, which do not depend on the angles [kg m2]
-    i3: float  # M11, M22, M33, which do not depend on the angles [kg m2]
+    s1: float  # first moment S1 [kg m]
+    s2: float  # first moment S2 [kg m]
+    foot_kg: float  # mass of the foot
+    foot_forward_m: float  # its centre from the ankle, forwards
+    foot_down_m: float  # its centre from the ankle, downwards
+    i1: float  # M11, which does not depend on the angles [kg m2]
+    i2: float  # M22, as well
+    i3: float  # M33, as well
     ankle_m: float  # height of the ankle over the sole [m]
     sole_m: float  # length of the foot [m]
 

@@ -15,15 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, leg_of
-from gaitdisc.cohort.ground import gate, habitual_force, pressure_centre
 from gaitdisc.cohort.habit import activity
 from gaitdisc.cohort.leg_path import (
     PHASES,
     belt_held,
     by_phase,
+    gate,
     habit_angles,
+    habitual_force,
     hip_motion,
     pressed_point,
+    pressure_centre,
     staged,
     thigh_shank_foot,
 )
@@ -40,15 +42,15 @@ GMED = GROUPS.index("emg_gmed")
 class Columns(NamedTuple):
     """Where in a leg's table each quantity begins."""
 
-    psi: int = 0  # thigh, shank, foot [rad], and their rate by phase [rad]
-    turning: int = 3  # thigh, shank, foot [rad], and their rate by phase [rad]
-    place: int = 6  # ankle from the hip [m], and its rate by phase [m]
-    path: int = 8  # ankle from the hip [m], and its rate by phase [m]
-    force: int = 10  # ground force [N], its point from the ankle [m], opening of the gate [1]
-    arm: int = 12  # ground force [N], its point from the ankle [m], opening of the gate [1]
-    gate: int = 14  # ground force [N], its point from the ankle [m], opening of the gate [1]
-    excitation: int = 15  # muscle groups [1], and what they leave of the moments [N m]
-    others: int = 24  # muscle groups [1], and what they leave of the moments [N m]
+    psi: int = 0  # thigh, shank, foot [rad]
+    turning: int = 3  # their rate by phase [rad]
+    place: int = 6  # ankle from the hip [m]
+    path: int = 8  # its rate by phase [m]
+    force: int = 10  # ground force [N]
+    arm: int = 12  # its point from the ankle [m]
+    gate: int = 14  # opening of the gate [1]
+    excitation: int = 15  # muscle groups [1]
+    others: int = 24  # what they leave of the moments [N m]
     side: int = 27  # adduction and rotation: angle, rate and second rate by phase, in turn [rad]
     gmed: int = 33  # habitual activation of gluteus medius [1]
     hip: int = 34  # acceleration of the hip [m/s2]

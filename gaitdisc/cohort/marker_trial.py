@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.cohort.body import Leg, ankle_place, leg_of
-from gaitdisc.cohort.ground import pressure_centre
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, staged
+from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, pressure_centre, staged
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Surface, Trial

@@ -33,6 +33,7 @@ def measured(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0)
     rng = np.random.default_rng([walk.seed, 23])
     subject = walk.person.name
     seen = walk.excitation[:, :, : len(MUSCLES)].reshape(len(walk.excitation), -1)
+    flat = walk.force.reshape(len(walk.force), -1)
     streams = {
         "kinematics": (walk.slow_s, _angles(rng, walk), [f"{joint}_{side}" for side in SIDES for joint in JOINTS]),
         "emg": (
@@ -42,7 +43,7 @@ def measured(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0)
         ),
         "forces": (
             walk.quick_s,
-            _forces(rng, walk),
+            flat + rng.normal(0.0, FORCE_N, flat.shape),
             [f"ground_force_{side}_v{axis}" for side in SIDES for axis in "xy"],
         ),
     }
@@ -64,11 +65,6 @@ def _angles(rng: np.random.Generator, walk: TrueWalk) -> NDArray[np.float64]:
     sway = sosfiltfilt(butter(2, SWAY_HZ, fs=SLOW_HZ, output="sos"), rng.normal(size=flat.shape), axis=0)
     sway *= np.tile(SWAY_DEG, 2) / sway.std(axis=0)
     return flat + sway + rng.normal(0.0, FRAME_DEG, flat.shape)
-
-
-def _forces(rng: np.random.Generator, walk: TrueWalk) -> NDArray[np.float64]:
-    flat = walk.force.reshape(len(walk.force), -1)
-    return flat + rng.normal(0.0, FORCE_N, flat.shape)
 
 
 def _channel(name: str) -> Channel:

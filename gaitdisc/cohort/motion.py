@@ -42,15 +42,15 @@ SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6
 class Loop(NamedTuple):
     """Feedback and unrest of one person."""
 
-    stiffness: NDArray[np.float64]  # (3,), impedance of hip, knee, ankle about the habit [N m/rad, N m s/rad]
-    damping: NDArray[np.float64]  # (3,), impedance of hip, knee, ankle about the habit [N m/rad, N m s/rad]
+    stiffness: NDArray[np.float64]  # (3,), impedance of hip, knee, ankle about the habit [N m/rad]
+    damping: NDArray[np.float64]  # (3,), of the same [N m s/rad]
     # (3,), by which share the impedance of each joint grows under load, its damping by half as much [1]
     loaded: NDArray[np.float64]
-    reflex: float  # gain [N m/rad] and lag of the reflex
-    reflex_lag_s: float  # gain [N m/rad] and lag of the reflex
-    side_stiffness: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad, N m s/rad, kg m2]
-    side_damping: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad, N m s/rad, kg m2]
-    side_inertia: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad, N m s/rad, kg m2]
+    reflex: float  # gain of the reflex [N m/rad]
+    reflex_lag_s: float  # lag of the reflex
+    side_stiffness: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad]
+    side_damping: NDArray[np.float64]  # (2,), of the same [N m s/rad]
+    side_inertia: NDArray[np.float64]  # (2,), of the same [kg m2]
     hurry: float  # relative pace for each rad that a leg is ahead [1/rad]
     moment_noise: NDArray[np.float64]  # (5,), standard deviation at hip, knee, ankle, adduction, rotation [N m]
     muscle_noise: NDArray[np.float64]  # (2,), relative, fast and slow [1]

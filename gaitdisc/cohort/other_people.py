@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, GROUPS, JOINTS, Bump, Person, drawn
 from gaitdisc.errors import SchemaError
-from gaitdisc.recording.body_measures import LEG_OF_STATURE
+from gaitdisc.recording.trial import LEG_OF_STATURE
 
 ALWAYS = 10.0  # half width of what lasts the whole stride
 BOTH = (0, 1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.recording.body_measures import LEG_OF_STATURE
+from gaitdisc.recording.trial import LEG_OF_STATURE
 
 STIFFNESS = 5.0  # N m/deg, Ebers (2023), section 4.2.1
 SHANK_KG, FOOT_KG = 0.6, 0.4  # worn in both conditions; general knowledge of such devices
@@ -53,10 +53,10 @@ CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schw
 class Bump:
     """A change of one joint's habit over part of the stride, as a raised cosine."""
 
-    side: int  # leg (0 right), column of `JOINTS`
-    joint: int  # leg (0 right), column of `JOINTS`
-    centre: float  # shares of the stride; wider than a stride is a constant
-    half_width: float  # shares of the stride; wider than a stride is a constant
+    side: int  # leg, 0 the right one
+    joint: int  # column of `JOINTS`
+    centre: float  # share of the stride
+    half_width: float  # share of the stride; wider than a stride is a constant
     degrees: float  # at the centre
 
     def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:

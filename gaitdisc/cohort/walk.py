@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.controller import learnt_table
-from gaitdisc.cohort.ground import Belt
+from gaitdisc.cohort.leg_path import Belt
 from gaitdisc.cohort.motion import (
     NOISE,
     NOISE_STEPS,
@@ -25,7 +25,7 @@ from gaitdisc.cohort.motion import (
 from gaitdisc.cohort.muscles import strength_of
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, MUSCLES, SHANK_KG, Person, Spring
 from gaitdisc.errors import StrideError
-from gaitdisc.recording.body_measures import LEG_OF_STATURE
+from gaitdisc.recording.trial import LEG_OF_STATURE
 
 WARM_UP_S = 8.0  # walked before the recording begins
 QUICK_HZ, SLOW_HZ = 1000.0, 100.0
@@ -53,8 +53,8 @@ class TrueWalk:
     person: Person
     device: Spring
     seed: int
-    quick_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clocks at 1000 and 100 Hz
-    slow_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clocks at 1000 and 100 Hz
+    quick_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clock at 1000 Hz
+    slow_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clock at 100 Hz
     # (quick,) [strides], of the right foot, counted on; a whole number is a contact. The left foot is half a stride off
     phase: NDArray[np.float64] = field(repr=False)
     force: NDArray[np.float64] = field(repr=False)  # (quick, 2, 2) [N], side; forwards, upwards

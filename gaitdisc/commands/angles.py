@@ -31,11 +31,10 @@ def angles(
     from dataclasses import replace
 
     from gaitdisc.ingest.c3d_kinetics import body_measures_in
-    from gaitdisc.ingest.reading import read_trial
-    from gaitdisc.ingest.writing import write_recording
+    from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import moved_body, segment_angles
     from gaitdisc.own_files import claim_file
-    from gaitdisc.recording.body_measures import BodyMeasures
+    from gaitdisc.recording.trial import BodyMeasures
 
     claim_file(out)
     walk = read_trial(trial)

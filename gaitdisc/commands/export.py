@@ -42,8 +42,7 @@ def export(
         _model(files, out)
         return
     from gaitdisc.batch.public_words import with_public_labels
-    from gaitdisc.ingest.reading import read_trial
-    from gaitdisc.ingest.writing import write_recording
+    from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.processing.process import on_one_base
 
     together = on_one_base(read_trial(files), rate, tuple(stream) if stream else None)

@@ -23,8 +23,7 @@ def moments(
 ) -> None:
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
     from gaitdisc.ingest.c3d_kinetics import body_measures_in
-    from gaitdisc.ingest.reading import read_trial
-    from gaitdisc.ingest.writing import write_recording
+    from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import moved_body
     from gaitdisc.kinetics.body_inertia import Person
     from gaitdisc.kinetics.joint_moments import KineticsSettings

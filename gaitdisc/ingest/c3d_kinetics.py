@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.recording import Finding
-from gaitdisc.recording.body_measures import LENGTHS_M, BodyMeasures
+from gaitdisc.recording.trial import LENGTHS_M, BodyMeasures
 
 Kinetics = tuple[NDArray[np.float64], tuple[Channel, ...]]
 

@@ -39,8 +39,8 @@ class C3DHeader:
     file: str  # name of the file without its folder
     size: int  # length of the file [bytes]
     processor: str  # `Intel`, `DEC` or `MIPS`: the order of bytes and the kind of float
-    parameter_block: int  # where the parameter section and the data begin [blocks of 512 bytes, from 1]
-    data_block: int  # where the parameter section and the data begin [blocks of 512 bytes, from 1]
+    parameter_block: int  # where the parameter section begins [blocks of 512 bytes, from 1]
+    data_block: int  # where the data begin [blocks, from 1]
     points: int
     analog_values: int  # analog values in a frame: channels times samples a frame
     samples_per_frame: int  # analog samples of one channel in a frame

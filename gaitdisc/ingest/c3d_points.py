@@ -35,8 +35,8 @@ class ModelOutput:
     """
 
     group: str  # list of the group POINT that names them
-    quantity: str  # what they measure and where they go
-    stream: str  # what they measure and where they go
+    quantity: str  # what they measure
+    stream: str  # where they go
     units: str  # parameter of the group POINT with their unit
     usual: str  # unit where the file states none
 

@@ -14,7 +14,7 @@ from typing import Literal
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.recording.body_measures import LENGTHS_M, MASS_KG
+from gaitdisc.recording.trial import LENGTHS_M, MASS_KG
 from gaitdisc.spreadsheet import unquoted
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")
@@ -96,8 +96,8 @@ _STARTS = ("noexo", "withoutexo", "nonexo", "nodevice")
 class Measured:
     """What a table says of a person; None or empty where it says nothing."""
 
-    mass_kg: float | None = None  # body mass [kg] and stature [m]
-    height_m: float | None = None  # body mass [kg] and stature [m]
+    mass_kg: float | None = None  # body mass [kg]
+    height_m: float | None = None  # stature [m]
     sex: Sex = ""
     age_years: int | None = None  # whole years; a date of birth is never read
 

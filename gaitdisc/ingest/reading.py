@@ -1,4 +1,4 @@
-"""Read a trial, whatever files hold it: one reader for each ending, several files of one walk in one trial."""
+"""Several files of one walk become one trial, whatever their kind; a recording becomes a file."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, WriteError
 from gaitdisc.ingest.array_file import ENDINGS as ARRAYS
 from gaitdisc.ingest.array_file import read_arrays
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.plausible import with_flexion_positive, without_frozen, without_impossible
 from gaitdisc.ingest.stated_units import per_kg_findings, plausible_unit
-from gaitdisc.ingest.storage import read_storage
-from gaitdisc.ingest.table import read_frame, read_table
+from gaitdisc.ingest.storage import read_storage, write_storage
+from gaitdisc.ingest.table import read_frame, read_table, write_table
 from gaitdisc.ingest.trc import read_trc
+from gaitdisc.own_files import guarded
 from gaitdisc.recording import Finding, Recording, Source, Trial
 
 if TYPE_CHECKING:
@@ -227,3 +228,50 @@ def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
         if angles.names:
             plausible_unit(angles.time, angles.values, angles.names, "deg", kinematics.source.file)
     return replace(trial, streams=streams, events=events)
+
+
+WRITERS = {".mot": write_storage, ".sto": write_storage, ".csv": write_table, ".parquet": write_table}
+
+
+def write_recording(recording: Recording, path: Path | str, overwrite: bool = False) -> Path:
+    """Write a recording to a file that `read` reads again, whole or not at all.
+
+    Parameters
+    ----------
+    recording : Recording
+        Any channels, as they are: names, times [s], values. Marks of suspect samples, subject and condition are not
+        written.
+    path : path
+        `.mot` or `.sto` for OpenSim, `.csv` or `.parquet` with the unit of each column.
+    overwrite : bool
+        Whether a file may be replaced that `write` did not write, or that was changed since.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    WriteError
+        If the ending is another one, or the file cannot or may not be written.
+    ChannelError
+        If a name cannot stand in such a file.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> angles = gd.lowpass(gd.example_walks(10.0)["nominal"].stream("kinematics"))
+    >>> gd.write(angles, "angles.mot")  # doctest: +SKIP
+    PosixPath('angles.mot')
+    """
+    ending = Path(path).suffix.lower()
+    if ending not in WRITERS:
+        nearest = nearest_word(ending, list(WRITERS)) if ending else None
+        raise WriteError(
+            f"a recording is written to a file that ends with {', '.join(WRITERS)}",
+            f"{Path(path).name} ends with {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            "Name it with one of these endings.",
+        )
+    with guarded("gd.write", overwrite=overwrite):
+        return WRITERS[ending](recording, path)

@@ -161,8 +161,8 @@ class StorageHeader:
     labels: tuple[str, ...]
     body_line: int  # line in which the numbers start, counted from 1
     degrees: bool | None = None  # what `inDegrees` states; None where it is absent
-    rows: tuple[int, ...] = ()  # counts that the header claims; two of a kind where both styles stand in it
-    columns: tuple[int, ...] = ()  # counts that the header claims; two of a kind where both styles stand in it
+    rows: tuple[int, ...] = ()  # counts that the header claims; two where both styles stand in it
+    columns: tuple[int, ...] = ()  # counts that the header claims, alike
     # dict of int to (str, str, str), column -> quantity, unit and side, in files that `write_storage` wrote
     own: Mapping[int, tuple[str, str, str]] = field(default_factory=dict)
     separator: str = "\t"  # what stands between cells: a tab, or a blank for any run of blanks

@@ -19,8 +19,8 @@ ALWAYS = (float("-inf"), float("inf"))  # [s]
 class TrialSet:
     """Walks of one participant in one session under one condition, of which cycles are pooled."""
 
-    session: str  # words of the study; the session is empty where there are none
-    condition: str  # words of the study; the session is empty where there are none
+    session: str  # word of the study; empty where there are no sessions
+    condition: str  # word of the study
     trials: tuple[PlannedTrial, ...]
 
 

@@ -18,7 +18,7 @@ from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
 from gaitdisc.kinematics.markers import check_right_handed, marker_labels, still_places, up_axis
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, DavisHip, Pose, chord_centre, harrington_hip
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 STANDS_M = 0.03  # who stands sways less than this in half a second
 USUAL_DIAMETER_M = 0.014

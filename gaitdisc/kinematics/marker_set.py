@@ -61,8 +61,8 @@ class MarkerSet:
     """
 
     name: str  # name of its file without the ending
-    title: str  # what it is and where it is described
-    citation: str  # what it is and where it is described
+    title: str  # what it is
+    citation: str  # where it is described
     # name in this set -> other names of the same marker. `{S}` stands for R and L
     aliases: Mapping[str, tuple[str, ...]]
     # landmark -> markers: `A + B` is the midpoint, `A | B` is A or, where that is absent, B

@@ -35,7 +35,7 @@ from gaitdisc.kinematics.segment_poses import (
 )
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import spans_s
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
 LABELS = {"pelvis": "pelvis"} | {

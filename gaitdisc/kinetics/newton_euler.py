@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.kinetics.platform import Wrench
 from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated

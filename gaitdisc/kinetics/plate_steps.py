@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.kinetics.platform import Platform
-from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
+from gaitdisc.kinetics.platform import LEAST_LOAD_N, Platform, Wrench
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import read_only, runs
 from gaitdisc.signals.derivatives import differentiated
@@ -95,8 +94,8 @@ class PlateStep:
 
     platform: str
     side: str  # `r` or `l`; empty where the foot is unknown
-    start: float  # [s], of the loading
-    end: float  # [s], of the loading
+    start: float  # of the loading [s]
+    end: float  # of the loading [s]
     reason: str = ""  # why it cannot be used; empty where one foot alone stepped on it with all of its sole
     # false where the recording begins or ends in it: its forces are right, and it is no whole stance
     whole: bool = True

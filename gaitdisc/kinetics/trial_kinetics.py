@@ -12,8 +12,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.kinetics.foot_loads import FootLoad, foot_loads, swings
-from gaitdisc.kinetics.joint_moments import KineticsSettings, Leg, joint_moments, legs
+from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, Leg, foot_loads, joint_moments, legs, swings
 from gaitdisc.kinetics.newton_euler import GRAVITY, needed_wrench
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weighed_steps
 from gaitdisc.kinetics.platform import platforms

@@ -11,7 +11,7 @@ from gaitdisc.batch.discover_files import discovered
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.engines.mapping import names_engine
 from gaitdisc.errors import SchemaError
-from gaitdisc.library.models import ModelLike, model_of
+from gaitdisc.library.simulating import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured

@@ -15,7 +15,7 @@ from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.markers_to_moments import foot_paths_of
 from gaitdisc.recording import Recording, Trial
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 
 def angles(

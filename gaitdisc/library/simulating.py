@@ -1,11 +1,11 @@
-"""Run a simulation over time."""
+"""Run a simulation over time; a model as a script names it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,19 +17,44 @@ from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
 from gaitdisc.ingest.table import has_times
-from gaitdisc.library.models import ModelLike, model_of
+from gaitdisc.library.functions import simulation_from_function
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.evaluating import Points
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import read_simulation
 
 if TYPE_CHECKING:
     import pandas as pd
+
+ModelLike = Path | str | Simulation | PythonSimulation | Callable[..., Any]
+
+
+def model_of(model: ModelLike) -> Simulation:
+    """Simulation of what a script names.
+
+    model: a simulation file, an object, or a Python function as `simulation_from_function` takes it
+    raises SimulationError if it is none of these, or the file or function does not hold together
+    """
+    if isinstance(model, Path | str):
+        return read_simulation(model)
+    if isinstance(model, Simulation):
+        return model
+    if isinstance(model, PythonSimulation):
+        return cast("Simulation", model)  # it goes wherever a `Simulation` goes
+    if callable(model):
+        return cast("Simulation", simulation_from_function(model))
+    raise SimulationError(
+        "a model is a simulation file, a Simulation or a Python function",
+        f"found {type(model).__name__}",
+        "Give the path of a .toml file, or a function that returns the derivative of each state.",
+    )
 
 
 def simulate(

@@ -35,12 +35,12 @@ class Training:
     decay: float
     # weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved
     penalty: float
-    epochs: int  # epochs of the descent with that decay, and the one whose weights were kept
-    best_epoch: int  # epochs of the descent with that decay, and the one whose weights were kept
+    epochs: int  # of the descent with that decay
+    best_epoch: int  # the one whose weights were kept
     # mean squared error of the scaled outputs on the inner block after every one of these epochs
     losses: tuple[float, ...]
-    n_training: int  # samples of the whole training part, and of its inner block
-    n_inner: int  # samples of the whole training part, and of its inner block
+    n_training: int  # samples of the whole training part
+    n_inner: int  # samples of its inner block
     seconds: float  # Wall-clock time of everything, all candidates included [s]
     # what computed the descent: `fused`, the compiled code for the dissertation's network on the CPU, or `torch`
     arithmetic: str

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Filters
-from gaitdisc.processing.process import envelope_of, is_raw
-from gaitdisc.processing.walk import Walk
+from gaitdisc.processing.process import Walk, envelope_of, is_raw
 from gaitdisc.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.statistics.band_limit_null import simulate_null
+from gaitdisc.statistics.r2 import simulate_null
 
 Differentiated = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 NOISE_S = 30.0
@@ -31,7 +30,7 @@ def filter_null(
     kinematics_hz: rate at which angles were measured and everything is differentiated
     emg_hz: rate of the raw EMG; None where the recording holds envelopes, which are low-passed only
     returns: channel name to R2, about 0.5 for every low-pass
-    Source: A flat band has m2^2 / (m0 m4) = 5/9; see `gaitdisc.statistics.band_limit_null`.
+    Source: A flat band has m2^2 / (m0 m4) = 5/9; see `gaitdisc.statistics.r2`.
 
     >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
     >>> round(filter_null([knee], Filters(), 100.0)["knee_angle_r"], 1)

@@ -16,14 +16,12 @@ from gaitdisc.notebook import html_of
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.processing.process import quality_findings, stride_findings
+from gaitdisc.processing.process import ReadWalk, StudyWalks, quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
-from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.signals.contacts import order_findings
-from gaitdisc.signals.strides import cut_strides
-from gaitdisc.signals.walking import verify_walking
+from gaitdisc.signals.strides import cut_strides, verify_walking
 
 SHOWN = 4  # channels of one line
 SAID = ("contact offset",)  # kinds of notes that are always printed: percent stride was moved, or is known to be early

@@ -42,9 +42,9 @@ class JointRecord:
     condition: str
     time: NDArray[np.float64]
     seen: NDArray[np.float64]  # (sample,), angle as recorded [rad]
-    angle: NDArray[np.float64]  # (sample,), Low-passed angle and its derivatives [rad, rad/s, rad/s2]
-    rate: NDArray[np.float64]  # (sample,), Low-passed angle and its derivatives [rad, rad/s, rad/s2]
-    speedup: NDArray[np.float64]  # (sample,), Low-passed angle and its derivatives [rad, rad/s, rad/s2]
+    angle: NDArray[np.float64]  # (sample,), low-passed angle [rad]
+    rate: NDArray[np.float64]  # (sample,), its derivative [rad/s]
+    speedup: NDArray[np.float64]  # (sample,), its second derivative [rad/s2]
     # (sample,), internal net moment towards the positive angle [N m]; NaN where the load of the foot is unknown
     moment: NDArray[np.float64]
     envelopes: NDArray[np.float64]  # (sample, muscle), EMG of the joint's side [the file's unit]

@@ -45,8 +45,7 @@ from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.signals.contacts import rise_of
 from gaitdisc.signals.sides import verify_sides
-from gaitdisc.signals.strides import duration_reasons
-from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
+from gaitdisc.signals.strides import LEAST_COVERAGE, duration_reasons, verify_walking
 
 DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics are shown of
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot

@@ -1,33 +1,96 @@
-"""Process a trial: check, filter, cut into strides, differentiate; streams of a trial on one time base."""
+"""Process a trial to a walk: check, filter, cut into strides, differentiate; the walks of a participant."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
-from gaitdisc.ingest.study import Filters, Study
+from gaitdisc.ingest.study import Filters, Participant, PlannedTrial, Study
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.side_checks import side_findings
+from gaitdisc.processing.standing import Read, Standing, standing_of
 from gaitdisc.processing.two_sources import KIND as CONTRADICTED
-from gaitdisc.processing.walk import Walk
-from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
 from gaitdisc.recording.strides import interpolated
+from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.signals.butterworth import lowpassed, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.derivatives import trajectory
 from gaitdisc.signals.emg import emg_findings, enveloped
-from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.gaps import filled, spike_findings, without_spikes
 from gaitdisc.signals.sides import verify_sides
-from gaitdisc.signals.spikes import spike_findings, without_spikes
 from gaitdisc.signals.stride_quality import late_change_findings
 from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
-from gaitdisc.signals.strides import cut_strides
-from gaitdisc.signals.walking import verify_walking
+from gaitdisc.signals.strides import cut_strides, verify_walking
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """One processed trial."""
+
+    trial: Trial
+    # filtered joint angles, and EMG envelopes where the study requests them, on the time base of the kinematics
+    state: Recording
+    strides: Mapping[str, Strides]
+    trajectory: Trajectory  # state, derivatives and percent stride of the study's side
+    findings: tuple[Finding, ...]  # of the reader, of the quality checks, and of the stride detectors
+    side: str  # side whose strides the percent stride of the trajectory follows
+
+    def summary(self) -> WalkSummary:
+        """What is kept of the walk: curves of every stride of the study's side, strides, findings, file hashes."""
+        return walk_summary(self.trial, [self.state], self.strides, self.side, self.findings)
+
+
+def walk_summary(
+    trial: Trial,
+    states: Sequence[Recording],
+    strides: Mapping[str, Strides],
+    follow: str,
+    findings: Sequence[Finding],
+) -> WalkSummary:
+    """What is kept of a walk; channels of the other side are cut by the strides of their own foot, as the first are."""
+    lead = [*states, *trial.streams.values()][0]
+    return WalkSummary(
+        trial.subject,
+        trial.condition,
+        lead.duration_s,
+        lead.rate_hz,
+        strides[follow].detector,
+        tuple(channel for state in states for channel in state.channels),
+        stride_curves(states, strides, follow),
+        pd.concat([stride_table(strides[side]) for side in sorted(strides)], ignore_index=True),
+        tuple(findings),
+        {one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
+    )
+
+
+def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:
+    """Strides (stride, phase, channel) by the own foot's contacts, else the followed foot's; NaN behind the fewer."""
+    columns: list[NDArray[np.float64]] = []
+    for state in states:
+        own = [channel.side if channel.side in strides else follow for channel in state.channels]
+        by_side = {side: strides[side].normalised(state) for side in set(own)}
+        columns += [by_side[side][:, :, column] for column, side in enumerate(own)]
+    curves = np.full((max(map(len, columns), default=0), len(PERCENT), len(columns)), np.nan)
+    for column, values in enumerate(columns):
+        curves[: len(values), :, column] = values
+    return curves
+
+
+def stride_table(strides: Strides) -> pd.DataFrame:
+    """Kept and dropped strides of one side in order of time, columns `STRIDE_COLUMNS`."""
+    kept = [(strides.side, start, end, True, "") for start, end in zip(strides.start, strides.end, strict=True)]
+    dropped = [(strides.side, d.start, d.end, False, d.reason) for d in strides.dropped]
+    rows = sorted([*kept, *dropped], key=lambda row: row[1])
+    return pd.DataFrame(rows, columns=pd.Index(STRIDE_COLUMNS))
+
 
 TEMPLATE_TIMES = 2.0  # the mean stride bridges gaps twice as long as the spline does (docs/derivatives.md)
 SHARE_OF_RATE = 0.4  # cut-off of the low-pass before resampling; half the rate is the limit
@@ -197,3 +260,54 @@ def _slow_enough(key: str, recording: Recording, rate_hz: float) -> Recording:
     if key == "emg" and is_raw(recording):
         return enveloped(recording)
     return lowpassed(without_spikes(recording), SHARE_OF_RATE * rate_hz)
+
+
+@dataclass(frozen=True, eq=False)
+class ReadWalk:
+    """A trial before it is filtered."""
+
+    trial: Trial  # with the angles that its study requests, and moments where they could be computed
+    body_weight_n: float | None = None  # of the person [N]; None where neither the study nor a file states a mass
+    # why no angles were computed of the trial's markers; empty where it has angles, or no markers
+    without_angles: str = ""
+
+    def processed(self, study: Study) -> Walk:
+        """Filtered walk, cut into strides, under the settings of a study."""
+        if self.without_angles:
+            raise ChannelError(
+                "models need joint angles, of the files or computed from markers and a static trial",
+                f"{self.trial.name} has markers and no angles: {self.without_angles}",
+                'Add the trial in which the person stands with condition = "static", or the file with the angles.',
+            )
+        return processed(self.trial, study, self.body_weight_n)
+
+
+@dataclass(eq=False)
+class StudyWalks:
+    """The walks of one participant; the static trial of a session is read once, at its first walk."""
+
+    study: Study
+    participant: Participant
+    read: Read
+    _standing: dict[str, Standing] = field(default_factory=dict, init=False)
+
+    def read_walk(self, planned: PlannedTrial) -> ReadWalk:
+        """Trial of the study, with angles and moments from its markers where the study requests them."""
+        trial = self.read(planned)
+        session = planned.session or ""
+        if session not in self._standing:
+            self._standing[session] = standing_of(self.study, self.participant, session, self.read)
+        standing = self._standing[session]
+        computed = standing.computed(planned, trial).trial
+        findings = standing.findings(computed, "kinematics" in computed.streams)
+        ready = replace(computed, findings=(*computed.findings, *findings))
+        why = ""
+        if "kinematics" not in ready.streams and "markers" in ready.streams:
+            why = next((one.what for one in ready.findings if one.kind == "no angles"), standing.unread)
+            if self.study.kinematics and self.study.kinematics.angles == "file":
+                why = 'those of the file are wanted, angles = "file" in [kinematics]'
+        return ReadWalk(ready, standing.body_weight_n(planned), why)
+
+    def walk(self, planned: PlannedTrial) -> Walk:
+        """Filtered walk, cut into strides, under the settings of the study."""
+        return self.read_walk(planned).processed(self.study)

@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.errors import ChannelError, GaitdiscError, UnitError
-from gaitdisc.kinetics.foot_loads import swings
+from gaitdisc.kinetics.joint_moments import swings
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import BEYOND_EDGE_M, FootPath, Weight, foot_paths, plate_steps, weighed_steps
-from gaitdisc.kinetics.platform import Platform, platforms
-from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
+from gaitdisc.kinetics.platform import LEAST_LOAD_N, Platform, Wrench, platforms
 from gaitdisc.processing.contact_choice import named_markers
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.signals.direction import marker_position

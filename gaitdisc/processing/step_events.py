@@ -47,8 +47,8 @@ class StepEvents:
 
     detector: str  # what sees most strides: `events`, `force`, `markers` or `angles`
     off_detector: str  # `markers` or `angles`, whichever shows foot off; empty where neither does
-    contacts: Mapping[str, Times]  # each ndarray [s], side -> times, as these detectors place them
-    foot_offs: Mapping[str, Times]  # each ndarray [s], side -> times, as these detectors place them
+    contacts: Mapping[str, Times]  # side -> times, as these detectors place them [s]
+    foot_offs: Mapping[str, Times]  # side -> times, alike [s]
     # side -> time [s] and `events` or `force`; no contacts where the detector sees the ground itself
     ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
     ground_offs: Mapping[str, tuple[tuple[float, str], ...]]

@@ -26,8 +26,7 @@ from gaitdisc.signals.channel_quality import plateau_marked
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.direction import Direction, marker_position
 from gaitdisc.signals.emg import live_channels
-from gaitdisc.signals.gaps import filled
-from gaitdisc.signals.spikes import without_spikes
+from gaitdisc.signals.gaps import filled, without_spikes
 from gaitdisc.signals.strides import gap_reasons
 
 LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried two feet

@@ -12,19 +12,17 @@ import numpy as np
 
 from gaitdisc.errors import GaitdiscError, SamplingError, StrideError
 from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
-from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings
-from gaitdisc.processing.walk import walk_summary
+from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings, walk_summary
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.emg import ENVELOPE_HZ, enveloped
+from gaitdisc.signals.gaps import without_spikes
 from gaitdisc.signals.sides import verify_sides
-from gaitdisc.signals.spikes import without_spikes
 from gaitdisc.signals.stride_quality import without_outlying
-from gaitdisc.signals.strides import MAX_S, MIN_S, cut_strides
-from gaitdisc.signals.walking import verify_walking
+from gaitdisc.signals.strides import MAX_S, MIN_S, cut_strides, verify_walking
 
 FORCE_HZ = 20.0
 TIMES = 8  # a stride that closes in itself is walked

@@ -3,9 +3,8 @@
 from gaitdisc.recording.field import Axis, Field
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
-from gaitdisc.recording.samples import Samples, Scale, scale_of
+from gaitdisc.recording.samples import Samples, Scale, Trajectory, scale_of
 from gaitdisc.recording.strides import PERCENT, Cycle, DroppedStride, Strides
-from gaitdisc.recording.trajectory import Trajectory
 from gaitdisc.recording.trial import Event, Surface, Trial
 
 __all__ = [

@@ -26,8 +26,8 @@ NAN = float("nan")
 class DroppedStride:
     """A stride that is not used, and why."""
 
-    start: float  # initial contacts [s]
-    end: float  # initial contacts [s]
+    start: float  # initial contact [s]
+    end: float  # the next one of the same foot [s]
     reason: str  # in words, with the number that decided
 
 
@@ -220,13 +220,13 @@ class Cycle:
     """
 
     side: str
-    start: float  # initial contacts [s]
-    end: float  # initial contacts [s]
+    start: float  # initial contact [s]
+    end: float  # the next one of the same foot [s]
     # tuple of (str, str), what places the two contacts: `events`, `force`, `markers` or `angles`
     contacts_by: tuple[str, str]
-    foot_off: float = NAN  # the other events inside of the cycle [s]; NaN where nothing places them
-    opposite_off: float = NAN  # the other events inside of the cycle [s]; NaN where nothing places them
-    opposite_contact: float = NAN  # the other events inside of the cycle [s]; NaN where nothing places them
+    foot_off: float = NAN  # of this foot [s]; NaN where nothing places it, as the next two
+    opposite_off: float = NAN  # of the other foot [s]
+    opposite_contact: float = NAN  # of the other foot [s]
     foot_off_by: str = ""  # what places foot off; empty where nothing does
     kinetic: bool = False  # whether this foot alone was on one plate, or on its own belt, for the whole stance
     reason: str = ""  # why the cycle is left out, in words, with the number that decided; empty where it is kept

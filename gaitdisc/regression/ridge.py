@@ -29,8 +29,8 @@ class Ridge:
     weights: NDArray[np.float64]  # (column, output) [each output's unit], for scaled columns
     offset: NDArray[np.float64]  # (output,) [each output's unit], mean of each output in the training part
     penalty: float  # per sample, as chosen on the inner block
-    n_training: int  # samples of the whole training part, and of its inner block
-    n_inner: int  # samples of the whole training part, and of its inner block
+    n_training: int  # samples of the whole training part
+    n_inner: int  # samples of its inner block
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input)."""

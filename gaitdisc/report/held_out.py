@@ -209,7 +209,10 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
     each = [column for column in numbers.columns if column.startswith("stride_")]
     as_pixels = len(numbers) * len(each) > MOST_VECTOR_POINTS
     for row, (variable, of_variable) in enumerate(numbers.groupby("variable", sort=False)):
-        low, high = _limits(of_variable, each)
+        values = of_variable[["mean", *each]].to_numpy()
+        values = values[np.isfinite(values)]
+        reach = 1.05 * float(np.max(np.abs(values))) if len(values) else 1.0
+        low, high = -(reach or 1.0), reach or 1.0
         for column, (model, curves) in enumerate(of_variable.groupby("model", sort=False)):
             axes = grid[row][column]
             _draw_residual(axes, curves, each, str(model), as_pixels)
@@ -249,13 +252,6 @@ def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
     axes.fill_between(percent, curves["low"], curves["high"], color=look.colour, alpha=0.35, linewidth=0, zorder=2)
     axes.plot(percent, curves["mean"], color="#111111", linewidth=1.2, zorder=3)
-
-
-def _limits(numbers: pd.DataFrame, each: list[str]) -> tuple[float, float]:
-    values = numbers[["mean", *each]].to_numpy()
-    values = values[np.isfinite(values)]
-    reach = 1.05 * float(np.max(np.abs(values))) if len(values) else 1.0
-    return -(reach or 1.0), reach or 1.0
 
 
 def _residual_caption(response: ParticipantResponse, numbers: pd.DataFrame) -> str:

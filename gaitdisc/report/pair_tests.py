@@ -53,12 +53,16 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
         return []
     if tests.too_few:
         return [f"{tests.too_few}. The numbers describe these participants and nobody else."]
+    counts = tests.families.groupby("family")["different"].sum()
+    total = int((tests.families["family"] == "pair").sum())
+    said = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
+    every = counted(total, "test")
     return [
         *(_verdict(tests, first, second) for first, second in PAIRS[:3]),
         "A difference that is not shown is not an equality: the interval of the shift says how large it may be.",
         _floor(tests),
         _left_over(tests),
-        _readings(tests),
+        f"Of {every} of the three pairs, a difference is shown by {listed(said)} (families; the first is used).",
     ]
 
 
@@ -184,14 +188,6 @@ def _left_over(tests: PairTests) -> str:
         f"{number(float(left.max()))} of the variance unexplained (medians of the variables); that it is below R² = 1 "
         f"no measurement could contradict, so its p carries no news."
     )
-
-
-def _readings(tests: PairTests) -> str:
-    counts = tests.families.groupby("family")["different"].sum()
-    total = int((tests.families["family"] == "pair").sum())
-    said = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
-    every = counted(total, "test")
-    return f"Of {every} of the three pairs, a difference is shown by {listed(said)} (families; the first is used)."
 
 
 def _bound(value: float) -> str:

@@ -52,12 +52,12 @@ Arguments = ParamSpec("Arguments")
 class Room:
     """Room around and between panels."""
 
-    left: float = 0.75  # margins of the figure [inch]; the legend stands in the top margin
-    right: float = 0.12  # margins of the figure [inch]; the legend stands in the top margin
-    top: float = 0.55  # margins of the figure [inch]; the legend stands in the top margin
-    bottom: float = 0.45  # margins of the figure [inch]; the legend stands in the top margin
-    across: float = 0.75  # between two columns, between two rows [inch]
-    down: float = 0.42  # between two columns, between two rows [inch]
+    left: float = 0.75  # margin of the figure [inch]
+    right: float = 0.12  # margin of the figure [inch]
+    top: float = 0.55  # margin of the figure, in which the legend stands [inch]
+    bottom: float = 0.45  # margin of the figure [inch]
+    across: float = 0.75  # between two columns [inch]
+    down: float = 0.42  # between two rows [inch]
 
 
 def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[list[Axes]]]:

@@ -33,9 +33,9 @@ class R2Column:
     """One column of the table."""
 
     key: str
-    model: str  # as in the response's table; the null belongs to no model
-    kind: str  # as in the response's table; the null belongs to no model
-    walk: str  # as in the response's table; the null belongs to no model
+    model: str  # as in the response's table; the null belongs to none
+    kind: str  # as in the response's table
+    walk: str  # as in the response's table
 
     @property
     def title(self) -> str:

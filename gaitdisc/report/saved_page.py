@@ -11,7 +11,7 @@ from typing import Any
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.kind import KINDS, Kind, find_kind
 from gaitdisc.results.provenance import code_sha256
-from gaitdisc.results.sealed_json import OWN, file_sha256, read_sealed, sealed_text
+from gaitdisc.results.unit_folder import OWN, file_sha256, read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 
 DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and hashes of all its files

@@ -194,7 +194,12 @@ def _median_iqr(values: pd.Series) -> str:
 def r2_text(run: ResponseRun) -> rich.table.Table:
     """R2 of one participant by variable, of several by person (medians over variables), or who was refused, and why."""
     if not run.responses:
-        return _refused(run)
+        table = _empty(f"Nobody could be analysed; left out: n = {len(run.refusals)}.")
+        for heading in ("participant", "walk", "reason"):
+            table.add_column(heading)
+        for refusal in run.refusals:
+            table.add_row(plain(refusal.participant), plain(refusal.condition or "all"), plain(refusal.reason))
+        return table
     about = f"last {held_out_text(run)} s of each walk held out; null: band-limited noise alone"
     if len(run.responses) == 1:
         [response] = run.responses
@@ -220,15 +225,6 @@ def _printed(values: pd.DataFrame, caption: str) -> rich.table.Table:
     table.add_section()
     middle = medians(values)
     table.add_row("median", *(_short(float(middle[column.key])) for column in _SHOWN), style="bold")
-    return table
-
-
-def _refused(run: ResponseRun) -> rich.table.Table:
-    table = _empty(f"Nobody could be analysed; left out: n = {len(run.refusals)}.")
-    for heading in ("participant", "walk", "reason"):
-        table.add_column(heading)
-    for refusal in run.refusals:
-        table.add_row(plain(refusal.participant), plain(refusal.condition or "all"), plain(refusal.reason))
     return table
 
 

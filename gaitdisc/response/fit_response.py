@@ -66,7 +66,7 @@ def fit_response(
     """Fit all models to the first part of both walks and score them on the held-out last part.
 
     nominal, exo: whole walks of one participant without and with the device, with the same channels
-    null_r2: R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`)
+    null_r2: R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.r2`)
     banded: whether predictions get a band from refits on blocks
     Source: Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: ridge regressions with phase harmonics and
         without, and the null of the filters, stand beside every network, and the Nominal model is scored on held-out
@@ -259,8 +259,8 @@ class Fit:
     model: Model
     decay: float  # weight decay of a network, penalty of a ridge regression
     epochs: int  # epochs trained; 0 where nothing is descended
-    n_training: int  # samples of the whole training part, and of the inner block that chose the decay
-    n_inner: int  # samples of the whole training part, and of the inner block that chose the decay
+    n_training: int  # samples of the whole training part
+    n_inner: int  # samples of the inner block that chose the decay
     seconds: float  # Wall-clock time [s]
 
 
@@ -268,9 +268,9 @@ class Fit:
 class ResponseModels:
     """The models of one participant."""
 
-    nominal: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
-    exo: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
-    discrepancy: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
+    nominal: Fit  # Eq. 4.2
+    exo: Fit  # Eq. 4.3, of the same inputs and outputs
+    discrepancy: Fit  # Eq. 4.4, of the same inputs and outputs
 
     @property
     def augmented(self) -> Augmented:

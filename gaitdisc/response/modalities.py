@@ -109,23 +109,28 @@ def fit_without(
     return pd.DataFrame(rows, columns=pd.Index(VARIANT_COLUMNS))
 
 
-def compare_modalities(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
-    """Test R2 without a family of inputs against R2 with all, over six participants or more.
+def compare_variants(people: Sequence[Variants], question: str, alpha: float = ALPHA) -> pd.DataFrame:
+    """Test the networks' R2 under every variant, over six participants or more.
 
-    alpha is of a family of tests, one model's and family's variables; a negative shift (second `without`) is a fall.
+    question: of `modalities` R2 without a family of inputs against R2 with all: a negative shift (second `without`) is
+        a fall. Of `sensitivity` Nominal against Augmented under every setting: R2 under two settings are not of the
+        same thing, for the filter makes what is predicted, too
+    alpha: of a family of tests: one variant's and model's variables
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
     table = pd.concat([each.table.assign(participant=each.participant) for each in people], ignore_index=True)
     table = table[table["kind"] == "network"]
-    variants = [variant for variant in table["variant"].unique() if variant != ALL]
-    of = partial(_by_participant, table)
+    variants = list(table["variant"].unique())
+    if question == "modalities":
+        pairs = [((ALL, model), (one, model), (ALL, "without")) for model in MODELS for one in variants if one != ALL]
+    else:
+        pairs = [((one, "nominal"), (one, "augmented"), ("nominal", "augmented")) for one in variants]
     parts = [
-        compare_columns(of(ALL, model), of(variant, model), alpha).assign(
-            variant=variant, model=model, first=ALL, second="without"
+        compare_columns(_by_participant(table, *before), _by_participant(table, *after), alpha).assign(
+            variant=after[0], model=after[1], first=first, second=second
         )
-        for model in MODELS
-        for variant in variants
+        for before, after, (first, second) in pairs
     ]
     return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
 
@@ -157,8 +162,8 @@ class Setting:
     """
 
     name: str
-    angles_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
-    emg_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
+    angles_hz: float  # low-pass of the joint angles [Hz]
+    emg_hz: float  # low-pass of the rectified EMG [Hz]
     share: float = 1.0  # share of the training part that is used, from its beginning; 1 for all of it
 
 
@@ -168,25 +173,6 @@ def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[
     envelopes = [Setting(f"EMG {hz:g} Hz", angles_hz, hz) for hz in EMG_HZ if emg and hz != emg_hz]
     lengths = [Setting(f"{share:.0%} of the training part", angles_hz, emg_hz, share) for share in SHARES]
     return (Setting(AS_STUDIED, angles_hz, emg_hz), *angles, *envelopes, *lengths)
-
-
-def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
-    """Test Nominal against Augmented under every setting, over six participants or more.
-
-    R2 under two settings are not of the same thing, for the filter makes what is predicted, too: the order of the
-    models under each can be compared, and how far each lies above the null of its filters.
-    alpha: of each family of tests: the variables under one setting
-    """
-    if len(people) < FEWEST:
-        return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
-    table = pd.concat([each.table.assign(participant=each.participant) for each in people], ignore_index=True)
-    table = table[table["kind"] == "network"]
-    parts = []
-    for variant in table["variant"].unique():
-        nominal, augmented = (_by_participant(table, variant, model) for model in ("nominal", "augmented"))
-        found = compare_columns(nominal, augmented, alpha)
-        parts.append(found.assign(variant=variant, model="augmented", first="nominal", second="augmented"))
-    return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
 
 
 def fit_data_quantity(

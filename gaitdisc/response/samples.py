@@ -22,8 +22,8 @@ class DroppedSamples:
     '20 of 100 samples left away: 15 outside of strides, 5 of knee_angle_r not usable'
     """
 
-    total: int  # samples there are, and those that are used
-    kept: int  # samples there are, and those that are used
+    total: int  # samples there are
+    kept: int  # samples that are used
     outside_strides: int
     # channel -> samples within strides that are missing or not to be trusted; one sample may count for many channels
     unusable: Mapping[str, int]

@@ -14,7 +14,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
 from gaitdisc.results.leg_curves import BY_NAME, LegCurves
 from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.unit_folder import read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv
 from gaitdisc.whole_file import write_whole
 
@@ -84,8 +84,8 @@ class ReferenceLeg:
     # each (phase,), clinical variable -> mean over the leg's cycles on 101 points
     curves: Mapping[str, NDArray[np.float64]]
     values: Mapping[str, float]  # spatiotemporal value -> mean over the leg's cycles
-    leg_m: float | None = None  # leg length [m] and age in whole years; None where they are not known
-    age_years: int | None = None  # leg length [m] and age in whole years; None where they are not known
+    leg_m: float | None = None  # leg length [m]; None where it is not known
+    age_years: int | None = None  # None where it is not known
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +94,8 @@ class ClinicalReference:
 
     title: str
     legs: Mapping[str, tuple[ReferenceLeg, ...]]  # condition -> legs
-    settings: Mapping[str, object]  # filters and rules for strides they were processed with; what processed them
-    versions: Mapping[str, str]  # filters and rules for strides they were processed with; what processed them
+    settings: Mapping[str, object]  # filters and rules for strides they were processed with
+    versions: Mapping[str, str]  # what processed them
     created: str
     # where it is no laboratory's own: groups of speed, of which there are no legs
     published: tuple[PublishedGroup, ...] = ()
@@ -189,8 +189,8 @@ def _leg(data: Mapping[str, object]) -> ReferenceLeg:
 class Limits:
     """Limits of a value in a reference."""
 
-    low: float  # prediction limits for one more healthy leg, corrected for all rules of the page
-    high: float  # prediction limits for one more healthy leg, corrected for all rules of the page
+    low: float  # prediction limit for one more healthy leg, corrected for all rules of the page
+    high: float  # the upper one
     mean: float  # over the legs of the reference
     sd: float  # over the legs of the reference
     people: int
@@ -200,8 +200,8 @@ class Limits:
 class Noted:
     """A value of one leg that a rule looks at."""
 
-    rule: str  # name of the rule, and what it calls a value that stands out; no words for one that does not
-    words: str  # name of the rule, and what it calls a value that stands out; no words for one that does not
+    rule: str  # its name
+    words: str  # what it calls a value that stands out; no words for one that does not
     side: str
     value: float
     unit: str
@@ -216,11 +216,11 @@ class Score:
     """A score of a leg or of both."""
 
     value: float
-    low: float  # smallest and largest of single cycles; NaN where they are not computed one by one
-    high: float  # smallest and largest of single cycles; NaN where they are not computed one by one
+    low: float  # smallest of single cycles; NaN where they are not computed one by one
+    high: float  # largest of them
     cycles: int
     reference_mean: float  # the same score of each control against the others
-    reference_sd: float  # the same score of each control against the others
+    reference_sd: float  # its spread over the controls
     people: int
 
 

@@ -20,9 +20,8 @@ from gaitdisc.results.discovery import (
     Whereabouts,
 )
 from gaitdisc.results.kind import Kind
-from gaitdisc.results.on_disk import damaged, of_another_format
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
+from gaitdisc.results.unit_folder import check_files, damaged, file_sha256, of_another_format, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import write_whole, written_so_far, written_together
 

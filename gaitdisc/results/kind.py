@@ -13,8 +13,7 @@ from gaitdisc.channel import list_names
 from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder, guarded
 from gaitdisc.recording import Finding
-from gaitdisc.results.on_disk import Arrays
-from gaitdisc.results.unit_folder import NO_KEY, Keyed, load_unit, save_unit, stored_finding, with_words
+from gaitdisc.results.unit_folder import NO_KEY, Arrays, Keyed, load_unit, save_unit, stored_finding, with_words
 from gaitdisc.whole_file import written_together
 
 if TYPE_CHECKING:

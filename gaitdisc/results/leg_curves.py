@@ -129,8 +129,8 @@ class ClinicalVariable:
     stem: str  # channel it is taken from; `{side}` stands for the leg
     signs: tuple[float, float]  # of the left and of the right leg, by which the channel's values are multiplied
     unit: str
-    up: str  # what a positive and a negative value mean
-    down: str  # what a positive and a negative value mean
+    up: str  # what a positive value means
+    down: str  # what a negative value means
     row: int  # place in the sheet of its kind
     column: int  # place in the sheet of its kind
 

@@ -32,10 +32,10 @@ class Exchange:
     """What was exchanged in the permutation test, and how often."""
 
     unit: str
-    first: int  # units of either walk; 1 for a walk that was taken as a curve without spread of its own
-    second: int  # units of either walk; 1 for a walk that was taken as a curve without spread of its own
-    strides_first: int  # strides of either walk that the units hold
-    strides_second: int  # strides of either walk that the units hold
+    first: int  # units of the first walk; 1 for one taken as a curve without spread of its own
+    second: int  # units of the second, alike
+    strides_first: int  # strides that the units of the first hold
+    strides_second: int  # strides that the units of the second hold
     permutations: int
     exact: bool  # whether these are all that there are
     threshold: float  # |t| that only `alpha` of them exceed anywhere in the stride and in any channel
@@ -48,8 +48,8 @@ class Alignment:
 
     percent: float = 0.0  # by how much later all of the first walk's curves together fit best [% stride]
     applied: bool = False  # whether they were moved by it before anything was tested
-    agreeing: int = 0  # channels whose gap narrows by it, and all
-    channels: int = 0  # channels whose gap narrows by it, and all
+    agreeing: int = 0  # channels whose gap narrows by it
+    channels: int = 0  # all channels
     # largest gap of each channel the other way [its unit]: without the shift where it was applied, else with it
     otherwise: Sequence[float] = ()
 

@@ -15,10 +15,10 @@ from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import PERCENT
 from gaitdisc.results.kind import CSV, Kind, keyed_arrays
-from gaitdisc.results.on_disk import Arrays, lies_on_disk, may_lie_on_disk
 from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
 from gaitdisc.results.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.results.study_run import StudyRun, load_run_as, save_whole_run
+from gaitdisc.results.unit_folder import Arrays, lies_on_disk, may_lie_on_disk
 from gaitdisc.results.variants import QUESTIONS
 
 MODELS = ("nominal", "augmented", "exo")
@@ -49,8 +49,8 @@ class ParticipantResponse:
     """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), tested on held-out walking."""
 
     participant: str
-    inputs: tuple[str, ...]  # names of what goes in and what is predicted
-    outputs: tuple[str, ...]  # names of what goes in and what is predicted
+    inputs: tuple[str, ...]  # names of what goes in
+    outputs: tuple[str, ...]  # names of what is predicted
     units: tuple[str, ...]  # unit of each output, a second derivative
     # variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
     # ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted), r2,

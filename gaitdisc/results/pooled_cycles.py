@@ -15,9 +15,8 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.kind import CSV, Kind, Saved
-from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
 from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.unit_folder import unit_name
+from gaitdisc.results.unit_folder import lies_on_disk, may_lie_on_disk, unit_name
 
 CYCLE_COLUMNS = (
     "trial",
@@ -225,10 +224,10 @@ CYCLES = Kind(
 class WalkSummary:
     """One walk of one person, small enough to keep."""
 
-    subject: str  # pseudonym; the study's word for the condition
-    condition: str  # pseudonym; the study's word for the condition
-    duration_s: float  # length and rate of the processed recording
-    rate_hz: float  # length and rate of the processed recording
+    subject: str  # pseudonym
+    condition: str  # the study's word
+    duration_s: float  # of the processed recording
+    rate_hz: float  # of the processed recording
     detector: str
     channels: tuple[Channel, ...]
     # (stride, phase, channel) [channel's unit], every kept stride on 101 points; of a walk that was loaded it is read

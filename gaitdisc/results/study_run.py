@@ -17,8 +17,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder
 from gaitdisc.results.kind import Kind, Saved, load_word
 from gaitdisc.results.provenance import Provenance, Refusal
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
-from gaitdisc.results.unit_folder import FORMAT, read_json
+from gaitdisc.results.unit_folder import FORMAT, read_json, read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole, written_together
 
 if TYPE_CHECKING:

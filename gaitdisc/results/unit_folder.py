@@ -2,35 +2,208 @@
 
 Whatever is read back is covered: the numbers in the JSON file by `own_sha256`, every table and array by `sha256`. What
 was changed, by a hand or by a disk, is refused by `load_unit`; who can compute it again does so, and says it
-(`damaged_units`).
+(`damaged_units`). Arrays stay on the disk until they are looked at.
 """
 
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-from collections.abc import Mapping, Sequence
-from functools import cache
+import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc._version import __version__
 from gaitdisc.channel import list_names, schema_folder
+from gaitdisc.errors import SchemaError
+from gaitdisc.own_files import content_sha256, file_sha256, note_inputs
 from gaitdisc.recording import Finding
-from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged, of_another_format
-from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written_together
 
 if TYPE_CHECKING:
     import pandas as pd
 
+T = TypeVar("T")
+Kind = TypeVar("Kind")
+Arrays = Mapping[str, NDArray[np.float64]]
+KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
+AGAIN = "Run the command that wrote it again; `gaitdisc run` keeps what is whole and computes the rest anew."
+CHANGED = "changed since it was saved (SHA-256 differs)"
+
+
+class DamagedError(SchemaError):
+    """A file of results that is not as it was saved."""
+
+    path: Path
+    what: str
+
+
+@dataclass(frozen=True)
+class OnDisk(Generic[T]):
+    """Something made of the arrays of one file each time it is used."""
+
+    path: Path
+    sha256: str  # hash it had when it was saved
+    made: Callable[[Arrays], T]
+
+    def __call__(self) -> T:
+        """Read the file, or take what was just read of it."""
+        return self.made(_arrays(self.path, self.sha256))
+
+
+@dataclass(frozen=True)
+class StoredArrays(Mapping[str, NDArray[np.float64]]):
+    """Arrays of one file by name, read when one of them is used."""
+
+    path: Path
+    sha256: str  # hash it had when it was saved; empty where there is no file, and no array
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self._read()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._read())
+
+    def __len__(self) -> int:
+        return len(self._read())
+
+    def later(self, made: Callable[[Arrays], T]) -> Any:
+        """Return what shall be made of the arrays when it is looked at, for a field that `may_lie_on_disk`."""
+        return OnDisk(self.path, self.sha256, made)
+
+    def _read(self) -> Arrays:
+        return _arrays(self.path, self.sha256) if self.sha256 else {}
+
+
+def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
+    """Let fields of a dataclass be given as `OnDisk`; who reads such a field gets its value, which is not kept.
+
+    >>> @may_lie_on_disk("curves")
+    ... @dataclass(frozen=True)
+    ... class Kept:
+    ...     curves: list[int]
+    >>> Kept([1, 2]).curves
+    [1, 2]
+    """
+
+    def marked(kind: type[Kind]) -> type[Kind]:
+        for name in fields:
+            setattr(kind, name, _Field(name))
+        return kind
+
+    return marked
+
+
+def lies_on_disk(thing: object, field: str) -> bool:
+    """Whether a field was given as `OnDisk`."""
+    return isinstance(vars(thing)[field], OnDisk)
+
+
+def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
+    """Return the refusal of a file that is not as it was saved."""
+    error = DamagedError(
+        "results need every file of their folder as it was saved", f"{path.parent.name}/{path.name} is {what}", do
+    )
+    error.path, error.what = path, what
+    return error
+
+
+def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
+    """Return the refusal of a file that another version of gaitdisc wrote."""
+    do = f"Another version wrote it: install that one to read it, or compute it again with {__version__}."
+    return damaged(path, f"of format {str(found)[:20]}, not {ours}", do)
+
+
+class _Field:
+    """Descriptor that reads `OnDisk` when it is looked at; a dataclass sets it as any other field."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, thing: object, kind: type | None = None) -> Any:
+        if thing is None:
+            raise AttributeError(self._name)
+        value = vars(thing)[self._name]
+        return value() if isinstance(value, OnDisk) else value
+
+    def __set__(self, thing: object, value: object) -> None:
+        vars(thing)[self._name] = value
+
+
+@lru_cache(maxsize=KEPT_FILES)
+def _arrays(path: Path, sha256: str) -> Arrays:
+    try:
+        content = path.read_bytes()
+        if hashlib.sha256(content).hexdigest() != sha256:
+            raise damaged(path, CHANGED)
+        with np.load(io.BytesIO(content), allow_pickle=False) as stored:
+            return {key: stored[key] for key in stored.files}
+    except FileNotFoundError:
+        raise damaged(path, "missing") from None
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise damaged(path, f"not readable ({error})") from error
+
+
+OWN = "own_sha256"
+
+
+def read_sealed(path: Path) -> dict[str, Any]:
+    """Read a JSON file that `sealed_text` made, if it is as it was written."""
+    if not path.is_file():
+        raise damaged(path, "missing")
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        own = data.pop(OWN, None) if isinstance(data, dict) else None
+        found = content_sha256(data) if own is not None else None
+    except RecursionError:
+        raise damaged(path, "not readable as JSON (nested too deeply)") from None
+    except (OSError, ValueError) as error:
+        raise damaged(path, f"not readable as JSON ({error})") from error
+    if not isinstance(data, dict):
+        raise damaged(path, "no JSON object")
+    if own is None:
+        raise damaged(path, f"without a hash of its own: an older version of gaitdisc wrote it, or {OWN} was taken out")
+    if found != own:
+        raise damaged(path, CHANGED)
+    return data
+
+
+def sealed_text(data: Mapping[str, Any]) -> str:
+    """Write JSON with a hash of its own, which covers everything else in it.
+
+    >>> sealed_text({"rate_hz": 100.0}) != sealed_text({"rate_hz": 999.0})
+    True
+    """
+    as_read = json.loads(json.dumps(data))
+    return json.dumps({**as_read, OWN: content_sha256(as_read)}, indent=1, ensure_ascii=False) + "\n"
+
+
+def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
+    """Refuse a folder of which a file is not as it was saved."""
+    note_inputs(folder / file for file in hashes)
+    for file, wanted in hashes.items():
+        path = folder / file
+        if not path.is_file():
+            raise damaged(path, "missing")
+        try:
+            found = file_sha256(path)
+        except OSError as error:
+            raise damaged(path, f"not readable ({error.strerror})") from error
+        if found != wanted:
+            raise damaged(path, CHANGED)
+
+
 FORMAT = 1
 EARLIER = {"told": "reconstructed"}  # what columns were called in folders saved before
 NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in its folder
-T = TypeVar("T")
 
 
 class Unit(NamedTuple):

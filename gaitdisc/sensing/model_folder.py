@@ -14,9 +14,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import real_array
-from gaitdisc.results.on_disk import DamagedError
-from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
-from gaitdisc.sensing.missing import filled, refuse_unknown_way
+from gaitdisc.results.unit_folder import DamagedError, check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.sensing.reconstructor import (
     ENSEMBLE,
     KINDS,
@@ -30,7 +28,7 @@ from gaitdisc.sensing.reconstructor import (
     Sensing,
     network_of,
 )
-from gaitdisc.sensing.windows import Lags, windows_of
+from gaitdisc.sensing.windows import Lags, filled, refuse_unknown_way, windows_of
 from gaitdisc.whole_file import write_whole, written_so_far, written_together
 
 if TYPE_CHECKING:
@@ -54,7 +52,7 @@ class SensingModel:
         """States of a new recording that has the sensors, in their units and at the model's rate.
 
         NaN where the history is not full, or holds a missing value; `missing`, a word of
-        `gaitdisc.sensing.missing.WAYS`, may say what stands for it, and a masked model needs nothing.
+        `gaitdisc.sensing.windows.WAYS`, may say what stands for it, and a masked model needs nothing.
         The recording has to be filtered as those were that the model was fitted to.
         """
         what = self.reconstructor.sensing
@@ -173,7 +171,7 @@ class Stream:
     """Reconstructs the states at each new reading, with the same numbers as over a recording.
 
     A recurrent network carries the windows under way along (`gaitdisc.networks.carried_windows`), others keep readings.
-    missing: a word of `gaitdisc.sensing.missing.WAYS` for a missing reading, unless the model is a masked one
+    missing: a word of `gaitdisc.sensing.windows.WAYS` for a missing reading, unless the model is a masked one
     """
 
     def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:

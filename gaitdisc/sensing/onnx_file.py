@@ -42,7 +42,12 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     graph = _Graph(helper, np.float64 if isinstance(fitted, FourierRidge) else np.float32)
     x = graph.add("Cast", WINDOW, to=graph.type_of(graph.number))
     if isinstance(fitted, FourierRidge):
-        states = _ridge(graph, fitted, x)
+        h = graph.scaled(x, fitted.x_scale)
+        if len(fitted.phases):
+            cosines = graph.add("Cos", graph.linear(h, fitted.frequencies, fitted.phases))
+            scaled = graph.add("Mul", cosines, graph.constant(np.array(np.sqrt(2 / len(fitted.phases)))))
+            h = graph.add("Concat", h, scaled, axis=1)
+        states = graph.unscaled(graph.linear(h, fitted.weights, fitted.offset), fitted.y_scale)
     elif isinstance(fitted, Ensemble):
         each = [_network(graph, member, x, model) for member in fitted.members]
         states = graph.add("Mean", *each)
@@ -131,15 +136,6 @@ class _Graph:
     def linear(self, x: str, weights: NDArray[Any], offset: NDArray[Any]) -> str:
         """Of weights (input, output)."""
         return self.add("Add", self.add("MatMul", x, self.constant(weights)), self.constant(offset))
-
-
-def _ridge(graph: _Graph, model: FourierRidge, x: str) -> str:
-    h = graph.scaled(x, model.x_scale)
-    if len(model.phases):
-        cosines = graph.add("Cos", graph.linear(h, model.frequencies, model.phases))
-        scaled = graph.add("Mul", cosines, graph.constant(np.array(np.sqrt(2 / len(model.phases)))))
-        h = graph.add("Concat", h, scaled, axis=1)
-    return graph.unscaled(graph.linear(h, model.weights, model.offset), model.y_scale)
 
 
 def _network(graph: _Graph, model: TrainedNetwork, x: str, whole: SensingModel) -> str:

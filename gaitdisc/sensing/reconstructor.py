@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.recording import Recording, Samples, Scale
-from gaitdisc.sensing.missing import hidden
-from gaitdisc.sensing.windows import Lags, present, thinned, windows_of
+from gaitdisc.sensing.windows import Lags, hidden, present, thinned, windows_of
 
 if TYPE_CHECKING:
     from gaitdisc.networks.training_settings import TrainingSettings

@@ -128,7 +128,11 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
     for (start, end), columns in _shared_runs(np.isfinite(bridged.values)).items():
         if end - start < need:
             continue
-        values[start:end, columns] = _both_ways(sections, bridged.values[start:end, columns], need - 1)
+        x = bridged.values[start:end, columns]
+        offset = x[0]  # keeps a constant channel constant to the last digit
+        both = sosfiltfilt(sections, x - offset, axis=0, padtype="odd", padlen=need - 1)
+        gain_at_zero = round(float(np.prod(sections[:, :3].sum(axis=1) / sections[:, 3:].sum(axis=1))))
+        values[start:end, columns] = both + offset * float(gain_at_zero)
         marks[start : start + edge, columns] = True
         marks[max(start, end - edge) : end, columns] = True
     smooth = recording.with_values(values, marks)
@@ -142,10 +146,3 @@ def _shared_runs(known: NDArray[np.bool_]) -> dict[tuple[int, int], list[int]]:
         for start, end in runs(known[:, column]):
             found.setdefault((int(start), int(end)), []).append(column)
     return found
-
-
-def _both_ways(sections: NDArray[np.float64], x: NDArray[np.float64], padding: int) -> NDArray[np.float64]:
-    offset = x[0]  # keeps a constant channel constant to the last digit
-    both = sosfiltfilt(sections, x - offset, axis=0, padtype="odd", padlen=padding)
-    gain_at_zero = round(float(np.prod(sections[:, :3].sum(axis=1) / sections[:, 3:].sum(axis=1))))
-    return both + offset * float(gain_at_zero)

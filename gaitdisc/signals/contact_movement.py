@@ -23,9 +23,8 @@ from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
-from gaitdisc.signals.gaps import filled
-from gaitdisc.signals.spikes import without_spikes
-from gaitdisc.signals.walking import stride_period
+from gaitdisc.signals.gaps import filled, without_spikes
+from gaitdisc.signals.strides import stride_period
 
 SHORTEST_STRIDE_S = 0.4
 FEWEST_SWING = 0.5  # of the usual excursion of the heel

@@ -20,8 +20,8 @@ LEAST_SPEED = 0.3  # m/s of the pelvis in the laboratory: slower is a treadmill,
 class Direction:
     """Forwards and upwards in the laboratory's axes."""
 
-    forward: NDArray[np.float64]  # (3,), unit vectors; forward is the mean one where walking turns
-    up: NDArray[np.float64]  # (3,), unit vectors; forward is the mean one where walking turns
+    forward: NDArray[np.float64]  # (3,), unit vector, the mean one where walking turns
+    up: NDArray[np.float64]  # (3,), unit vector
     how: str  # `given`, or what they were inferred from
     # (time, 3), forward at each sample of the markers, where it follows the path of the pelvis
     headings: NDArray[np.float64] | None = None
@@ -82,7 +82,13 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     level = [i for i in range(3) if i != up_axis]
     headings = _headings(centre, level, markers.rate_hz)
     if headings is not None:
-        return _along_path(headings, up, level)
+        angle = np.unwrap(np.arctan2(headings[:, level[1]], headings[:, level[0]]))
+        turned = np.degrees(angle.max() - angle.min())
+        mean = headings.mean(axis=0)
+        size = float(np.linalg.norm(mean))
+        forward = mean / size if size > 1e-9 else headings[0]  # there and back has no mean
+        how = f"forward ({_shown(forward)}) follows the path of the pelvis, which turns by {turned:.0f} deg"
+        return Direction(forward, up, how, headings)
     return _from_swings(swings, up, level, markers.source.file)
 
 
@@ -104,16 +110,6 @@ def _headings(centre: NDArray[np.float64], level: list[int], rate_hz: float) -> 
     headings = np.zeros(centre.shape)
     headings[:, level] = velocity[nearest] / speed[nearest, None]
     return headings
-
-
-def _along_path(headings: NDArray[np.float64], up: NDArray[np.float64], level: list[int]) -> Direction:
-    angle = np.unwrap(np.arctan2(headings[:, level[1]], headings[:, level[0]]))
-    turned = np.degrees(angle.max() - angle.min())
-    mean = headings.mean(axis=0)
-    size = float(np.linalg.norm(mean))
-    forward = mean / size if size > 1e-9 else headings[0]  # there and back has no mean
-    how = f"forward ({_shown(forward)}) follows the path of the pelvis, which turns by {turned:.0f} deg"
-    return Direction(forward, up, how, headings)
 
 
 def _from_swings(

@@ -25,9 +25,9 @@ class SignedRank:
     p: float
     rank_biserial: float  # (W+ - W-) / (W+ + W-): -1 every pair falls, 1 every pair rises; NaN where no pair differs
     median: float  # of the differences, zeros among them [the numbers' unit]
-    shift: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
-    low: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
-    high: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
+    shift: float  # Hodges-Lehmann shift [the numbers' unit]
+    low: float  # lower end of its interval; -inf where so few pairs have none
+    high: float  # upper end of its interval; inf where so few pairs have none
     level: float  # requested of the interval; what it holds is at least that
     left_out: tuple[str, ...]  # reasons of the pairs that were left out, one each
 

@@ -25,10 +25,9 @@ from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_st
 from gaitdisc.report.reconstruction_page import NOT_MSE, write_reconstruction_report
 from gaitdisc.report.table import Table
 from gaitdisc.results.reconstruction import mean_over_people
-from gaitdisc.sensing.missing import filled, with_missing
 from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.state_errors import angle_columns
-from gaitdisc.sensing.windows import Parts, split_within
+from gaitdisc.sensing.windows import Parts, filled, split_within, with_missing
 from gaitdisc.words import counted, listed, number, unit_text
 
 if TYPE_CHECKING:

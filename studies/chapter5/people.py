@@ -17,7 +17,7 @@ import gaitdisc as gd
 from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.forecast import persistence, phase_average
+from gaitdisc.sensing.reconstruct import persistence, phase_average
 from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor, latent_states
 from gaitdisc.sensing.windows import Lags, Parts, split_by_subject, split_by_trial, split_within, stacked
 

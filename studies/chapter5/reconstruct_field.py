@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Field, Samples
-from gaitdisc.results.on_disk import DamagedError
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.unit_folder import DamagedError, read_sealed, sealed_text
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
 from gaitdisc.sensing.windows import Lags, Parts, split_within, stacked
 from gaitdisc.whole_file import write_whole

@@ -1,7 +1,5 @@
 """A small study on disk: two people, short walks, angles only, fast to fit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

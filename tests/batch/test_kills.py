@@ -19,7 +19,7 @@ KILLS, ROUNDS_AT_MOST, SEED = 50, 400, 3
 SERVER = """
 import os, sys
 from pathlib import Path
-import gaitdisc.networks.trainer, gaitdisc.networks.fused_kernels, gaitdisc.statistics.signed_rank
+import gaitdisc.networks.trainer, gaitdisc.networks.fused_steps, gaitdisc.statistics.signed_rank
 from gaitdisc.batch.vary_study import ablate_study
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.study_file import load_study

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 from made_clinic import made_controls, made_person, made_run
 

@@ -1,7 +1,5 @@
 """Files count once they stand still; answers by a clock that the test turns."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -56,10 +56,6 @@ def test_here_is_one_process():
     assert not Workers(cluster="tcp://somewhere:8786").here
 
 
-def test_processes_beside_this_one_keep_the_order():
-    assert list(computed_side_by_side(Workers(jobs=2), squared, [3, 1, 2])) == [(3, 9), (1, 1), (2, 4)]
-
-
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_units_come_in_order_and_everybody_is_reported(study, jobs):
     shares = []

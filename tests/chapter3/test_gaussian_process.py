@@ -1,10 +1,15 @@
+"""Gaussian processes, their kernels, and networks trained by Bayes' rule."""
+
 import numpy as np
 import pytest
+from chapter3.bayesian_training import _drawn, _outputs, train_bayesian
 from chapter3.gaussian_process import FORGOTTEN, KERNELS, far_apart, fit_gaussian_process, kernel
+from scipy.optimize import approx_fprime
+from sklearn.gaussian_process.kernels import RBF, Matern
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
-from gaitdisc.recording.autocorrelation import autocorrelation_time
+from gaitdisc.recording.arrays import autocorrelation_time
 
 RNG = np.random.default_rng(0)
 X = RNG.uniform(-2, 2, (700, 2))
@@ -96,3 +101,73 @@ def test_an_interval_of_noise_that_remembers_is_as_wide_as_of_so_many_samples_fe
     )
     new = np.linspace(2, 18, 30)[:, None]
     assert np.median(all_.sd(new)) == pytest.approx(np.median(few.sd(new)), rel=0.35)
+
+
+PEERS = {
+    "squared_exponential": RBF,
+    "matern_3_2": lambda lengths: Matern(lengths, nu=1.5),
+    "matern_5_2": lambda lengths: Matern(lengths, nu=2.5),
+}
+
+
+@pytest.mark.parametrize("kind", KERNELS)
+def test_every_kernel_is_that_of_scikit_learn(kind):
+    rng = np.random.default_rng(0)
+    a, b, lengths = rng.normal(size=(7, 3)), rng.normal(size=(5, 3)), np.array([0.5, 1.0, 3.0])
+    assert kernel(kind, a, b, lengths) == pytest.approx(PEERS[kind](lengths)(a, b), abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", KERNELS)
+def test_every_kernel_is_positive(kind):
+    x = np.random.default_rng(1).normal(size=(40, 2))
+    assert np.linalg.eigvalsh(kernel(kind, x, x, np.ones(2))).min() > -1e-12
+
+
+def surface(noise=0.0, count=1500, seed=0):
+    random = np.random.default_rng(seed)
+    x = random.uniform(-2, 2, (count, 2)) * [1.0, 30.0]
+    truth = 5.0 + 3 * np.sin(x[:, 0]) * np.cos(x[:, 1] / 30)
+    y = truth + noise * truth.std() * random.standard_normal(count)
+    t = np.arange(count) / 100
+    return Samples(x, y[:, None], ("a", "b"), ("c",), t, t), truth
+
+
+def test_slopes_are_the_derivatives_of_the_output():
+    x, weights = np.array([[0.3, -1.2]]), _drawn(2, 3, 0)
+    by_differences = approx_fprime(weights, lambda w: _outputs(w, x)[0][0], 1e-7)
+    assert _outputs(weights, x)[1][0] == pytest.approx(by_differences, abs=1e-5)
+
+
+def test_the_module_computes_what_was_descended_and_a_smooth_surface_is_learned():
+    samples, truth = surface()
+    off = train_bayesian(samples)(samples.x)[:, 0] - truth
+    assert off.std() < 2e-3 * truth.std()
+    assert abs(off.mean()) < 1e-3 * truth.std()
+
+
+def test_of_noise_little_more_is_learned_than_the_weights_that_it_determines():
+    samples, truth = surface(noise=0.3)
+    network = train_bayesian(samples)
+    off = network(samples.x)[:, 0] - truth
+    fresh, other = surface(seed=1)
+    assert off.std() < 0.3 * np.sqrt(60 / 1500) * truth.std() * 1.5
+    assert (network(fresh.x)[:, 0] - other).std() < 0.15 * truth.std()
+
+
+def test_nothing_but_noise_is_its_mean():
+    samples, _ = surface()
+    noise = samples.with_outputs(7 + np.random.default_rng(2).standard_normal((len(samples), 1)))
+    assert train_bayesian(noise)(samples.x)[:, 0].std() < 0.15
+
+
+def test_a_seed_decides_everything():
+    samples, _ = surface(noise=0.1, count=200)
+    one, again, other = (train_bayesian(samples, 4, seed)(samples.x[:50]) for seed in (1, 1, 2))
+    assert np.array_equal(one, again)
+    assert not np.array_equal(one, other)
+
+
+def test_too_few_samples_for_bayes_rule_are_refused():
+    samples, _ = surface(count=49)
+    with pytest.raises(TrainingError, match="49"):
+        train_bayesian(samples)

@@ -33,8 +33,6 @@ def test_each_figure_carries_the_numbers_drawn():
     some = cells()
     lines = error_figure(some[:4], "a", "Fig. 3.3").numbers
     assert np.allclose(lines["known"], -0.2)
-    fast = system_figure(begun(30.0, ("m", "m/s")), np.column_stack([0 * TIME, TIME]), "e", "Fig. 3.2").drawn
-    assert fast.axes[2].get_ylabel() == "missing rate of y [m/s²]"
     bars = accuracy_figure(some, "b", "Fig. 3.5").numbers
     assert bars.groupby("method")["median"].median().round(6).to_dict() == {"sindy": 100, "dmd": 75, "gp": 50, "nn": 25}
     assert np.allclose(horizon_figure(some, "c", "Fig. 3.9").numbers.groupby("method")["accuracy"].first()["gp"], 50)

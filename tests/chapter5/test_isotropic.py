@@ -1,9 +1,22 @@
+"""A forced isotropic flow against its own laws."""
+
+import ch5_turbulence
 import numpy as np
 import pytest
 from chapter5 import turbulence
-from chapter5.turbulence import Box, FlowSettings, first_velocity, record_turbulence
+from chapter5.turbulence import (
+    Box,
+    FlowSettings,
+    Stepper,
+    energy_spectrum,
+    first_velocity,
+    flow_numbers,
+    record_turbulence,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from gaitdisc.errors import ReadError, SchemaError, ShapeError
+from gaitdisc.errors import ReadError, SamplingError, SchemaError, ShapeError
 
 SMALL = FlowSettings(nodes=16, cut=12, snapshots=30, every=2, spin_up=40)
 
@@ -74,3 +87,128 @@ def test_the_first_velocity_has_no_divergence():
     box = Box(16)
     u = first_velocity(box, 1.0, 5)
     assert np.abs((box.k * u).sum(axis=0)).max() < 1e-5
+
+
+BOX = Box(16)
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=10, deadline=None)
+def test_modes_and_nodes_are_one_field_and_energy_is_its_mean_square(seed):
+    velocity = np.random.default_rng(seed).normal(size=(3, 16, 16, 16))
+    modes = BOX.to_modes(velocity)
+    np.testing.assert_allclose(BOX.to_nodes(modes), velocity, atol=1e-12)
+    assert BOX.energy(modes).sum() == pytest.approx(0.5 * (velocity**2).sum(axis=0).mean(), rel=1e-6)
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=10, deadline=None)
+def test_what_is_projected_has_no_divergence_and_is_not_projected_again(seed):
+    modes = BOX.to_modes(np.random.default_rng(seed).normal(size=(3, 16, 16, 16)))
+    once = BOX.projected(modes)
+    assert np.abs((BOX.k * once).sum(axis=0)).max() < 1e-6 * np.abs(once).max() * BOX.nodes
+    np.testing.assert_allclose(BOX.projected(once), once, atol=1e-7)
+    assert not once[:, ~BOX.kept].any()
+
+
+def test_a_gradient_is_taken_away_whole():
+    x = 2 * np.pi * np.arange(16) / 16
+    gradient = np.zeros((3, 16, 16, 16))
+    gradient[0] = np.cos(2 * x)[:, None, None]  # of sin(2 x) / 2
+    assert np.abs(BOX.projected(BOX.to_modes(gradient))).max() < 1e-12
+
+
+def test_two_thirds_of_the_wavenumbers_are_kept():
+    assert [Box(n).largest for n in (32, 48, 64)] == [10, 15, 21]
+    assert 3 * BOX.largest < BOX.nodes  # a product of three kept modes cannot fold back onto a kept one
+
+
+def test_too_coarse_a_box_is_refused():
+    with pytest.raises(ShapeError, match=r"8 or more.*33"):
+        Box(33)
+
+
+def test_the_spectrum_adds_up_to_the_energy():
+    u = first_velocity(BOX, 0.7, 0)
+    assert energy_spectrum(BOX, u).sum() == pytest.approx(0.7, rel=1e-5)
+
+
+def test_numbers_of_a_single_shear_mode_are_known():
+    x = 2 * np.pi * np.arange(16) / 16
+    shear = np.zeros((3, 16, 16, 16))
+    shear[1] = np.sin(2 * x)[:, None, None]
+    found = flow_numbers(BOX, BOX.to_modes(shear), 0.1)
+    assert found.energy == pytest.approx(0.25)
+    assert found.dissipation == pytest.approx(2 * 0.1 * 4 * 0.25)  # 2 nu k^2 E
+    speed = np.sqrt(2 * 0.25 / 3)
+    assert found.re_lambda == pytest.approx(speed**2 * np.sqrt(15 / (0.1 * 0.2)))
+    assert found.kmax_eta == pytest.approx(5 * (0.1**3 / 0.2) ** 0.25)
+    assert found.integral_length == pytest.approx(np.pi / (2 * speed**2) * 0.25 / 2)
+    assert found.turnover == pytest.approx(found.integral_length / speed)
+
+
+X = 2 * np.pi * np.arange(16) / 16
+ZERO = np.zeros((16, 16, 16))
+
+
+def after(u, stepper, steps):
+    for _ in range(steps):
+        u = stepper.step(u)
+    return u
+
+
+def test_taylor_green_decays_at_the_exact_viscous_rate():
+    """Taylor and Green 1937: in two dimensions advection is a gradient, and the velocity decays by exp(-2 nu t)."""
+    x, y = X[:, None, None], X[None, :, None]
+    vortex = np.stack([np.sin(x) * np.cos(y) + ZERO, -np.cos(x) * np.sin(y) + ZERO, ZERO])
+    decayed = BOX.to_nodes(after(BOX.to_modes(vortex), Stepper(BOX, 0.1, 0.0, 0.02), 50))
+    np.testing.assert_allclose(decayed, vortex * np.exp(-2 * 0.1 * 1.0), atol=1e-5)
+
+
+def test_a_shear_mode_decays_at_its_own_rate():
+    shear = np.stack([ZERO, np.sin(3 * X)[:, None, None] + ZERO, ZERO])
+    decayed = BOX.to_nodes(after(BOX.to_modes(shear), Stepper(BOX, 0.05, 0.0, 0.1), 20))
+    np.testing.assert_allclose(decayed, shear * np.exp(-9 * 0.05 * 2.0), atol=1e-5)
+
+
+def test_without_viscosity_and_force_energy_stays_to_second_order_of_the_step():
+    u = first_velocity(BOX, 0.5, 1).astype(np.complex128)
+    lost = []
+    for dt, steps in ((0.04, 10), (0.02, 20)):
+        lost.append(abs(float(BOX.energy(after(u, Stepper(BOX, 0.0, 0.0, dt), steps)).astype(float).sum()) - 0.5))
+    assert lost[0] < 1e-4
+    assert lost[1] < lost[0] / 4
+
+
+def test_the_force_gives_its_power_and_viscosity_takes_the_dissipation():
+    stepper, u = Stepper(BOX, 0.05, 0.2, 0.01), first_velocity(BOX, 0.5, 2)
+    numbers = [flow_numbers(BOX, u, 0.05)]
+    for _ in range(100):
+        u = stepper.step(u)
+        numbers.append(flow_numbers(BOX, u, 0.05))
+    dissipated = np.trapezoid([n.dissipation for n in numbers], dx=0.01)
+    assert numbers[-1].energy - numbers[0].energy == pytest.approx(0.2 * 1.0 - dissipated, abs=2e-3 * dissipated)
+
+
+def test_a_forced_flow_stays_free_of_divergence():
+    u = after(first_velocity(BOX, 0.5, 3), Stepper(BOX, 0.05, 0.2, 0.02), 50)
+    assert np.abs((BOX.k * u).sum(axis=0)).max() < 1e-5 * np.abs(u).max()
+
+
+def test_too_long_a_step_is_refused():
+    with np.errstate(all="ignore"), pytest.raises(SamplingError, match=r"steps of 50.*not finite"):
+        after(first_velocity(BOX, 10.0, 0), Stepper(BOX, 0.001, 0.1, 50.0), 50)
+
+
+@pytest.mark.slow
+def test_one_sensor_does_not_tell_a_turbulent_flow_ahead_of_time(tmp_path):
+    result = ch5_turbulence.run(quick=True, folder=tmp_path, models=3)
+    r2 = {
+        split: np.median([c.r2 for c in result.cells if (c.split, c.model) == (split, "delay ridge")])
+        for split in ch5_turbulence.SPLITS
+    }
+    assert r2["temporal"] < r2[ch5_turbulence.RANDOM] < 0.9
+    ceiling = {c.split: c.r2 for c in result.cells if c.model == ch5_turbulence.CEILING}
+    assert ceiling[ch5_turbulence.RANDOM] > 0.95
+    assert ceiling["temporal"] > r2["temporal"]
+    assert (tmp_path / "figures" / "boxes.png").exists()

@@ -1,7 +1,5 @@
 """Two short walks of one calibration person, shared by the tests of the cohort."""
 
-from __future__ import annotations
-
 import pytest
 
 from gaitdisc.cohort.cohort import the_twelve

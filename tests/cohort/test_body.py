@@ -1,7 +1,5 @@
 """The equations of motion against mechanics: energy, a pendulum's period, inverse against forward dynamics."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What the laboratory sees passes the package's own readers of signals, and tells the truth within its noise."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt

@@ -1,6 +1,4 @@
-"""The laws of the walking model."""
-
-from __future__ import annotations
+"""The laws of the walking model; without noise commands, equations of motion and ground agree with the habit."""
 
 from dataclasses import replace
 
@@ -9,8 +7,12 @@ import pytest
 
 from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.cohort import the_twelve
+from gaitdisc.cohort.controller import COLUMNS, learnt_table
+from gaitdisc.cohort.leg_path import STANCE, Belt, gate, habitual_force, pressure_centre
+from gaitdisc.cohort.motion import NOISE, NOISE_STEPS, STEP_S, Worn, moved
+from gaitdisc.cohort.muscles import strength_of
 from gaitdisc.cohort.person import Spring, drawn
-from gaitdisc.cohort.walk import walked
+from gaitdisc.cohort.walk import _loop, walked
 from gaitdisc.errors import StrideError
 
 KNEE, ANKLE = 3, 4
@@ -138,3 +140,67 @@ def test_none_of_two_hundred_random_people_falls():
 def test_a_fall_is_reported_by_name_and_seed(person):
     with pytest.raises(StrideError, match=r"C02, 0 N m/deg.*7.*more.*143 deg"):
         walked(replace(person, unrest=60.0), None, 20.0, 7)
+
+
+def quiet_walk(person, duration_s, stiffness=0.0, damping=1.0):
+    table = np.stack([learnt_table(person, side) for side in (0, 1)])
+    noise = np.zeros((round(duration_s / STEP_S / NOISE_STEPS) + 1, NOISE))
+    worn = Worn(np.degrees(stiffness), np.radians(person.engaged_deg), person.speed_m_per_s, person.stride_s)
+    loop = _loop(person)
+    loop = loop._replace(damping=damping * loop.damping)
+    leg = leg_of(person.height_m, person.mass_kg)
+    strengths = tuple(strength_of(person.mass_kg, person.style.strength[side]) for side in (0, 1))
+    return moved(leg, strengths, Belt(), loop, worn, np.stack([table, table]), noise)
+
+
+def test_without_noise_the_legs_follow_their_habit(person):
+    _, slow, upright = quiet_walk(person, 12.0)
+    assert upright
+    late = slow[600:]
+    table = learnt_table(person, 0)
+    for link in range(3):
+        habit = np.interp(late[:, 0] % 1.0, np.linspace(0, 1, len(table)), table[:, COLUMNS.psi + link])
+        assert np.degrees(np.abs(late[:, 1 + link] - habit)).max() < 0.6
+
+
+def test_without_noise_strides_last_what_they_should(person):
+    quick, _, _ = quiet_walk(person, 12.0)
+    rate = (quick[-1, 0] - quick[6000, 0]) / (len(quick) - 1 - 6000) * 1000
+    assert 1 / rate == pytest.approx(person.stride_s, rel=0.005)
+
+
+def test_a_stiff_spring_leaves_its_moment_and_less_dorsiflexion(person):
+    _, free, _ = quiet_walk(person, 12.0)
+    _, held, _ = quiet_walk(person, 12.0, stiffness=5.0)
+    ankle = [np.degrees(walk[600:, 3] - walk[600:, 2]).max() for walk in (free, held)]
+    assert ankle[1] < ankle[0] - 2.0
+    assert np.all(free[:, 17:19] == 0.0)
+    assert held[600:, 17].min() == pytest.approx(-5.0 * (ankle[1] - person.engaged_deg), abs=0.5)
+
+
+def test_a_body_that_is_driven_apart_is_reported(person):
+    assert not quiet_walk(person, 4.0, damping=-6.0)[2]
+
+
+PHASE = np.arange(1000) / 1000
+
+
+def test_the_gate_is_exactly_shut_in_swing():
+    assert np.all(gate(PHASE[PHASE >= STANCE]) == 0.0)
+    assert gate(np.array([1.3])) == pytest.approx(gate(np.array([0.3])))
+    assert 0.0 <= gate(PHASE).min() <= gate(PHASE).max() <= 1.0
+
+
+@pytest.mark.parametrize("speed", [0.40, 0.45, 0.55])
+def test_two_feet_carry_the_body_and_neither_push_nor_brake_on_the_whole(speed):
+    force = habitual_force(PHASE, speed)
+    assert force.mean(axis=0) == pytest.approx([0.0, 0.5], abs=1e-9)
+    assert force[PHASE >= STANCE].max() == 0.0
+
+
+def test_pressure_rolls_from_heel_to_toe():
+    pressure = pressure_centre(PHASE, 0.26)
+    stance = pressure[PHASE < STANCE]
+    assert np.all(np.diff(stance) >= 0)
+    assert stance[0] < 0 < stance[-1] < 0.26 * 0.75
+    assert pressure[-1] == pytest.approx(pressure[0], abs=1e-3)

@@ -1,10 +1,19 @@
-import json
+"""Small verbs and what all share: check, new, cite, doctor, options, exit codes."""
 
+import json
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+from manufactured_discovery import manufactured
 from texts import says
 from typer.testing import CliRunner
 
+import gaitdisc
+from gaitdisc.batch import installation
+from gaitdisc.batch.installation import Check
 from gaitdisc.cli import app
-from gaitdisc.commands.options import REFUSED
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 
 
 def test_each_trial_has_its_strides(study):
@@ -36,3 +45,80 @@ def test_a_condition_in_brackets_is_printed_as_it_is(study, tmp_path):
     checked = CliRunner().invoke(app, ["check", str(home)])
     assert checked.exception is None or isinstance(checked.exception, SystemExit), checked.exception
     assert "xo[/b]" in checked.output and "[natural]" in checked.output
+
+
+DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
+
+
+def test_a_study_is_not_overwritten(study, recordings, called):
+    done = called("new", study, "--from", recordings)
+    assert done.returncode == REFUSED
+    assert says(" ".join(done.stderr.split()), "study.toml", "changed", "new")
+
+
+def test_the_mapping_of_a_walk_needs_its_ground_forces_and_a_model_of_opensim(tmp_path, called):
+    model = tmp_path / "leg.osim"
+    model.write_text("<OpenSimDocument/>")
+    done = called("new", tmp_path / "walk.toml", "--from", model, "--forces", "forces.sto")
+    assert done.returncode == REFUSED and "Add --external-loads grf.xml" in done.stderr
+    done = called("new", tmp_path / "walk.toml", "--from", tmp_path / "leg.xml", "--external-loads", "grf.xml")
+    assert done.returncode == REFUSED and "leg.xml is none" in done.stderr
+    done = called("new", tmp_path / "walk", "--from", model, "--external-loads", "grf.xml")
+    assert done.returncode == REFUSED and "Call it leg.toml" in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not DATA.is_dir(), reason="the recorded walk is not here")
+def test_the_mapping_of_a_walk_is_written_and_searched(tmp_path, called):
+    pytest.importorskip("opensim", reason="OpenSim is not installed: gaitdisc[opensim]")
+    results = DATA / "CMC/results_no_spring"
+    files = {
+        "--from": DATA / "CMC/subject01_metabolics.osim",
+        "--external-loads": DATA / "ExperimentalData/subject01_walk_grf.xml",
+        "--forces": results / "walk_subject_Actuation_force.sto",
+        "--actuators": DATA / "gait10dof_Reserve_Actuators.xml",
+    }
+    done = called("new", tmp_path / "walk.toml", *(word for pair in files.items() for word in pair))
+    assert done.returncode == 0 and says(done.stdout, "72.6 kg, 10 free"), done.stderr
+    out = ("--out", tmp_path / "found", "-q", "--no-report")
+    done = called("discover", tmp_path / "walk.toml", results / "walk_subject_Kinematics_q.sto", *out)
+    assert done.returncode == 0 and says(done.stdout, "nothing", "missing", "these data could"), done.stderr
+
+
+def test_bibtex_is_printed_or_written_with_what_each_entry_is_for(called, tmp_path):
+    folder = manufactured().save(tmp_path / "found")
+    said = called("cite", folder).stdout
+    assert said.startswith("% this program\n@software{gaitdisc,")
+    assert f"version = {{{gaitdisc.__version__}}}" in said
+    assert "% multiple shooting\n@inproceedings{bock1984," in said
+    done = called("cite", folder, "--out", tmp_path / "methods.bib")
+    assert (tmp_path / "methods.bib").read_text(encoding="utf-8") == said
+    assert done.stdout == f"{tmp_path / 'methods.bib'}: {said.count('@')} entries\n"
+
+
+def test_a_folder_without_a_result_is_refused(called, tmp_path):
+    done = called("cite", tmp_path)
+    assert done.returncode == REFUSED and says(done.stderr, "a saved result")
+
+
+def test_it_says_that_this_installation_works(called):
+    done = called("doctor")
+    assert done.returncode == 0, done.stderr
+    assert "This installation works." in done.stdout and "reads C3D" in done.stdout and "fonts" in done.stdout
+
+
+def test_what_is_wrong_is_named_and_the_exit_code_says_so(called):
+    with patch.object(installation, "checks", lambda: iter([Check("reads C3D", "wrong", "ReadError: no")])):
+        done = called("doctor")
+    assert done.returncode == 1 and says(done.stderr, "wrong", "C3D")
+
+
+@pytest.mark.parametrize(("command", "option"), [("run", "--jobs"), ("ablate", "--out"), ("demo", "--quiet")])
+def test_a_shared_option_is_explained_in_the_help(command, option):
+    said = CliRunner().invoke(app, [command, "--help"], env={"COLUMNS": "200"}).output
+    assert option in said
+
+
+def test_each_exit_code_says_something_else():
+    done, wrong_usage = 0, 2
+    assert len({done, wrong_usage, REFUSED, SOME_REFUSED, STOPPED}) == 5

@@ -1,7 +1,5 @@
 """A laboratory saves trials, slowly; the study takes them up one after the other, and ends by Ctrl-C."""
 
-from __future__ import annotations
-
 import itertools
 import signal
 import subprocess

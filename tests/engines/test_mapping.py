@@ -1,10 +1,16 @@
-"""The mapping file: written from a model, read again, and every mismatch with the model refused in words."""
+"""Mapping files: written from a model, read again; what the model or a record contradicts is refused in words."""
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from texts import says
 
-from gaitdisc.engines.engine import read_model
+from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
+from gaitdisc.engines.engine import Coordinate, Motion, read_model
 from gaitdisc.engines.mapping import (
     drafted,
     names_engine,
@@ -13,9 +19,13 @@ from gaitdisc.engines.mapping import (
     with_input_changed,
     write_mapping,
 )
-from gaitdisc.engines.tracked_mapping import Tracked
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.engines.tracked_files import drafted_tracked
+from gaitdisc.engines.tracked_mapping import Tracked, read_tracked, write_tracked_mapping
+from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.parts import Input, Sensor, State
 from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation
 
 
@@ -90,3 +100,99 @@ def test_equations_beside_a_model_are_refused(pendulum):
 def test_a_changed_control_is_written_as_a_definition(pendulum):
     changed = with_input_changed(drafted(read_model(pendulum)), "drive", "delay(drive, 0.04)")
     assert changed.definitions == (("replaced_drive", "delay(drive, 0.04)"),)
+
+
+DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
+LOADS = DATA / "ExperimentalData/subject01_walk_grf.xml"
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason="the recorded walk is not here")
+def test_a_mapping_of_recorded_forces_goes_to_its_file_and_back(tmp_path):
+    pytest.importorskip("opensim", reason="OpenSim is not installed: gaitdisc[opensim]")
+    forces = DATA / "CMC/results_no_spring/walk_subject_Actuation_force.sto"
+    model, reserves = DATA / "CMC/subject01_metabolics.osim", DATA / "gait10dof_Reserve_Actuators.xml"
+    tracked, engine = drafted_tracked(model, LOADS, forces, reserves)
+    assert len(engine.coordinates) == 10 and engine.mass_kg == pytest.approx(72.6, abs=0.1)
+    given = replace(tracked, noise_deg=0.5, start_s=0.7)
+    write_tracked_mapping(given, tmp_path / "walk.toml")
+    read = read_tracked(tmp_path / "walk.toml")
+    assert read is not None and [one.resolve() for one in read.files] == [one.resolve() for one in given.files]
+    assert (read.noise_deg, read.start_s, read.end_s) == (0.5, 0.7, float("inf"))
+    with pytest.raises(GaitdiscError, match=r"none.*.tracked. as actuators"):
+        drafted_tracked(model, LOADS, forces)  # its reserves are in no file that is named
+
+
+RATE_HZ, SECONDS = 100.0, 3.0
+NAMES = ("hip", "knee")
+DEGREES = {name: f"57.2957795*{name}" for name in NAMES}
+
+
+def accelerations(q, v, u, spring=0.0):
+    """Of two segments, one on the other, in small motion; gravity and the chain tie one joint to the other."""
+    hip = -30 * np.sin(q[..., 0]) + 12 * np.sin(q[..., 1]) - 0.8 * v[..., 0] + 20 * u[..., 0]
+    knee = 18 * np.sin(q[..., 0]) - 60 * np.sin(q[..., 1]) - 1.5 * v[..., 1] - 15 * u[..., 0] - spring * q[..., 1]
+    return np.stack([hip, knee], axis=-1)
+
+
+class Legs:
+    """An engine that is those equations."""
+
+    path, called = Path("legs.xml"), "MuJoCo"
+    coordinates = tuple(Coordinate(name, "rad", name) for name in NAMES)
+
+    def along(self, q, v, controls, rate):
+        return Motion(q, v, controls)
+
+    def accelerations(self, at, values, forces=None):
+        return accelerations(at.q, at.v, at.u)
+
+
+def recorded(factors, spring=0.0):
+    """Record of one trial, its smoothed states times some factors."""
+    t = np.arange(round(SECONDS * RATE_HZ)) / RATE_HZ
+    u = (0.5 * np.sin(3.1 * t) + 0.4 * np.sin(7.3 * t + 1))[:, None]
+
+    def rates(time, y):
+        drive = np.array([np.interp(time, t, u[:, 0])])
+        return np.concatenate([y[2:], accelerations(y[:2], y[2:], drive, spring)])
+
+    y = solve_ivp(rates, (0, t[-1]), [0.2, -0.1, 0.0, 0.0], t_eval=t, rtol=1e-8, atol=1e-10).y.T
+    measured = SimpleNamespace(drive=Drive.of([u], RATE_HZ, 0.0), rate=RATE_HZ)
+    return measured, (y * np.tile(factors, 2))[None]
+
+
+@pytest.fixture
+def mapping():
+    speeds = tuple(f"{name}_speed" for name in NAMES)
+    states = (*(State(name, "rad") for name in NAMES), *(State(name, "rad/s") for name in speeds))
+    sensors = tuple(Sensor(name, "deg") for name in NAMES)
+    lines = tuple((one.name, "0") for one in states)
+    return Simulation(
+        "legs", states, (Input("motor", "1"),), equations=lines, observations=tuple(DEGREES.items()), sensors=sensors
+    )
+
+
+@pytest.mark.parametrize(
+    ("factors", "words"),
+    [
+        ((1, -1), r"column 'knee' has the other sign: .* expression = \"-\(57.2957795\*knee\)\""),
+        ((-1, -1), r"column 'hip' has the other sign, and so does 'knee'"),
+        ((1, np.pi / 180), r"'knee' is in radians: .* unit = \"rad\", expression = \"knee\""),
+        ((np.pi / 180, np.pi / 180), r"is in radians, and so is '\w+'"),
+        ((180 / np.pi, 1), r"'hip' is in degrees"),
+    ],
+)
+def test_another_convention_is_refused(mapping, factors, words):
+    with pytest.raises(SchemaError, match=words):
+        refuse_other_conventions(mapping, Legs(), *recorded(np.array(factors, float)))
+
+
+@pytest.mark.parametrize("spring", [0.0, 20.0, 60.0, 200.0])
+def test_a_missing_spring_is_no_other_convention(mapping, spring):
+    refuse_other_conventions(mapping, Legs(), *recorded(np.ones(2), spring))
+
+
+def test_degrees_that_can_be_no_radians_are_refused(mapping):
+    refuse_other_units(mapping, Legs(), {"hip": 0.3, "knee": 1.2})
+    with pytest.raises(SchemaError, match=r"'knee'.*45 rad.*--degrees"):
+        refuse_other_units(mapping, Legs(), {"hip": 0.3, "knee": 45.0})

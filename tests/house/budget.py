@@ -7,8 +7,6 @@ counted apart, so that nothing shrinks by moving from one to the other. The exit
 a room has more than it may (with --target: more than its target).
 """
 
-from __future__ import annotations
-
 import sys
 import tomllib
 from fnmatch import fnmatchcase

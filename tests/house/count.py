@@ -6,8 +6,6 @@ Prints a table for docs/design.md. Rooms, and the floor each stands on, are thos
 judged as if files stood where the plan puts them. `--no-loaded` leaves out the two runs that count loaded modules.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import json

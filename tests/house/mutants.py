@@ -9,8 +9,6 @@ is judged by the tests of its room and between rooms that call the function, the
 records which. To begin anew, empty the last three columns of the table and take a new FOLDER.
 """
 
-from __future__ import annotations
-
 import ast
 import copy
 import csv

@@ -1,7 +1,5 @@
 """The house does not grow: no room has more lines than budget.toml allows it, and no file is without a room."""
 
-from __future__ import annotations
-
 import budget
 from texts import says
 

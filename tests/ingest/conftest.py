@@ -1,7 +1,5 @@
 """C3D files written for the tests with ezc3d."""
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Variables of .mat and .npz files: paths through structs and cells, and files that are damaged or hostile."""
 
-from __future__ import annotations
-
 import io
 import pickle
 import random
@@ -19,7 +17,6 @@ from gaitdisc.ingest.array_file import open_arrays
 from gaitdisc.ingest.reader_process import ReaderProcess
 
 KNEE = np.arange(12.0).reshape(4, 3)
-STEPS = {"name": "walk", "knee": KNEE, "trial": np.array([{"grf": 10 * KNEE}, {"grf": 20 * KNEE}], dtype=object)}
 
 
 def _cells(*arrays):

@@ -1,7 +1,5 @@
 """C3D files that are broken in a thousand ways: each is read as it stands or refused in words; nothing is harmed."""
 
-from __future__ import annotations
-
 import os
 import sys
 

@@ -1,10 +1,17 @@
-from __future__ import annotations
+"""Header, parameters and layout of a C3D file: what each field means, and which of them contradict each other."""
+
+import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from texts import says
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.c3d import expected_layout
+from gaitdisc.ingest.c3d_parameters import C3DParameters, decoded, read_c3d_header, read_c3d_parameters
 
 
 def _parameters(path):
@@ -63,3 +70,126 @@ def test_a_parameter_longer_than_its_entry_is_refused(tmp_path, write_c3d, some_
     path.write_bytes(content)
     with pytest.raises(ReadError, match=r"'LABELS'.*255\)"):
         _parameters(path)
+
+
+def test_header_of_a_written_file(tmp_path, write_c3d, some_points, some_analog):
+    header = read_c3d_header(write_c3d(tmp_path / "a.c3d", some_points, some_analog))
+    assert (header.processor, header.frames, header.points, header.analog_values) == ("Intel", 50, 3, 40)
+    assert (header.samples_per_frame, header.rate_hz, header.scale) == (10, 100.0, -1.0)
+
+
+@pytest.mark.parametrize(("name", "processor"), [("pi", "Intel"), ("vr", "DEC"), ("si", "MIPS")])
+def test_byte_orders_tell_the_same(gait_data, name, processor):
+    header = read_c3d_header(gait_data / f"c3d_reader_samples/c3d_org_sample01/Eb015{name}.c3d")
+    assert (header.processor, header.frames, header.points, header.analog_values) == (processor, 450, 26, 64)
+    assert (header.rate_hz, abs(header.scale)) == (50.0, pytest.approx(1 / 12))
+
+
+def test_what_is_no_c3d_file_is_named(tmp_path):
+    with zipfile.ZipFile(tmp_path / "zip.c3d", "w") as archive:
+        archive.writestr("a.txt", "x" * 2000)
+    (tmp_path / "empty.c3d").touch()
+    (tmp_path / "text.c3d").write_text("time\tknee\n" * 200)
+    (tmp_path / "short.c3d").write_bytes(b"\x02\x50" + bytes(50))
+    (tmp_path / "picture.c3d").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(2000))
+    (tmp_path / "folder.c3d").mkdir()
+    (tmp_path / "zeros.c3d").write_bytes(bytes(2048))
+    (tmp_path / "processor.c3d").write_bytes(bytes([2, 80]) + bytes(2046))
+    said = {
+        "zip": "is a ZIP archive",
+        "empty": "is empty (0 bytes)",
+        "text": "it looks like text",
+        "short": "has 52 bytes",
+        "picture": "is a PNG picture",
+        "folder": "is a folder",
+        "zeros": "bytes 0 and 0",
+        "processor": "has 0",
+        "missing": "is not there",
+    }
+    for name, words in said.items():
+        with pytest.raises(ReadError) as refusal:
+            read_c3d_header(tmp_path / f"{name}.c3d")
+        assert f"{name}.c3d {words}" in str(refusal.value) or words in refusal.value.found
+        assert refusal.value.remedy.endswith(".")
+        assert str(tmp_path) not in str(refusal.value)
+
+
+@given(st.floats(min_value=-(2.0**100), max_value=2.0**100, width=32, allow_subnormal=False))
+def test_vax_floats_are_ieee_floats_times_four_with_halves_exchanged(value):
+    bits = np.array([value * 4], np.float32).view(np.uint32)
+    raw = np.concatenate([bits >> 16, bits & 0xFFFF]).astype("<u2").tobytes()
+    assert decoded(raw, 4, "DEC")[0] == np.float32(value)
+
+
+@given(st.integers(-(2**15), 2**15 - 1))
+def test_integers_in_both_orders(value):
+    assert decoded(value.to_bytes(2, "little", signed=True), 2, "DEC")[0] == value
+    assert decoded(value.to_bytes(2, "big", signed=True), 2, "MIPS")[0] == value
+
+
+@pytest.fixture
+def file(tmp_path, write_c3d, some_points, some_analog):
+    path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
+    header = read_c3d_header(path)
+    return header, read_c3d_parameters(path, header)
+
+
+def _with(parameters: C3DParameters, **values) -> C3DParameters:
+    named = {tuple(key.split("__")): np.array([value]) for key, value in values.items()}
+    return C3DParameters({**parameters.values, **named})
+
+
+def test_an_ordinary_file(file):
+    layout, findings = expected_layout(*file)
+    assert (layout.frames, layout.points, layout.channels, layout.samples_per_frame) == (50, 3, 4, 10)
+    assert layout.end == 3 * 512 + 50 * (4 * 3 + 4 * 10) * 4 <= file[0].size
+    assert not findings
+
+
+@pytest.mark.parametrize("lost", [400, 5000, 9000])
+def test_a_truncated_file_is_refused_with_its_numbers(file, lost):
+    header = replace(file[0], size=file[0].size - lost)
+    with pytest.raises(ReadError, match=r"11936 bytes; a.c3d.*frame"):
+        expected_layout(header, file[1])
+
+
+def test_contradicting_counts_are_settled_by_the_length_of_the_file(file):
+    layout, findings = expected_layout(replace(file[0], last_frame=20), file[1])
+    assert layout.frames == 50
+    assert "frames as 50 and" in findings[0].what
+    layout, findings = expected_layout(file[0], _with(file[1], POINT__USED=900))
+    assert layout.points == 3
+    assert says(findings[0].what, "points as 900", "3", "3")
+
+
+def test_more_frames_than_16_bits_hold(file):
+    parameters = _with(file[1], POINT__FRAMES=-1, TRIAL__ACTUAL_START_FIELD=1)
+    parameters = C3DParameters(
+        {**parameters.values, ("TRIAL", "ACTUAL_END_FIELD"): np.array([100_000 - 2**17, 1], np.int32)}
+    )
+    header = replace(file[0], last_frame=65535, size=3 * 512 + 100_000 * 208)
+    assert expected_layout(header, parameters)[0].frames == 100_000
+    with pytest.raises(ReadError, match=r"100000 frames.*truncated"):
+        expected_layout(replace(header, size=3 * 512 + 70_000 * 208), parameters)
+
+
+def test_a_header_that_misses_the_data_is_refused(file):
+    with pytest.raises(ReadError, match=r"block 3, POINT:DATA_START.*4"):
+        expected_layout(replace(file[0], data_block=3), file[1])
+
+
+@pytest.mark.parametrize(("header", "parameter"), [(-0.1, 0.1), (0.1, -0.1), (0.1, 0.2)])
+def test_contradicting_scales_are_refused(file, header, parameter):
+    with pytest.raises(ReadError, match=rf"a\.c3d.*{header}.*{parameter}"):
+        expected_layout(replace(file[0], scale=header), _with(file[1], POINT__SCALE=parameter))
+
+
+def test_frames_that_no_count_covers_are_reported(file):
+    _, findings = expected_layout(replace(file[0], size=file[0].size + 3000), file[1])
+    assert says(findings[0].what, "50 frames", "1")
+
+
+def test_a_file_without_anything_is_refused(file):
+    header = replace(file[0], points=0, analog_values=0)
+    with pytest.raises(ReadError, match="points or analog"):
+        expected_layout(header, _with(file[1], POINT__USED=0, ANALOG__USED=0))

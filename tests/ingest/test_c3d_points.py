@@ -1,13 +1,19 @@
-from __future__ import annotations
+"""Points and segments of a C3D file in metres; a scale that is 0, infinite or no number never gives other numbers."""
 
+import struct
+
+import ezc3d
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from texts import says
 
-from gaitdisc.errors import UnitError
+from gaitdisc.errors import ReadError, UnitError
+from gaitdisc.ingest.c3d import read_c3d, unscaled_channels
 from gaitdisc.ingest.c3d_labels import LabelMap
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import length_unit, point_streams
+from gaitdisc.ingest.reading import read_trial
 
 
 def _parameters(**point):
@@ -146,3 +152,138 @@ def test_the_study_names_an_output_by_the_label_of_its_file():
     map_ = {"LKneeAngles_M.x": "knee_angle_r"}
     streams, *_ = _streams(np.full((4, 3), 9.0), ["LKneeAngles_M"], map_, ANGLES=("LKneeAngles_M",))
     assert streams["kinematics"][1][0].name == "knee_angle_r"
+
+
+FRAMES = 60
+TURNS = Rotation.from_quat(np.random.default_rng(0).normal(size=(2 * FRAMES, 4))).as_matrix().reshape(FRAMES, 2, 3, 3)
+PLACES = np.random.default_rng(1).normal(size=(FRAMES, 2, 3)) + 0.5  # [m]
+
+
+def written(path, points=0, ratio=1, unit="mm"):
+    """A file of two segments, with markers beside them where wanted."""
+    file = ezc3d.c3d()
+    rotations = np.zeros((4, 4, 2, FRAMES))
+    rotations[:3, :3] = TURNS.transpose(2, 3, 1, 0)
+    rotations[:3, 3] = PLACES.transpose(2, 1, 0) * (1000 if unit == "mm" else 1)
+    rotations[3, 3] = 1
+    rotations[:, :, 1, 7] = np.nan
+    file["parameters"]["POINT"]["RATE"]["value"] = [100.0 / ratio]
+    file["parameters"]["POINT"]["UNITS"]["value"] = [unit]
+    file["parameters"]["POINT"]["LABELS"]["value"] = [f"M{number}" for number in range(points)]
+    file["data"]["points"] = np.full((4, points, FRAMES // ratio), 700.0)
+    file.add_parameter("ROTATION", "RATE", [100.0])
+    file.add_parameter("ROTATION", "LABELS", ["pelvis_4X4", "Erika:l_thigh_4X4"])
+    file["data"]["rotations"] = rotations
+    file.write(str(path))
+    return path
+
+
+@pytest.mark.parametrize(("points", "unit"), [(0, "mm"), (3, "mm"), (0, "m")])
+def test_poses_are_read_back_with_their_names_and_in_metres(tmp_path, points, unit):
+    trial = read_c3d(written(tmp_path / "a.c3d", points, unit=unit))
+    segments = trial.stream("segments")
+    assert ("markers" in trial.streams) == bool(points)
+    assert not [finding for finding in trial.findings if finding.severity == "warning"]
+    assert (segments.rate_hz, len(segments.time), segments.source.file) == (pytest.approx(100.0), FRAMES, "a.c3d")
+    assert list(dict.fromkeys(name.rpartition(".")[0] for name in segments.names)) == ["pelvis", "l_thigh"]
+    for place, name in enumerate(("pelvis", "l_thigh")):
+        known = np.ones(FRAMES, bool)
+        known[7] = place == 0
+        origin = np.stack([segments[f"{name}.{axis}"] for axis in "xyz"], axis=1)
+        cells = np.stack([segments[f"{name}.r{row}{column}"] for row in "123" for column in "123"], axis=1)
+        assert np.isfinite(cells).all(axis=1).tolist() == known.tolist()
+        np.testing.assert_allclose(origin[known], PLACES[known, place], atol=1e-6)
+        np.testing.assert_allclose(cells[known].reshape(-1, 3, 3), TURNS[known, place], atol=1e-6)
+
+
+def test_more_than_one_pose_a_frame(tmp_path):
+    segments = read_c3d(written(tmp_path / "a.c3d", 3, ratio=2)).stream("segments")
+    assert (segments.rate_hz, len(segments.time)) == (pytest.approx(100.0), FRAMES)
+
+
+def test_a_file_that_is_cut_off_is_refused_with_its_numbers(tmp_path):
+    path = written(tmp_path / "a.c3d")
+    path.write_bytes(path.read_bytes()[:-4000])
+    with pytest.raises(ReadError, match=r"60 frames.*2 segments.*ROTATION.*8160 bytes"):
+        read_c3d(path)
+
+
+def test_files_of_markers_have_no_segments(tmp_path, gait_data):
+    assert "segments" not in read_c3d(gait_data / "treadmill_c3d_emg" / "walking_1.c3d").streams
+
+
+UNUSABLE = (float("nan"), float("inf"), float("-inf"), 0.0)
+
+
+def _with_float(path, group, name, number, place=0):
+    """Write a number over one of a parameter of floats, found by the number of its group."""
+    content = bytearray(path.read_bytes())
+    of_group = 256 - content[content.index(group.encode(), 512) - 1]
+    after = content.index(bytes([len(name), of_group]) + name.encode(), 512) + 2 + len(name) + 2
+    assert content[after] == 4, "a float has four bytes"
+    at = after + 2 + content[after + 1] + 4 * place
+    content[at : at + 4] = struct.pack("<f", number)
+    path.write_bytes(content)
+
+
+@pytest.fixture
+def real(gait_data, tmp_path):
+    """A real trial with two plates, EMG, and points as floats, to be spoiled."""
+    (found,) = (gait_data / "young_straight_and_turn" / "HC030A" / "straight").glob("*.c3d")
+    path = tmp_path / "walk.c3d"
+    path.write_bytes(found.read_bytes())
+    return path
+
+
+@pytest.mark.parametrize("number", UNUSABLE)
+@pytest.mark.parametrize(("group", "name"), [("ANALOG", "GEN_SCALE"), ("POINT", "SCALE")])
+def test_a_scale_of_everything_that_cannot_be_used_is_refused(real, reader, group, name, number):
+    _with_float(real, group, name, number)
+    said = rf"finite scales other than 0; {group}:{name} of walk\.c3d is {number:g}\. Export the trial again"
+    with pytest.raises(ReadError, match=said):
+        read_trial(real, reader=reader)
+
+
+@pytest.mark.parametrize("number", UNUSABLE)
+def test_a_scale_of_points_in_the_header_that_cannot_be_used_is_refused(real, reader, number):
+    content = bytearray(real.read_bytes())
+    content[12:16] = struct.pack("<f", number)
+    real.write_bytes(content)
+    with pytest.raises(ReadError, match=rf"walk\.c3d.*{number:g}"):
+        read_trial(real, reader=reader)
+
+
+@pytest.mark.parametrize("number", UNUSABLE)
+def test_a_channel_without_a_scale_is_missing_and_named(real, reader, number):
+    sound = read_trial(real, reader=reader)
+    place = 12  # the first after the channels of two plates
+    _with_float(real, "ANALOG", "SCALE", number, place)
+    trial = read_trial(real, reader=reader)
+    (said,) = [f for f in trial.findings if f.kind == "scale"]
+    assert said.severity == "warning" and said.file == "walk.c3d"
+    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; taken" in said.what
+    emg, before = trial.stream("emg").values, sound.stream("emg").values
+    gone = np.isnan(emg).all(axis=0)
+    assert gone.sum() == 1
+    np.testing.assert_array_equal(emg[:, ~gone], before[:, ~gone])
+    np.testing.assert_array_equal(trial.stream("forces").values, sound.stream("forces").values)
+
+
+def test_a_plate_with_such_a_channel_is_not_used(real, reader):
+    _with_float(real, "ANALOG", "SCALE", float("nan"), 2)
+    trial = read_trial(real, reader=reader)
+    assert {name[:7] for name in trial.stream("forces").names} == {"plate_2"}
+    assert any(says(f.what, "force plate 1", "scale") for f in trial.findings)
+
+
+def test_offsets_are_held_to_the_same_and_zero_is_one():
+    parameters = C3DParameters(
+        {
+            ("ANALOG", "LABELS"): ("L Rect", "R Rect", "L Hams"),
+            ("ANALOG", "SCALE"): np.array([1.0, 0.0, 1.0]),
+            ("ANALOG", "OFFSET"): np.array([0.0, 0.0, np.nan]),
+        }
+    )
+    columns, (finding,) = unscaled_channels(parameters, 3, "a.c3d")
+    assert columns == {1, 2}
+    assert says(finding.what, "ANALOG:SCALE", "#2", "0; ANALOG:OFFSET", "#3")

@@ -1,7 +1,5 @@
 """Knee flexion is positive inside: turned files are mended, right ones never touched, on every real file there is."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -3,8 +3,6 @@
 Not a twin of a module: it holds the whole room to one promise.
 """
 
-from __future__ import annotations
-
 import random
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Values that cannot be are missing before anything is filtered, and named; no real file that is sound loses one."""
 
-from __future__ import annotations
-
 import csv
 
 import numpy as np

@@ -1,13 +1,15 @@
-"""Bytes, hash and lines of a file."""
-
-from __future__ import annotations
+"""Bytes, hash and lines of a file; files written as they are read."""
 
 import hashlib
+import os
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from gaitdisc.errors import ReadError
-from gaitdisc.ingest.raw_file import RawFile, read_raw
+import gaitdisc as gd
+from gaitdisc.errors import ReadError, WriteError
+from gaitdisc.ingest.raw_file import RawFile, file_sha256, known_sha256, read_raw
 
 
 def test_hash_is_that_of_the_bytes(tmp_path):
@@ -45,3 +47,75 @@ def test_a_folder_and_an_empty_file_are_refused(tmp_path):
         read_raw(tmp_path / "empty.mot")
     with pytest.raises(ReadError, match="nor its folder"):
         read_raw(tmp_path / "no" / "a.mot")
+
+
+YESTERDAY = 1_700_000_000
+
+
+@pytest.fixture
+def settled(tmp_path):
+    path = tmp_path / "walk.mot"
+    path.write_bytes(b"abc")
+    os.utime(path, (YESTERDAY, YESTERDAY))
+    return path
+
+
+def counted(monkeypatch):
+    """Files that are hashed from now on, in order."""
+    hashed, plain = [], hashlib.file_digest
+    monkeypatch.setattr(hashlib, "file_digest", lambda f, name: hashed.append(f.name) or plain(f, name))
+    return hashed
+
+
+def test_a_file_is_hashed_once(settled, monkeypatch):
+    hashed = counted(monkeypatch)
+    assert {file_sha256(settled) for _ in range(3)} == {hashlib.sha256(b"abc").hexdigest()}
+    assert [Path(name).name for name in hashed] == ["walk.mot"]
+    assert read_raw(settled).sha256 == known_sha256(settled) == file_sha256(settled)
+
+
+def test_a_file_that_changed_is_hashed_again_whatever_its_time_says(settled):
+    first = file_sha256(settled)
+    settled.write_bytes(b"abd")
+    os.utime(settled, (YESTERDAY, YESTERDAY))
+    assert known_sha256(settled) == ""
+    assert file_sha256(settled) != first
+    assert read_raw(settled).source("mot").sha256 == hashlib.sha256(b"abd").hexdigest()
+
+
+def test_a_file_that_was_just_written_is_not_trusted(tmp_path):
+    path = tmp_path / "new.mot"
+    path.write_bytes(b"abc")
+    file_sha256(path)
+    assert known_sha256(path) == ""
+
+
+def test_a_missing_file_has_no_hash(tmp_path):
+    assert known_sha256(tmp_path / "nowhere") == ""
+    with pytest.raises(FileNotFoundError):
+        file_sha256(tmp_path / "nowhere")
+
+
+@pytest.fixture
+def angles():
+    time = np.arange(50) / 100
+    return gd.Recording(time, np.column_stack([30 * np.sin(time), time]), tuple(map(angle, ("knee_angle_r", "tilt"))))
+
+
+def angle(name):
+    return gd.Channel(name, "angle", "deg", "r" if name.endswith("_r") else "")
+
+
+@pytest.mark.parametrize("ending", ["mot", "sto", "csv", "parquet", "MOT"])
+def test_what_is_written_is_read_again(angles, tmp_path, ending):
+    file = gd.write(angles, tmp_path / f"walk.{ending}")
+    again = gd.read(file).stream("kinematics")
+    np.testing.assert_allclose(again["knee_angle_r"], angles["knee_angle_r"], rtol=1e-12)
+    np.testing.assert_allclose(again.time, angles.time, atol=1e-12)
+
+
+@pytest.mark.parametrize(("name", "said"), [("walk.txt", "ends with '.txt'"), ("walk.parqet", "nearest is '.parquet'")])
+def test_another_ending_is_refused_before_anything_is_written(angles, tmp_path, name, said):
+    with pytest.raises(WriteError, match=said):
+        gd.write(angles, tmp_path / name)
+    assert list(tmp_path.iterdir()) == []

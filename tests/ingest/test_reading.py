@@ -1,7 +1,5 @@
 """Several files of one walk become one trial."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

@@ -1,6 +1,4 @@
-"""Degrees and radians: every planted mistake is found, no clean trial is accused."""
-
-from __future__ import annotations
+"""Units that a file states against its numbers: every planted mistake is found, no clean trial is accused."""
 
 import numpy as np
 import pytest
@@ -8,8 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from texts import says
 
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.stated_units import (
+    copied_coordinate_unit,
+    distance_from_origin,
+    per_kg_findings,
+    plausible_unit,
+    refuse_other_unit,
+)
+from gaitdisc.ingest.trc import read_trc
+from gaitdisc.recording import Recording
 
 TIME = np.arange(200) / 100
 NAMES = ["pelvis_rotation", "hip_flexion_r", "knee_angle_r", "ankle_angle_r"]
@@ -83,3 +91,57 @@ def test_a_copied_coordinate_follows_its_knee_in_either_unit():
     assert copied_coordinate_unit("knee_angle_r_beta", knee[::-1] ** 2, angles) is None
     assert copied_coordinate_unit("knee_angle_l_beta", knee, angles) is None
     assert copied_coordinate_unit("knee_angle_r_beta", np.full(200, np.nan), angles) is None
+
+
+def belt(peak_n, pattern=((60, 1.0), (40, 0.0))):
+    steps = np.concatenate([np.full(count, peak_n * share) for count, share in pattern] * 3)[:, None]
+    return {"forces": Recording(np.arange(len(steps)) / 100, steps, (vocabulary().named("ground_force_r_vy"),))}
+
+
+def test_a_step_of_ten_newtons_is_per_kg():
+    (finding,) = per_kg_findings(belt(10.8))
+    assert (finding.kind, finding.channel) == ("per body mass", "ground_force_r_vy")
+    assert says(finding.what, "10.8 N and is loaded")
+
+
+@pytest.mark.parametrize("peak", [60.0, 700.0, 2.0])
+def test_a_child_an_adult_and_noise_are_not(peak):
+    assert per_kg_findings(belt(peak)) == []
+
+
+def test_drift_of_an_empty_plate_is_no_step():
+    assert per_kg_findings(belt(10.0, ((200, 1.0),))) == []
+
+
+def test_the_moments_of_a_real_walk_are_in_newton_metres_until_divided_by_its_mass(gait_data):
+    trial = read_trial(gait_data.parent / "opensim_gait10dof" / "ID" / "Results" / "subject01_walk_ID.sto")
+    moments = trial.stream("moments")
+    assert per_kg_findings(trial.streams) == []
+    (finding,) = per_kg_findings({"moments": moments.with_values(moments.values / 72.6)})
+    assert says(finding.what, "looks like N")
+
+
+def test_millimetres_called_metres_and_the_other_way_round_are_refused():
+    with pytest.raises(UnitError, match=r"15 m.*1500 away.*mm"):
+        refuse_other_unit("m", 1500.0, "a.trc", "Units in line 3")
+    for metres in (0.5, 1.5, 7.0):  # a walkway may be long, or lie far from the origin
+        with pytest.raises(UnitError, match=rf"15 mm.*{metres:g} away.*line 3"):
+            refuse_other_unit("mm", metres, "a.trc", "Units in line 3")
+    refuse_other_unit("mm", 1500.0, "a.trc", "")
+    refuse_other_unit("m", float("nan"), "a.trc", "")
+
+
+def test_the_far_end_counts_and_gaps_do_not():
+    assert np.isnan(distance_from_origin(np.full((3, 3), np.nan)))
+    assert distance_from_origin(np.array([[np.nan, -2.0]])) == 2.0
+
+
+def test_a_real_trc_whose_header_states_the_other_unit_is_refused(gait_data, tmp_path):
+    source = gait_data.parent / "opensim_gait10dof" / "ExperimentalData" / "subject01_walk.trc"
+    lines = source.read_text().splitlines()
+    assert "\tmm\t" in lines[2]
+    lines[2] = lines[2].replace("\tmm\t", "\tm\t")
+    path = tmp_path / "walk.trc"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(UnitError, match="which looks like mm"):
+        read_trc(path)

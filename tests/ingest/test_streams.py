@@ -1,12 +1,14 @@
-"""Columns into streams; missing forces are refused, other gaps are reported."""
-
-from __future__ import annotations
+"""Numbers of a table, its clock, and its columns as streams; what is none is said, forces that lack are refused."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.ingest.cells import Form, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import named_channel, sorted_trial, stream_of
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Source
@@ -69,3 +71,114 @@ def test_milliseconds_under_the_name_of_seconds_are_refused(tmp_path, rate_hz):
     assert read_trial(tmp_path / "walk.csv").stream("kinematics").rate_hz == pytest.approx(rate_hz)
     (tmp_path / "tank.csv").write_text(f"time,level\n{rows}\n")  # no walk: any rate
     assert read_trial(tmp_path / "tank.csv", {"level": "level [1]"}).stream("signals").rate_hz < 5
+
+
+LABELS = ["time", "a", "b"]
+
+
+@given(arrays(float, st.tuples(st.integers(1, 6), st.just(3)), elements=st.floats(allow_infinity=False)))
+def test_every_number_comes_back_to_the_last_bit(table):
+    lines = ["\t".join(map(repr, row)) for row in table.tolist()]
+    np.testing.assert_array_equal(parsed_cells(lines, LABELS, 1, Form("a.mot")).values, table)
+
+
+@pytest.mark.parametrize("blank", ["", "  ", "nan", "NaN", "-nan(ind)", "1.#QNAN"])
+def test_blank_cells_and_all_spellings_of_nan_are_missing(blank):
+    cells = parsed_cells([f"0\t{blank}\t1", f"1\t2\t{blank}"], LABELS, 1, Form("a.mot"))
+    np.testing.assert_array_equal(cells.values, [[0, np.nan, 1], [1, 2, np.nan]])
+
+
+def test_trailing_tabs_and_blank_lines_are_passed_over():
+    cells = parsed_cells(["0\t1\t2\t", "", "1\t2\t3\t\t", "2\t3\t4"], LABELS, 5, Form("a.mot"))
+    assert cells.values[:, 2].tolist() == [2, 3, 4]
+    assert cells.lines.tolist() == [5, 7, 8]
+    assert cells.first_column == ["0", "1", "2"]
+
+
+def test_blanks_separate_and_a_comma_may_be_the_decimal_sign():
+    assert parsed_cells([" 0  1\t2"], LABELS, 1, Form("a", " ")).values.tolist() == [[0, 1, 2]]
+    assert parsed_cells(["0,5;1;2,25"], LABELS, 1, Form("a", ";", ",")).values.tolist() == [[0.5, 1, 2.25]]
+    assert parsed_cells(["0,5;-nan(ind);2,25"], LABELS, 1, Form("a", ";", ",")).values[0, 2] == 2.25
+
+
+@pytest.mark.parametrize("word", ["abc", "1.2.3", "inf", "-Infinity", "1e999", "1_000", "0x10", "--"])
+def test_a_cell_that_is_no_number_is_named_with_line_and_column(word):
+    with pytest.raises(ReadError, match=r"a\.mot.*line 12.*'b'"):
+        parsed_cells(["0\t1\t2", f"1\t2\t{word}"], LABELS, 11, Form("a.mot"))
+
+
+def test_short_and_long_rows_are_named():
+    with pytest.raises(ReadError, match=r"3 cells.*line 12.*2"):
+        parsed_cells(["0\t1\t2", "1\t2"], LABELS, 11, Form("a.mot"))
+    with pytest.raises(ReadError, match=r"line 11 has 2"):
+        parsed_cells(["0\t1", "1\t2\t3"], LABELS, 11, Form("a.mot"))
+    with pytest.raises(ReadError, match=r"line 12 has 4"):
+        parsed_cells(["0\t1\t2", "1\t2\t3\t4"], LABELS, 11, Form("a.mot"))
+
+
+def test_no_rows_are_refused():
+    with pytest.raises(ReadError, match="none follow line 10"):
+        parsed_cells(["", "  "], LABELS, 11, Form("a.mot"))
+
+
+def test_printed_digit_is_the_finest_one():
+    assert printed_digit(["0", "0.45", "0.451"]) == 1e-3
+    assert printed_digit(["  1.501e-03"]) == pytest.approx(1e-6)
+    assert printed_digit(["3", "words", "nan"]) == 1.0
+    assert printed_digit(["0,25"]) == 0.01
+
+
+def test_zeros_that_fill_up_a_number_are_no_digits():
+    """Times rounded to ms and printed with six digits, as OpenSim's own marker files have them."""
+    assert printed_digit(["0.000000", "0.017000", "0.033000"]) == 1e-3
+    assert printed_digit(["100", "200"]) == 1.0
+
+
+@given(
+    st.sampled_from([50.0, 59.94, 60.0, 100.0, 120.0, 148.148, 200.0, 250.0, 1000.0]),
+    st.integers(3, 3000),
+    st.floats(0, 500),
+)
+def test_rounded_times_come_back_even_and_near(rate, count, start):
+    true = start + np.arange(count) / rate
+    digit = 10.0 ** -np.ceil(np.log10(rate / 0.3))
+    printed = np.round(true / digit) * digit
+    even = even_time(printed, digit, "a.mot")
+    assert np.ptp(np.diff(even)) < 1e-9
+    assert np.abs(even - true).max() < 2.1 * digit
+
+
+def test_an_even_base_is_left_as_it_is():
+    time = 0.1 + np.arange(100) / 60
+    assert even_time(time, 1e-16, "a.mot") is time
+
+
+def test_a_whole_rate_is_found_behind_the_digits():
+    time = np.round(np.arange(601) / 60, 3)
+    assert 1 / np.diff(even_time(time, 1e-3, "a.mot")).mean() == pytest.approx(60, abs=1e-9)
+
+
+@pytest.mark.parametrize("digits", [2, 3, 8])
+def test_one_missing_sample_is_not_taken_for_rounding(digits):
+    time = np.delete(np.round(np.arange(1000) / 100, digits), 500)
+    with pytest.raises(SamplingError, match=r"line 511.*line 512.*0\.02 s.*4\.99 s"):
+        even_time(time, 10.0**-digits, "a.mot", np.arange(12, 12 + 999))
+
+
+def test_too_few_digits_are_refused():
+    with pytest.raises(SamplingError, match=r"times are printed.*1e-02 s"):
+        even_time(np.round(np.arange(100) / 60, 2), 1e-2, "a.mot")
+
+
+@pytest.mark.parametrize(
+    ("time", "words"),
+    [
+        ([0.0], "at least two samples; it has 1"),
+        ([0.0, np.nan, 2.0], "every sample needs a time; row 2 has nan"),
+        ([0.0, 1.0, 1.0], "time must increase; row 3 has t = 1 s after 1 s"),
+        ([0.0, 1.0, 0.5], "time must increase"),
+    ],
+)
+def test_times_that_are_none_are_refused(time, words):
+    with pytest.raises(SamplingError, match=words):
+        even_time(np.array(time), 0.1, "a.mot")

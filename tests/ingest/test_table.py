@@ -1,7 +1,5 @@
 """CSV and Parquet: units stated or known, and the round trip."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

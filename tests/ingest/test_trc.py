@@ -1,7 +1,5 @@
 """Marker files, real and broken."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says

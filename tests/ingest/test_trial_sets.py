@@ -1,7 +1,5 @@
 """Which trials belong together, and who is refused: what check and run share."""
 
-from __future__ import annotations
-
 import pytest
 from texts import says
 
@@ -16,7 +14,7 @@ from gaitdisc.ingest.trial_sets import (
     static_trial,
     trial_sets,
 )
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 
 
 def _trial(condition, session=None, file="a.c3d"):

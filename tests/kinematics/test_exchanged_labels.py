@@ -1,7 +1,5 @@
 """Two labels exchanged in a walk of known angles: named, their frames missing, all else as it was."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from manufactured_body import (

@@ -1,7 +1,5 @@
 """Up, forward and the handedness of a frame, found from where the pelvis and the feet are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

@@ -1,7 +1,5 @@
 """Landmarks of a standing person: right labels contradict nothing, every exchange of two does and is named."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a marker set says of the labels of a recording: names, landmarks, followers, and what is lacking."""
 
-from __future__ import annotations
-
 import pytest
 
 from gaitdisc.errors import SchemaError

@@ -1,7 +1,5 @@
 """Marker sets: those that come along are sound, a laboratory's own is read, a bad one gets one clear error."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Markers of a recording as arrays, and the stillest half second."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

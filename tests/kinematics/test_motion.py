@@ -1,7 +1,5 @@
 """A body that moves by known angles, seen by markers in any laboratory, has these angles; bad input is refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

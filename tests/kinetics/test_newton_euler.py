@@ -13,7 +13,7 @@ from gaitdisc.kinetics.newton_euler import (
     segment_motion,
     smoothed_pose,
 )
-from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.kinetics.platform import Wrench
 
 UP = np.array([0.0, 1.0, 0.0])
 TIME = np.arange(300) / 100

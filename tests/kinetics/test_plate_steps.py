@@ -7,8 +7,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, empty_findings, foot_paths, plate_steps
-from gaitdisc.kinetics.platform import Platform, platforms
-from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.kinetics.platform import Platform, Wrench, platforms
 from gaitdisc.recording import Surface
 
 FRAMES, SAMPLES = np.arange(200) / 100, np.arange(2000) / 1000

@@ -1,4 +1,6 @@
-"""Running a simulation over time, against closed forms."""
+"""Running a simulation over time, against closed forms; a model as a script names it."""
+
+import math
 
 import numpy as np
 import pandas as pd
@@ -10,7 +12,10 @@ from gaitdisc.channel import Channel
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import write_mapping
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
+from gaitdisc.library.simulating import model_of
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation_file import bundled
 from gaitdisc.simulation.writing import write_simulation
 
 TIME = np.linspace(1.0, 3.0, 201)
@@ -143,3 +148,17 @@ def test_inputs_without_names_and_a_span_in_place_of_times_are_refused():
 def test_a_walk_whose_motion_is_prescribed_is_not_simulated(tracked_walk):
     with pytest.raises(SchemaError, match=r"walk.toml.*Run gaitdisc discover"):
         gd.simulate(tracked_walk, TIME)
+
+
+def test_a_file_an_object_and_a_function_are_models(tmp_path):
+    pendulum = bundled("pendulum")
+    file = write_simulation(pendulum, tmp_path / "pendulum.toml")
+    assert model_of(file) == model_of(str(file)) == model_of(pendulum) == pendulum
+    assert model_of(lambda x: -x).equations == (("x", "-x"),)
+    model = model_of(lambda x: math.erf(x))  # noqa: PLW0108 its argument is the state
+    assert isinstance(model, PythonSimulation) and model_of(model) is model
+
+
+def test_anything_else_is_refused():
+    with pytest.raises(SimulationError, match="Python function; found"):
+        model_of(3)  # pyright: ignore[reportArgumentType]

@@ -1,4 +1,4 @@
-from __future__ import annotations
+"""A network that is trained: a model, saved and loaded, and how many threads it takes."""
 
 from functools import partial
 
@@ -7,11 +7,13 @@ import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from threadpoolctl import threadpool_info
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.model import Model, augment
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.shred import ShallowDecoder
+from gaitdisc.networks.threads import pinned_threads, torch_threads
 from gaitdisc.networks.trained_network import (
     Ensemble,
     TrainedNetwork,
@@ -108,3 +110,23 @@ def test_every_member_has_its_file(five, tmp_path):
     loaded = [load_network(member_path(tmp_path / "weights.npz", k), ShallowDecoder) for k in range(1, 6)]
     x = np.ones((2, 3))
     np.testing.assert_array_equal(Ensemble(tuple(loaded))(x), five(x))
+
+
+def test_threads_are_as_before_also_after_an_error():
+    before = torch.get_num_threads()
+    with pytest.raises(RuntimeError), torch_threads(3):
+        assert torch.get_num_threads() == 3
+        raise RuntimeError
+    assert torch.get_num_threads() == before
+
+
+def blas_threads():
+    return [pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]
+
+
+def test_every_blas_is_pinned_and_let_go_again():
+    before = blas_threads()
+    with pytest.raises(RuntimeError), pinned_threads(1):
+        assert set(blas_threads()) == {torch.get_num_threads()} == {1}
+        raise RuntimeError
+    assert blas_threads() == before

@@ -1,7 +1,5 @@
 """Driven walkers as trials, and a study that asks for their angles."""
 
-from __future__ import annotations
-
 import pickle
 
 import pytest

@@ -1,6 +1,4 @@
-"""Cycles pooled over trials: a made walk cut into short trials gives the cycles of the whole, real ones theirs."""
-
-from __future__ import annotations
+"""Cycles pooled over trials that wait on disk: a made walk cut into short trials gives those of the whole."""
 
 from dataclasses import replace
 
@@ -8,12 +6,13 @@ import numpy as np
 import pytest
 from texts import says
 
+from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, StrideRules, Study, Treadmill
-from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.recording import Event, Trial
+from gaitdisc.processing.pooled import pooled_cycles, pooled_instead, shelf
+from gaitdisc.recording import Event, Recording, Source, Trial
 
 
 def _planned(count, condition="walk", session=None):
@@ -282,3 +281,52 @@ def test_one_recording_saved_twice_is_counted_once(pieces):
     assert set(found.kept["trial"]) == {1, 3}
     (refusal,) = found.refusals
     assert refusal.condition == "walk 2" and says(refusal.reason, "samples are those", "P01", "1")
+
+
+EMG = Recording(
+    np.arange(5000) / 1000,
+    np.random.default_rng(0).normal(size=(5000, 2)),
+    tuple(Channel(f"emg_{muscle}_r", "emg", "V", "r") for muscle in ("sol", "ta")),
+    "P01",
+    "walking",
+    Source("a.c3d"),
+    np.random.default_rng(1).random((5000, 2)) < 0.1,
+)
+
+
+def test_what_was_put_away_comes_back_to_the_last_bit_and_is_not_in_memory():
+    with shelf() as shelved:
+        first, second = shelved.put([EMG, EMG]), shelved.put([EMG])
+        assert sum(one.values.nbytes for one in first.kept) < 100
+        assert first.channels == EMG.channels * 2
+        for (found,) in (list(first.recordings())[1:], second.recordings()):
+            for name in ("time", "values", "suspect"):
+                np.testing.assert_array_equal(getattr(found, name), getattr(EMG, name))
+            assert (found.subject, found.condition, found.source) == ("P01", "walking", EMG.source)
+        folder = shelved.folder
+    assert not folder.exists()
+
+
+def test_what_lies_in_the_folder_is_not_counted_at_each_new_one():
+    with shelf() as shelved:
+        first, second = shelved.put([EMG]), shelved.put([EMG.with_values(2 * EMG.values)])
+        first.files[0].unlink()  # a count of the folder would give its place, and that of the second, away
+        shelved.put([EMG])
+        np.testing.assert_array_equal(next(second.recordings()).values, 2 * EMG.values)
+
+
+def test_a_full_disk_leaves_them_in_memory(monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savez", full)
+    with shelf() as shelved:
+        (found,) = shelved.put([EMG]).recordings()
+    assert found is EMG
+
+
+def test_the_shelf_is_cleared_after_an_error():
+    with pytest.raises(ZeroDivisionError), shelf() as shelved:
+        shelved.put([EMG])
+        _ = 1 / 0
+    assert not shelved.folder.exists()

@@ -1,12 +1,18 @@
+"""From files of a trial to a walk: one time base, filters, and the null that they leave."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfreqz
 
+from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
-from gaitdisc.ingest.study import HeldOut, Models, Quality
-from gaitdisc.processing.process import is_raw, processed, quality_findings
-from gaitdisc.recording import Recording
+from gaitdisc.ingest.study import Filters, HeldOut, Models, Quality
+from gaitdisc.processing.filter_null import filter_null, filter_null_of
+from gaitdisc.processing.process import is_raw, on_one_base, processed, quality_findings
+from gaitdisc.recording import Recording, Trial
+from gaitdisc.statistics.r2 import analytic_null
 
 
 def with_values(trial, key, values):
@@ -131,3 +137,70 @@ def test_clocks_that_do_not_meet(trial, study):
     models = Models(emg=("emg_sol_r",), outputs=("ankle_angle_r",))
     with pytest.raises(ValueError, match="span of time in common"):
         processed(replace(trial, streams={**trial.streams, "emg": later}), study.model_copy(update={"models": models}))
+
+
+def test_summary_keeps_every_stride_and_cuts_each_side_by_its_own_foot(trial, study):
+    walk = processed(trial, study)
+    summary = walk.summary()
+    assert summary.counted() == {side: len(strides) for side, strides in walk.strides.items()}
+    right, left = (summary.curves[:, :, walk.state.index(f"knee_angle_{side}")] for side in "rl")
+    assert np.isfinite(right).all(axis=1).sum() >= len(walk.strides["r"]) - 1
+    apart = np.abs(np.nanmean(right, axis=0) - np.nanmean(left, axis=0)).max()
+    assert apart < 3.0  # the same habit, half a stride later; by the other foot's strides it would be 60 deg apart
+
+
+def test_summary_says_every_dropped_stride(trial, study):
+    longest = float(np.percentile(processed(trial, study).strides["r"].duration_s, 75))
+    rules = study.strides.model_copy(update={"max_s": longest})
+    summary = processed(trial, study.model_copy(update={"strides": rules})).summary()
+    dropped = summary.strides[~summary.strides["kept"]]
+    assert len(dropped) > 5
+    assert dropped["reason"].str.contains("longer than").all()
+
+
+def test_streams_meet_on_the_slow_base(trial):
+    both = on_one_base(trial, 100.0)
+    assert both.rate_hz == 100.0
+    assert len(both.names) == sum(len(stream.names) for stream in trial.streams.values())
+    emg = both["emg_sol_r"][100:-100]
+    assert emg.min() > -1e-5  # an envelope, not the raw signal
+
+
+def test_what_is_too_fast_does_not_fold_into_the_result():
+    time = np.arange(4000) / 1000
+    force = Recording(time, np.sin(2 * np.pi * 97 * time)[:, None], (Channel("sync", "signal", "V"),))
+    slow = on_one_base(Trial("walk", {"signals": force}), 100.0)  # unfiltered it would alias to 3 Hz
+    assert np.abs(slow["sync"][50:-50]).max() < 0.01
+
+
+def test_streams_that_are_asked_for(trial):
+    assert on_one_base(trial, 100.0, ("forces",)).names == ("ground_force_r_vy", "ground_force_l_vy")
+    with pytest.raises(ValueError, match="read for its markers"):
+        on_one_base(trial, 100.0, ("markers",))
+
+
+KNEE = Channel("knee_angle_r", "angle", "deg", "r")
+SOL = Channel("emg_sol_r", "emg", "V", "r")
+
+
+def test_angles_agree_with_the_gain_of_the_filter():
+    frequency, response = sosfreqz(butter(4, 6.0, fs=100.0, output="sos"), worN=4096, fs=100.0)
+    expected = analytic_null(np.asarray(frequency), np.abs(response) ** 2)
+    assert filter_null([KNEE], Filters(), 100.0)["knee_angle_r"] == pytest.approx(expected, abs=0.02)
+
+
+def test_raw_emg_reaches_about_half_as_well():
+    null = filter_null([KNEE, SOL], Filters(), 100.0, emg_hz=1000.0)
+    assert null["emg_sol_r"] == pytest.approx(0.51, abs=0.03)
+    assert filter_null([SOL], Filters(), 100.0)["emg_sol_r"] == pytest.approx(0.51, abs=0.03)
+
+
+def test_the_rate_of_raw_emg_is_taken_from_the_walk(trial, study):
+    study = study.model_copy(update={"models": study.models.model_copy(update={"emg": ("emg_sol_r",)})})
+    emg = trial.stream("emg")
+    envelopes = replace(trial, streams={**trial.streams, "emg": replace(emg, values=np.abs(emg.values))})
+    for given, emg_hz in ((trial, emg.rate_hz), (envelopes, None)):
+        walk = replace(processed(trial, study), trial=given)
+        expected = filter_null(walk.state.channels, Filters(), walk.state.rate_hz, emg_hz)
+        assert filter_null_of(walk, Filters()) == expected
+        assert {"ankle_angle_r", "emg_sol_r"} <= set(expected)

@@ -1,7 +1,5 @@
 """Angles and moments from markers inside a study: those that the same steps give by hand, and what is said without."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 
@@ -19,7 +17,7 @@ from gaitdisc.processing.markers_to_moments import computed_trial, without_excha
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.processing.two_sources import line_angles
 from gaitdisc.recording import Strides
-from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.trial import BodyMeasures
 from gaitdisc.signals.butterworth import lowpassed
 
 MARKERS = Kinematics(angles="markers", marker_set="plug_in_gait")

@@ -1,7 +1,5 @@
 """Events of short trials: what sees them, and how far markers are from the files' own."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Long walks of markers and a static trial: models are fitted to the angles that the markers show."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +10,7 @@ from texts import says
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.study import Conditions, Kinematics, Models, Participant, PlannedTrial, Study
-from gaitdisc.processing.process import processed
-from gaitdisc.processing.study_walks import StudyWalks
+from gaitdisc.processing.process import StudyWalks, processed
 from gaitdisc.recording import Trial
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")

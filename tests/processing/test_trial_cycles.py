@@ -1,20 +1,27 @@
-"""Cycles whose events are known."""
-
-from __future__ import annotations
+"""Cycles whose events are known: their channels, forces of the ground, pelvis and foot."""
 
 import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.channel import Channel
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.ingest.c3d_kinetics import read_body_measures
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.study import Filters
+from gaitdisc.kinematics.motion import joint_angles
+from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
 from gaitdisc.processing.trial_cycles import (
+    PLUG_IN_GAIT,
     cut_cycles,
+    cycle_channels,
     feet_in,
     heel_paths,
     plate_loadings,
+    weighed_forces,
     with_gaps,
+    with_pelvis_and_foot,
     with_plate_steps,
     with_plates,
 )
@@ -142,3 +149,142 @@ def test_an_offset_moves_markers_and_not_the_ground():
 def test_a_cycle_whose_stance_is_a_clean_whole_step_is_kinetic(step, kinetic):
     found = with_plate_steps(cut_cycles(CONTACTS, OFFS), [step])
     assert [one.kinetic for one in found] == [False, kinetic, False]
+
+
+def _emg(seconds=4.0, rate_hz=1000.0):
+    """One dead muscle beside a live one that bursts once a second."""
+    time = np.arange(int(seconds * rate_hz)) / rate_hz
+    burst = 0.02 + np.exp(-(((time % 1.0 - 0.4) / 0.08) ** 2))
+    live = 0.3 * burst * np.random.default_rng(3).standard_normal(len(time))
+    channels = tuple(Channel(f"emg_{muscle}_r", "emg", "V", "r") for muscle in ("sol", "ta"))
+    return Recording(time, np.column_stack([0 * time, live]), channels)
+
+
+def test_channels_of_the_vocabulary_are_filtered_and_a_dead_muscle_is_left_out(trial):
+    short = {key: trial.stream(key).between(2.0, 6.0) for key in ("kinematics", "forces")} | {"emg": _emg()}
+    legs, states, findings = cycle_channels(Trial("w", short), Filters())
+    names = [name for state in states for name in state.names]
+    assert legs is not None and set(legs.names) == set(trial.stream("kinematics").names)
+    assert "emg_sol_r" not in names and "emg_ta_r" in names
+    assert "ground_force_r_vy" in names
+    (said,) = findings
+    assert (said.kind, said.severity) == ("filter", "note")
+    assert says(said.what, "forces", "20 Hz; EMG", "40 Hz", "10 Hz")
+
+
+def test_what_a_file_computed_is_as_in_the_file_and_angles_from_markers_are_filtered():
+    """A push-off of 0.1 s: 6 Hz would leave less than 0.9 of it."""
+    time = np.arange(200) / 100
+    peak = np.exp(-(((time - 1.0) / 0.03) ** 2))
+    named = (("kinematics", "ankle_angle_r", "angle", "deg"), ("moments", "ankle_power_r", "power", "W/kg"))
+    streams = {key: Recording(time, peak[:, None], (Channel(*rest, "r"),)) for key, *rest in named}
+    _, states, findings = cycle_channels(Trial("w", streams), Filters())
+    assert all(np.array_equal(state.values[:, 0], peak) for state in states)
+    assert says(findings[-1].what, "angles as in", "moments")
+    _, (angles, powers), findings = cycle_channels(Trial("w", streams), Filters(), ("kinematics", "moments"))
+    assert angles.values.max() < 0.9 and np.array_equal(powers.values[:, 0], peak)
+    assert says(findings[-1].what, "6 Hz; moments", "6 Hz", "(20 Hz)")
+
+
+def test_an_angle_that_no_vocabulary_has_and_one_without_a_value_are_not_there():
+    time = np.arange(200) / 100
+    wave = np.sin(6 * time)
+    channels = tuple(Channel(n, "angle", "deg", "r") for n in ("knee_angle_r", "RHFTFL.x", "ankle_angle_r"))
+    values = np.column_stack([wave, wave, np.full(200, np.nan)])
+    _, states, _ = cycle_channels(Trial("w", {"kinematics": Recording(time, values, channels)}), Filters())
+    assert [state.names for state in states] == [("knee_angle_r",)]
+
+
+def test_a_stream_too_short_for_its_filter_is_said_and_costs_no_other(trial):
+    streams = {"kinematics": trial.stream("kinematics").between(2.0, 4.0), "emg": _emg(8.0, 50.0)}
+    _, states, findings = cycle_channels(Trial("w", streams), Filters())
+    assert [state.names for state in states] == [trial.stream("kinematics").names]
+    assert findings[0].kind == "left out" and findings[0].what.startswith("emg: ")
+
+
+STEP = np.sin(np.linspace(0, np.pi, 60))
+FORE_AFT = 20 * np.sin(np.linspace(0, 2 * np.pi, 60))  # positive first: brakes
+
+
+def _trial(sign=1.0, unit="%"):
+    values = np.full((200, 4), np.nan)
+    values[50:110, 0], values[50:110, 1] = sign * FORE_AFT, 110 * STEP
+    labels = ("LNormalisedGRF.x", "LNormalisedGRF.z", "RNormalisedGRF.x", "RNormalisedGRF.z")
+    channels = tuple(Channel(label, "force", unit) for label in labels)
+    return Trial("a", {"moments": Recording(np.arange(200) / 100, values, channels)})
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_step_brakes_first_whichever_way_the_file_counts_and_is_zero_off_the_plate(sign):
+    found = weighed_forces(_trial(sign))
+    assert found.names == ("ground_force_l_vx", "ground_force_l_vy")  # the right foot met no plate
+    assert found["ground_force_l_vx"][65] == pytest.approx(-20.0, abs=0.1)
+    assert found["ground_force_l_vx"][95] == pytest.approx(20.0, abs=0.2)
+    assert found["ground_force_l_vy"].max() == pytest.approx(110.0, abs=0.1)
+    assert not found["ground_force_l_vy"][[0, 49, 110, 199]].any()
+
+
+def test_another_unit_or_no_moments_give_none():
+    assert weighed_forces(_trial(unit="N")) is None
+    knee = Recording(np.arange(3) / 100, np.zeros((3, 1)), (Channel("knee_angle_r", "angle", "deg", "r"),))
+    assert weighed_forces(Trial("a", {"kinematics": knee})) is None
+
+
+LABELS = ("RPelvisAngles.x", "LPelvisAngles.y", "RPelvisAngles.z", "RFootProgressAngles.z", "LFootProgressAngles.z")
+
+
+def _recording(*labels, unit="deg"):
+    values = np.arange(1.0, 4.0)[:, None] * np.arange(1, len(labels) + 1)
+    suspect = np.zeros(values.shape, bool)
+    suspect[1, 0] = True
+    quantity = "angle" if unit == "deg" else "signal"
+    channels = tuple(Channel(label, quantity, unit) for label in labels)
+    return Recording(np.arange(3) / 100, values, channels, suspect=suspect)
+
+
+def test_plug_in_gait_tilts_forwards_and_the_house_backwards():
+    found = with_pelvis_and_foot(_recording(*LABELS))
+    assert found.names == (*LABELS, *PLUG_IN_GAIT)
+    np.testing.assert_allclose(found["pelvis_tilt"], [-1.0, -2.0, -3.0])
+    np.testing.assert_allclose(found["pelvis_list"], [2.0, 4.0, 6.0])
+    np.testing.assert_allclose(found["foot_progression_angle_l"], [5.0, 10.0, 15.0])
+    assert found.channels[-1] == vocabulary().named("foot_progression_angle_l")
+    assert found.suspect[:, 5].tolist() == [False, True, False]
+
+
+def test_what_is_there_already_stays_and_numbers_without_a_unit_are_no_angle():
+    own = _recording("RPelvisAngles.x", "pelvis_tilt")
+    assert with_pelvis_and_foot(own).names == own.names
+    bare = _recording(*LABELS, unit="1")
+    assert with_pelvis_and_foot(bare).names == LABELS
+
+
+def test_a_pelvis_that_turns_keeps_its_tilt_and_list_about_its_own_heading():
+    """Tilt 15 deg forwards and 4 deg of list throughout a quarter turn; about the laboratory's axes they change."""
+    time = np.arange(300) / 100
+    heading = np.clip((time - 0.5) * 45, 0, 90)
+    own = rotation_of(np.tile([-15.0, 4.0, 0.0], (300, 1)))
+    lab = clinical_angles(np.eye(3)[None], rotation_of(np.stack([0 * time, 0 * time, heading], axis=1)) @ own)
+    values = np.column_stack([-lab[:, 0], lab[:, 1], lab[:, 2], 0 * time, 0 * time])
+    channels = tuple(Channel(label, "angle", "deg") for label in LABELS)
+    found = with_pelvis_and_foot(Recording(time, values, channels))
+    assert np.ptp(lab[:, 0]) > 10.0
+    steady = (time > 1.0) & (time < 2.0)
+    np.testing.assert_allclose(found["pelvis_tilt"][steady], -15.0, atol=0.5)
+    np.testing.assert_allclose(found["pelvis_list"][steady], 4.0, atol=0.5)
+    assert np.isnan(found["pelvis_rotation"]).all()
+    assert np.isnan(found["foot_progression_angle_r"]).all()
+
+
+def test_tilt_and_list_of_real_turns_are_those_of_the_markers(gait_data):
+    """Against `gaitdisc angles` of the same markers; about the laboratory's axes they differ by 5 to 15 deg (rms)."""
+    folder = gait_data / "young_straight_and_turn"
+    for name, file in (("HC030A", "HC030A22.c3d"), ("HC002D", "HC002D25.c3d")):
+        static = next(iter([*(gait_data / "young_static" / name).glob("*"), *(folder / name / "static").glob("*")]))
+        walk = read_trial(folder / name / "turn" / file)
+        ours = joint_angles(
+            walk.stream("markers"), read_trial(static).stream("markers"), measures=read_body_measures(static)
+        )
+        found = with_pelvis_and_foot(walk.stream("kinematics"))
+        for angle in ("pelvis_tilt", "pelvis_list"):
+            assert np.sqrt(np.nanmean((found[angle] - ours[angle]) ** 2)) < 1.0, (name, angle)

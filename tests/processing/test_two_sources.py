@@ -1,7 +1,5 @@
 """Faults planted into real walks: each is said and left out, and walks that are right, or only unusual, keep all."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """No command and no `.save` writes onto an input, onto a file of somebody else, or onto one that a user changed."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

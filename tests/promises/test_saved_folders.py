@@ -1,7 +1,5 @@
 """Folders that earlier versions saved are read, and nothing in them is changed; tests/test_approved.py draws them."""
 
-from __future__ import annotations
-
 import re
 import shutil
 

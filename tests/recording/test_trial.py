@@ -1,12 +1,17 @@
+"""A trial, and what it carries: findings, cycles, measures of the person."""
+
 import copy
+import math
 import pickle
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, SamplingError
-from gaitdisc.recording import Recording, Trial
+from gaitdisc.errors import ChannelError, SamplingError, UnitError
+from gaitdisc.recording import Cycle, Finding, Recording, Trial
+from gaitdisc.recording.trial import BodyMeasures
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 FORCE = Channel("ground_force_r_vy", "vertical_force", "N", "r")
@@ -58,3 +63,55 @@ def test_a_trial_goes_to_another_process_and_stays_frozen(sent):
     np.testing.assert_array_equal(again.stream("forces").values, trial().stream("forces").values)
     with pytest.raises(TypeError):
         again.streams["emg"] = again.stream("forces")
+
+
+def test_line_without_channel():
+    assert says(
+        Finding("note", "second reader", "a.c3d", "read by c3d", "").line(),
+        "note: a.c3d",
+        "second reader",
+        "read by c3d",
+    )
+
+
+def test_the_severest_comes_first():
+    findings = [Finding(severity, "gap", "a.c3d", "", "") for severity in ("note", "refused", "warning")]
+    assert [f.severity for f in sorted(findings, key=lambda f: f.rank)] == ["refused", "warning", "note"]
+
+
+def test_unknown_severity():
+    with pytest.raises(ValueError, match="severity is one of"):
+        Finding("fatal", "gap", "a", "b", "c")
+
+
+def test_shares_of_a_cycle_that_is_known():
+    one = Cycle("r", 2.0, 3.0, ("events", "events"), foot_off=2.6, opposite_off=2.1, opposite_contact=2.5)
+    assert one.duration_s == 1.0
+    assert one.stance_percent == pytest.approx(60.0)
+    assert one.double_support_percent == pytest.approx(20.0)
+
+
+def test_what_is_not_known_is_missing():
+    assert math.isnan(Cycle("l", 0.0, 1.0, ("force", "force")).stance_percent)
+    assert math.isnan(Cycle("l", 0.0, 1.0, ("force", "force"), foot_off=0.6).double_support_percent)
+
+
+def test_sides_are_read_only():
+    measures = BodyMeasures(knee_width_m={"l": 0.1})
+    with pytest.raises(TypeError):
+        measures.knee_width_m["l"] = 0.2  # pyright: ignore
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"knee_width_m": {"r": 102.0}}, r"knee_width_m of side 'r' is between 0\.03 and 0\.25 m; found 102 m"),
+        ({"mass_kg": 0.7}, "mass_kg is between 5 and 300 kg; found 0.7 kg"),
+        ({"mass_kg": 700.0}, "found 700 kg"),
+        ({"height_m": 1580.0}, r"found 1580 m\. Give it in m"),
+        ({"inter_asis_m": float("nan")}, "found nan m"),
+    ],
+)
+def test_what_no_person_measures_is_refused(given, words):
+    with pytest.raises(UnitError, match=words):
+        BodyMeasures(**given)

@@ -1,4 +1,4 @@
-from __future__ import annotations
+"""Ridge, with phase harmonics and on Fourier features."""
 
 from dataclasses import replace
 
@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.linear_model import Ridge as SklearnRidge
 
-from gaitdisc.errors import TrainingError
+from gaitdisc.errors import SchemaError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples
+from gaitdisc.regression.fourier_ridge import fit_fourier_ridge, load_ridge, save_ridge
 from gaitdisc.regression.ridge import PENALTIES, fit_ridge
 
 
@@ -67,3 +68,88 @@ def test_refusals():
         fit_ridge(walk(), inner_share=0)
     with pytest.raises(TrainingError, match=r"1.*1000 samples"):
         fit_ridge(walk().with_outputs(np.column_stack([walk().y[:, 0], np.ones(1000)])))
+
+
+def samples(x, y):
+    time = np.arange(len(x)) / 100
+    return Samples(x, y, tuple(f"x{k}" for k in range(x.shape[1])), ("y",), time, time % 1)
+
+
+@pytest.fixture
+def curve():
+    rng = np.random.default_rng(0)
+    x = rng.uniform(-2, 2, (900, 2))
+    return samples(x, (np.sin(2 * x[:, :1]) * x[:, 1:] + 5))
+
+
+def test_without_features_it_is_ridge_regression_with_the_known_solution():
+    rng = np.random.default_rng(1)
+    x = rng.normal(size=(400, 3)) * [1, 10, 0.1] + 3
+    s = samples(x, x @ np.array([[2.0], [-0.5], [40.0]]) + 7)
+    model = fit_fourier_ridge(s.rows(slice(0, 300)), s.rows(slice(300, None)))
+    np.testing.assert_allclose(model(x[300:]), s.y[300:], atol=1e-3)
+    assert model.penalty < 1e-6
+
+
+def test_features_learn_what_a_line_cannot(curve):
+    parts = [curve.rows(part) for part in (slice(0, 600), slice(600, 750), slice(750, None))]
+    line, cosines = (fit_fourier_ridge(*parts[:2], features=n) for n in (0, 300))
+    errors = [np.std(model(parts[2].x) - parts[2].y) for model in (line, cosines)]
+    assert errors[1] < 0.05
+    assert errors[0] > 0.5
+
+
+def test_the_scale_never_sees_the_check_part(curve):
+    part, check = curve.rows(slice(0, 600)), curve.rows(slice(600, None))
+    shifted = samples(check.x + 100, check.y - 50)
+    one, other = (fit_fourier_ridge(part, judged, 20).x_scale.mean for judged in (check, shifted))
+    np.testing.assert_array_equal(one, other)
+
+
+def test_same_seed_same_model_and_a_missing_input_gives_a_missing_output(curve):
+    part, check = curve.rows(slice(0, 600)), curve.rows(slice(600, None))
+    one, same, other = (fit_fourier_ridge(part, check, 50, seed)(check.x) for seed in (0, 0, 1))
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, other)
+    assert np.isnan(fit_fourier_ridge(part, check, 50)(np.array([[np.nan, 1.0]]))).all()
+
+
+def test_without_a_check_part(curve):
+    with pytest.raises(TrainingError, match="penalty is chosen"):
+        fit_fourier_ridge(curve, curve.rows(slice(0, 0)))
+
+
+def test_columns_that_say_the_same_share_their_weight_as_the_smallest_weights_do():
+    t = np.arange(1200) / 100
+    a, b = np.sin(2 * t), np.cos(3.3 * t)
+    x = np.column_stack([a, b, a + b, 2 * a - 0.5 * b])
+    s = Samples(x, (3 * a - b)[:, None], tuple("abcd"), ("y",), t, t)
+    found = fit_fourier_ridge(s.rows(slice(0, 900)), s.rows(slice(900, None)))
+    scaled = found.x_scale.scaled(x[:900])
+    smallest = np.linalg.pinv(scaled, rcond=1e-6) @ found.y_scale.scaled(s.y[:900])
+    assert np.allclose(found.weights, smallest, rtol=0, atol=1e-4)
+
+
+@pytest.fixture
+def model():
+    x = np.random.default_rng(0).normal(size=(200, 2))
+    t = np.arange(200) / 100
+    s = Samples(x, x[:, :1] * x[:, 1:], ("a", "b"), ("c",), t, t)
+    return fit_fourier_ridge(s.rows(slice(0, 150)), s.rows(slice(150, None)), features=30)
+
+
+def test_what_is_loaded_equals_what_was_saved(model, tmp_path):
+    save_ridge(model, tmp_path / "m.npz")
+    kept, x = load_ridge(tmp_path / "m.npz"), np.random.default_rng(1).normal(size=(9, 2))
+    np.testing.assert_array_equal(kept(x), model(x))
+    assert (kept.inputs, kept.outputs, kept.penalty) == (model.inputs, model.outputs, model.penalty)
+
+
+def test_a_damaged_or_missing_file(model, tmp_path):
+    path = tmp_path / "m.npz"
+    with pytest.raises(SchemaError, match=r"m\.npz.*a ridge regression"):
+        load_ridge(path)
+    save_ridge(model, path)
+    path.write_bytes(path.read_bytes()[:-200])
+    with pytest.raises(SchemaError, match="Fit the model again"):
+        load_ridge(path)

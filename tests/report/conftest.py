@@ -1,7 +1,5 @@
 """Manufactured runs: residuals and R2 of known shape, the same at every call."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

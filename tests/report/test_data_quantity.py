@@ -68,13 +68,6 @@ def test_a_run_that_was_not_ablated_has_no_such_figure(run_maker, tmp_path):
     assert "How much data" not in write_report(run_maker(1, outputs=ONE), tmp_path).read_text(encoding="utf-8")
 
 
-@pytest.mark.usefixtures("unpainted")
-def test_the_page_shows_it(run, tmp_path):
-    page = write_report(run, tmp_path).read_text(encoding="utf-8")
-    assert "How much data is enough" in page
-    assert (tmp_path / "figures" / "quantity.csv").exists()
-
-
 LOSS = {1.0: 0.1, 60.0: 0.0, 210.0: 0.0}
 
 

@@ -191,16 +191,6 @@ def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker,
     assert text.count('class="participant"') == 3
 
 
-def test_five_sentences_name_the_equations(run):
-    sentences = method_sentences(run)
-    assert len(sentences) == 5
-    text = " ".join(sentences)
-    assert all(f"Eq. 4.{i}" in text for i in (1, 2, 3, 4, 5))
-    assert says(text, "7.5 s of each walk")
-    assert "natural" in text
-    assert "spring" in text
-
-
 def test_walks_whose_angles_are_of_markers_are_counted(run):
     first, *others = run.walks
     said = Finding("note", "marker set", "P01 natural, file 1", "plug_in_gait: ...", "")

@@ -1,7 +1,5 @@
 """Every result that is saved is drawn again from its folder: the same page as of the result in memory."""
 
-from __future__ import annotations
-
 import json
 
 import pandas as pd
@@ -23,8 +21,8 @@ from gaitdisc.report.variants import write_variants
 from gaitdisc.results import kind as kinds
 from gaitdisc.results.pooled_cycles import CYCLES
 from gaitdisc.results.provenance import made_now
-from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.results.study_run import StudyRun, save_run
+from gaitdisc.results.unit_folder import read_sealed, sealed_text
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 pytestmark = pytest.mark.usefixtures("unpainted")

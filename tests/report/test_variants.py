@@ -5,11 +5,9 @@ import pandas as pd
 import pytest
 from texts import says
 
-from gaitdisc.report.figure import save_figure
 from gaitdisc.report.variants import (
     ALL,
     falls,
-    family_words,
     modalities_figure,
     modalities_sentences,
     modalities_table,
@@ -21,7 +19,7 @@ from gaitdisc.report.variants import (
     variant_tables,
     write_variants,
 )
-from gaitdisc.response.modalities import AS_STUDIED, compare_modalities, compare_settings
+from gaitdisc.response.modalities import AS_STUDIED, compare_variants
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
 
@@ -42,7 +40,9 @@ def variant_run(count=8):
         ]
         table = pd.DataFrame(rows, columns=["variant", "variable", "model", "kind", "r2", "n"])
         people.append(Variants(f"P{number:02d}", "modalities", table, {}))
-    return VariantRun("study", "exo", "modalities", tuple(people), compare_modalities(people), (), (7.5, 7.5))
+    return VariantRun(
+        "study", "exo", "modalities", tuple(people), compare_variants(people, "modalities"), (), (7.5, 7.5)
+    )
 
 
 def test_falls_are_medians_over_the_variables_of_a_group():
@@ -70,22 +70,9 @@ def test_the_sentences_name_the_largest_falls_and_what_they_cannot_say():
     assert "cannot replace" in last
 
 
-def test_the_figure_says_n_and_split(tmp_path):
-    figure = modalities_figure(variant_run())
-    assert figure is not None
-    assert "n = 8 participants" in figure.caption
-    assert "last 7.5 s" in figure.caption
-    save_figure(figure, tmp_path)
-    assert (tmp_path / "modalities.csv").is_file()
-
-
 def test_nobody_is_no_figure():
     assert modalities_figure(variant_run(0)) is None
     assert modalities_sentences(variant_run(0)) == ("Nobody's models could be fitted.",)
-
-
-def test_families_are_named_as_they_are_read():
-    assert family_words("hip_flexion") == "hip flexion"
 
 
 MODELS = {"nominal": 0.8, "augmented": 0.9, "exo": 0.91}
@@ -105,7 +92,9 @@ def variant_run_sensitivity(count=8, four_hz=0.0):
                 rows.append((variant, variable, "nominal", "null", 0.5, 99))
         table = pd.DataFrame(rows, columns=["variant", "variable", "model", "kind", "r2", "n"])
         people.append(Variants(f"P{number:02d}", "sensitivity", table, {"EMG 4 Hz": "too short; found 3 s"}))
-    return VariantRun("study", "exo", "sensitivity", tuple(people), compare_settings(people), (), (7.5, 7.5))
+    return VariantRun(
+        "study", "exo", "sensitivity", tuple(people), compare_variants(people, "sensitivity"), (), (7.5, 7.5)
+    )
 
 
 def test_medians_of_a_setting():

@@ -1,7 +1,5 @@
 """A walk whose equations are known: two damped oscillators, a torque locked to the phase, a spring on one of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,21 +1,28 @@
-from __future__ import annotations
+"""The four models of a participant on known walks: samples, blocks, bands of refits that cover what they promise."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from texts import says
 
 from gaitdisc.errors import ChannelError, SamplingError, TrainingError
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.recording import PERCENT
+from gaitdisc.recording import PERCENT, Samples
 from gaitdisc.response.fit_response import (
+    BLOCKS,
+    Fit,
     ResponseSettings,
+    covered,
     fit_both,
     fit_linear,
     fit_models,
+    fit_network,
     fit_response,
     held_out_part,
+    parted,
     residual_strides,
+    response_bands,
     training_samples,
 )
 from gaitdisc.response.samples import gait_samples
@@ -170,3 +177,141 @@ def test_running_with_an_exotendon(gait_data, settings):
         assert found.r2_of(variable, "nominal", walk="nominal") > 0.97
     before, after = (mean_over_strides(found.residuals[model]).rms for model in ("nominal", "augmented"))
     assert np.all(after < 0.3 * before)
+
+
+class Offset:
+    """Predicts the mean of what it was fitted to."""
+
+    def __init__(self, samples):
+        self.inputs, self.outputs, self.mean = samples.inputs, samples.outputs, samples.y.mean(axis=0)
+
+    def __call__(self, x):
+        return np.tile(self.mean, (len(x), 1))
+
+
+def samples(mean, seed=0):
+    rng = np.random.default_rng(seed)
+    time = np.arange(400) / 100
+    return Samples(rng.normal(size=(400, 1)), mean + rng.normal(size=(400, 1)), ("a",), ("b",), time, time)
+
+
+def test_the_discrepancy_model_learns_what_the_nominal_model_misses_of_device_walking():
+    told = []
+
+    def fit(part, progress):
+        progress(1.0)
+        return Fit(Offset(part), 0.0, 0, len(part), 0, 0.0)
+
+    nominal, exo = samples(10.0), samples(17.0, seed=1)
+    models = fit_models(nominal, exo, fit, told.append)
+    x = np.zeros((3, 1))
+    missing = exo.y.mean() - nominal.y.mean()
+    np.testing.assert_allclose(models.discrepancy.model(x), missing)
+    np.testing.assert_allclose(models.augmented(x), models.exo.model(x))
+    assert list(models.on_exo()) == ["nominal", "augmented", "exo"]
+    np.testing.assert_allclose(told, [1 / 3, 2 / 3, 1])
+
+
+def test_both_kinds_say_how_they_were_fitted():
+    for fit in (fit_linear(samples(3.0)), fit_network(samples(3.0))):
+        assert (fit.n_training, fit.n_inner) == (400, 60)
+        assert fit.seconds > 0
+
+
+def walk(seed: int, gain: float, count: int = 2000) -> Samples:
+    """y = gain x + noise that is three times as large in the first half of the stride."""
+    rng, time = np.random.default_rng(seed), np.arange(count) / 100
+    phi, x = 100 * (time % 1.0), rng.normal(size=(count, 1))
+    noise = rng.normal(size=(count, 1)) * np.where(phi < 50, 0.3, 0.1)[:, None]
+    return Samples(np.column_stack([x, phi]), gain * x + noise, ("a", "phi"), ("b",), time, phi)
+
+
+@pytest.fixture(scope="module")
+def bands():
+    nominal, exo, held = walk(0, 1.0), walk(1, 2.0), walk(2, 2.0)
+    models = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=2))
+    found = response_bands(models, lambda _, samples: fit_linear(samples, harmonics=2).model, nominal, exo, held)
+    return held, found
+
+
+def test_nine_in_ten_lie_inside_and_fewer_inside_the_nominal_models(bands):
+    held, found = bands
+    for model in (
+        "exo",
+        "augmented",
+    ):  # 20 strides are ten blocks: 90 % times 1.1, for samples that do not err together
+        assert covered(held.y, found[model])[0] == pytest.approx(0.975, abs=0.02)
+    assert covered(held.y, found["nominal"])[0] < 0.5
+
+
+def test_a_band_is_wide_where_errors_are_large(bands):
+    held, found = bands
+    width = (found["exo"][1] - found["exo"][0])[:, 0]
+    wide, narrow = (np.median(width[part]) for part in (held.phi < 45, held.phi > 55))
+    assert wide / narrow == pytest.approx(3.0, rel=0.2)
+
+
+def test_the_more_strides_the_nearer_to_nine_in_ten():
+    nominal, exo, held = walk(0, 1.0, 16000), walk(1, 2.0, 16000), walk(2, 2.0)
+    models = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=2))
+    found = response_bands(models, lambda _, samples: fit_linear(samples, harmonics=2).model, nominal, exo, held)
+    assert covered(held.y, found["exo"])[0] == pytest.approx(0.9 * (1 + 2 / 160), abs=0.012)
+
+
+def test_a_block_and_what_lies_within_the_seam_are_left_out():
+    samples = walk(0, 1.0, 800)
+    rest, block = parted(samples, 3)
+    assert block.time[[0, -1]].tolist() == [3.0, 3.99]
+    assert rest.time[np.searchsorted(rest.time, 3.0) + np.array([-1, 0])].round(2).tolist() == [2.69, 4.3]
+    assert sum(len(parted(samples, number)[1]) for number in range(BLOCKS)) == 800
+
+
+def test_a_short_walk_has_no_band():
+    models = fit_models(walk(0, 1.0), walk(1, 2.0), fit=lambda part, _: fit_linear(part, harmonics=2))
+    short = walk(0, 1.0, 1500)
+    assert response_bands(models, lambda model, _: model, short, walk(1, 2.0), walk(2, 2.0)) == {}
+
+
+def test_eq_4_2_state_rate_and_percent_stride_in_acceleration_out(nominal):
+    samples, dropped = gait_samples(nominal, (ANKLE,))
+    assert samples.inputs == (
+        "knee_angle_r", "ankle_angle_r", "d(knee_angle_r)/dt", "d(ankle_angle_r)/dt", "phi",
+    )  # fmt: skip
+    assert samples.outputs == ("d2(ankle_angle_r)/dt2",)
+    np.testing.assert_array_equal(samples.x[:, 1], nominal.x[:, 1])
+    np.testing.assert_array_equal(samples.x[:, 2], nominal.xdot[:, 0])
+    np.testing.assert_array_equal(samples.x[:, 4], nominal.phi)
+    np.testing.assert_array_equal(samples.y[:, 0], nominal.xddot[:, 1])
+    assert (dropped.total, dropped.kept, dict(dropped.unusable)) == (6000, 6000, {})
+    assert dropped.finding().severity == "note"
+
+
+def test_the_dissertations_49_inputs(nominal):
+    wide = replace(
+        nominal,
+        channels=tuple(nominal.channels[0].renamed(f"c{k}") for k in range(24)),
+        **{part: np.tile(getattr(nominal, part), (1, 12)) for part in ("x", "xdot", "xddot", "usable")},
+    )
+    samples, _ = gait_samples(wide, ("c0", "c3"))
+    assert samples.x.shape == (6000, 49)
+
+
+def test_what_is_left_away_is_counted_with_its_reason(nominal):
+    usable, phi = nominal.usable.copy(), nominal.phi.copy()
+    usable[100:200, 0] = False
+    phi[150:350] = np.nan
+    samples, dropped = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
+    assert len(samples) == dropped.kept == 5750
+    assert np.isfinite(samples.phi).all()
+    assert says(
+        dropped.finding().line(), "P01", "left", "250 of 6000 samples left", "200 outside", "50", "knee_angle_r not"
+    )
+    usable[:3000] = False
+    assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].finding().severity == "warning"
+
+
+def test_an_output_that_is_not_there(nominal):
+    with pytest.raises(ChannelError, match=r"'ankle_angl_r'.*P01.*2 channels"):
+        gait_samples(nominal, ("ankle_angl_r",))
+    with pytest.raises(ChannelError, match=r"least.*channel to predict"):
+        gait_samples(nominal, ())

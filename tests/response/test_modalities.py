@@ -2,7 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gaitdisc.response.modalities import ALL, compare_modalities, fit_without, input_families
+from gaitdisc.response.modalities import ALL, compare_variants, fit_without, input_families
 from gaitdisc.results.variants import Variants
 
 INPUTS = tuple(
@@ -83,7 +83,7 @@ def test_exo_loses_more_than_augmented_whose_nominal_model_keeps_its_inputs(foun
 
 
 def test_the_fall_is_tested_over_participants():
-    tests = compare_modalities(people(8, 0.1))
+    tests = compare_variants(people(8, 0.1), "modalities")
     knee = tests[(tests["variable"] == "knee_angle_r") & (tests["model"] == "augmented")].iloc[0]
     ankle = tests[(tests["variable"] == "ankle_angle_r") & (tests["model"] == "augmented")].iloc[0]
     assert (knee["first"], knee["second"], knee["n"]) == (ALL, "without", 8)
@@ -94,4 +94,4 @@ def test_the_fall_is_tested_over_participants():
 
 
 def test_few_participants_are_not_tested():
-    assert len(compare_modalities(people(5, 0.1))) == 0
+    assert len(compare_variants(people(5, 0.1), "modalities")) == 0

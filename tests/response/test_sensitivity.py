@@ -1,7 +1,7 @@
 import pandas as pd
 import pytest
 
-from gaitdisc.response.modalities import AS_STUDIED, compare_settings, settings_around
+from gaitdisc.response.modalities import AS_STUDIED, compare_variants, settings_around
 from gaitdisc.results.variants import Variants
 
 
@@ -35,7 +35,7 @@ def test_a_study_with_cut_offs_of_its_own_tries_the_usual_ones_too():
 
 
 def test_nominal_and_augmented_are_compared_under_each_setting():
-    tests = compare_settings([person(f"P{number}", 0.1 + 0.001 * number) for number in range(8)])
+    tests = compare_variants([person(f"P{number}", 0.1 + 0.001 * number) for number in range(8)], "sensitivity")
     shifts = tests.pivot_table(index="variant", columns="variable", values="shift")
     assert shifts.loc[AS_STUDIED, "knee_angle_r"] == pytest.approx(0.1035)
     assert shifts.loc["angles 4 Hz", "emg_sol_r"] == pytest.approx(-0.1035)
@@ -44,4 +44,4 @@ def test_nominal_and_augmented_are_compared_under_each_setting():
 
 
 def test_few_participants_are_not_tested():
-    assert len(compare_settings([person("P0", 0.1)])) == 0
+    assert len(compare_variants([person("P0", 0.1)], "sensitivity")) == 0

@@ -1,7 +1,5 @@
 """A small run with known numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

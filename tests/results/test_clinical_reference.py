@@ -1,7 +1,6 @@
-"""A published reference as a table; a made one, whose numbers are known."""
+"""A published reference as a table; a made one, whose numbers are known; what is read beside it."""
 
-from __future__ import annotations
-
+import dataclasses
 import json
 from dataclasses import replace
 
@@ -12,8 +11,8 @@ from texts import says
 
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reference import FILE, load_reference, read_published, save_reference
-from gaitdisc.results.sealed_json import sealed_text
+from gaitdisc.results.clinical_reference import FILE, Limits, Score, load_reference, read_published, save_reference
+from gaitdisc.results.unit_folder import sealed_text
 
 
 def test_every_second_percent_becomes_a_band_on_101_points(tmp_path):
@@ -98,3 +97,10 @@ def test_a_curve_whose_end_is_not_known_is_saved_so(tmp_path):
     text = save_reference(made, tmp_path).read_text()
     assert "NaN" not in text
     assert np.isnan(load_reference(tmp_path).of("walk")[0].curves["ankle_power"][95:]).all()
+
+
+def test_what_is_read_is_frozen():
+    limits = Limits(1.0, 3.0, 2.0, 0.5, 10)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        limits.low = 0.0
+    assert Score(1.0, 1.0, 1.0, 1, 2.0, 0.5, 10).people == 10

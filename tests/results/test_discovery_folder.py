@@ -9,7 +9,7 @@ from manufactured_discovery import manufactured
 from gaitdisc.errors import WriteError
 from gaitdisc.results.discovery import Correction, Estimate, FoundEffect
 from gaitdisc.results.discovery_folder import load_discovery, save_discovery
-from gaitdisc.results.sealed_json import check_files, read_sealed
+from gaitdisc.results.unit_folder import check_files, read_sealed
 
 
 def test_json_and_runs_are_written_whole(tmp_path):

@@ -1,7 +1,5 @@
 """A sensor that wanders at random, and a state: what it read a quarter of a second ago."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

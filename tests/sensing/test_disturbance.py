@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chapter5.gait import NOISES, SHARES, against_missing, against_noise, noisy

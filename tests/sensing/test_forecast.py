@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.forecast import contact_times, persistence, phase_average
+from gaitdisc.sensing.reconstruct import contact_times, persistence, phase_average
 
 
 def walk(duration=20.0, first=0.25, start=0.0):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Recording, Samples
-from gaitdisc.sensing.missing import filled, hidden, missing_runs, with_missing
+from gaitdisc.sensing.windows import filled, hidden, missing_runs, with_missing
 
 
 def two(values):

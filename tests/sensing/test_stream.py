@@ -1,11 +1,15 @@
+"""Readings one by one as they come, calibrated first."""
+
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from gaitdisc.errors import SchemaError, ShapeError
-from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.missing import with_missing
+from gaitdisc.errors import SchemaError, ShapeError, StrideError
+from gaitdisc.sensing.calibration import PENALTIES, calibrated, first_strides, rehearsed
 from gaitdisc.sensing.model_folder import SensingModel, Stream
 from gaitdisc.sensing.reconstructor import MASKED, STATIC, fit_reconstructor
+from gaitdisc.sensing.windows import with_missing
 
 RIDGES = ("linear", "delay ridge", "fourier ridge")
 
@@ -79,3 +83,58 @@ def test_a_masked_model_has_learnt_to_do_without(pair):
 def test_a_reading_with_too_many_values(fitted):
     with pytest.raises(ShapeError, match=r"found an array.*\(2,\)"):
         Stream(fitted["linear"]).update([1.0, 2.0])
+
+
+@pytest.fixture
+def delayed(pair):
+    return fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
+
+
+def changed(trials):
+    """A person whose state is another mixture of what the sensor reads now and read a while ago, and higher by 4."""
+    return [replace(s, y=s.y * 1.5 - 0.4 * s.x[:, -1:] + 4.0) for s in trials]
+
+
+def test_the_rest_shares_no_reading_with_the_first_strides(pair):
+    parted = first_strides(pair.parts.training, 3, pair.what.reach_s)
+    windows = pair.parts.fitted()
+    gap = windows.time[parted.rest][0] - parted.strides.time[-1]
+    assert gap == pytest.approx(pair.what.reach_s + 0.3, abs=0.02)
+    assert len(np.unique(np.floor(parted.strides.time))) == 3
+
+
+def test_the_gap_is_left_in_the_trial_of_the_last_stride_alone(pair):
+    one = pair.parts.fitted()
+    parted = first_strides([one.rows(one.time < 3.0), one], 3, pair.what.reach_s)
+    before = int((one.time < 3.0).sum())
+    assert parted.rest[before:].all()
+    assert not parted.rest[:before].any()
+
+
+def test_another_linear_mixture_is_learnt_from_a_few_strides(pair, delayed):
+    windows = changed(pair.parts.training)
+    parted = first_strides(windows, 8, pair.what.reach_s)
+    rest = windows[0].rows(parted.rest)
+    before = np.sqrt(np.mean((delayed(rest) - rest.y) ** 2))
+    after = np.sqrt(np.mean((calibrated(delayed, parted.strides, PENALTIES[0])(rest) - rest.y) ** 2))
+    assert before > 4.0
+    assert after < 0.01 * before
+
+
+def test_a_large_penalty_takes_the_mean_error_off_and_nothing_else(pair, delayed):
+    windows = changed(pair.parts.training)
+    parted = first_strides(windows, 8, pair.what.reach_s)
+    found = calibrated(delayed, parted.strides, 1e12)(windows[0])
+    offset = (parted.strides.y - delayed(parted.strides)).mean(axis=0)
+    assert np.allclose(found, delayed(windows[0]) + offset)
+
+
+def test_the_penalty_is_rehearsed_on_another_person(pair, delayed):
+    found = rehearsed(delayed, changed(pair.parts.training), 8)
+    assert found.penalty == PENALTIES[0]
+    assert np.sqrt(np.mean(found.missed**2)) < 0.05
+
+
+def test_too_few_strides_are_refused_in_words(pair):
+    with pytest.raises(StrideError, match=r"500 strides.*more.*P01"):
+        first_strides(pair.parts.training, 500, pair.what.reach_s)

@@ -1,7 +1,5 @@
 """Made-up walks whose strides, contacts and faults are known, and small readers of the real recordings."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import SimpleNamespace
 

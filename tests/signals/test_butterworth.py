@@ -1,15 +1,19 @@
-from __future__ import annotations
+"""The filter, gaps that it must not cross, and a low-pass that a record has been through."""
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import butter, lfilter, sosfiltfilt
 from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.recording import Recording, Source
+from gaitdisc.recording import Recording, Source, Strides
 from gaitdisc.signals.butterworth import effective_cutoff_hz, highpassed, lowpassed, needed_samples, short_run_findings
-from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.gaps import filled, gap_findings, gap_spans
+from gaitdisc.signals.recorded_filter import recorded_filter, spectrum_of
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 
@@ -119,3 +123,153 @@ def test_a_real_turn_in_a_laboratory_turned_by_120_deg(gait_data):
     turned = pelvis.with_values((pelvis.values + 120 + 180) % 360 - 180)
     there = (lowpassed(turned).values - 120 - lowpassed(pelvis).values + 180) % 360 - 180
     assert np.nanmax(np.abs(there)) < 1e-6
+
+
+TIME = np.arange(1000) / 100
+
+
+def knee(x):
+    return Recording(TIME, np.asarray(x, float)[:, None], (KNEE,))
+
+
+def broken(x, start, length):
+    x = x.copy()
+    x[start : start + length] = np.nan
+    return knee(x)
+
+
+def test_gap_spans_are_in_seconds():
+    assert gap_spans(broken(TIME, 100, 5), "knee_angle_r") == ((1.0, 1.05),)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(25, 900), st.integers(1, 10))
+def test_a_cubic_is_filled_exactly_and_marked(start, length):
+    x = TIME**3 - 4 * TIME**2 + TIME
+    done = filled(broken(x, start, length))
+    assert np.allclose(done.values[:, 0], x, atol=1e-8)
+    assert np.flatnonzero(done.suspect[:, 0]).tolist() == list(range(start, start + length))
+
+
+def test_what_is_measured_is_not_touched():
+    done = filled(broken(np.sin(TIME), 300, 8))
+    kept = np.r_[0:300, 308:1000]
+    assert np.array_equal(done.values[kept, 0], np.sin(TIME)[kept])
+
+
+def test_a_long_gap_stays_open_and_spoils_150_ms_beside_it():
+    done = filled(broken(np.sin(TIME), 300, 11))
+    assert np.isnan(done.values[300:311, 0]).all()
+    assert np.flatnonzero(done.suspect[:, 0]).tolist() == list(range(285, 326))
+
+
+def test_a_gap_at_an_end_stays_open():
+    assert np.isnan(filled(broken(np.sin(TIME), 0, 3)).values[:3, 0]).all()
+    assert np.isnan(filled(broken(np.sin(TIME), 997, 3)).values[997:, 0]).all()
+
+
+def test_strides_bring_200_ms_back():
+    x = 20 * np.sin(2 * np.pi * TIME) + 5 * np.cos(6 * np.pi * TIME) + 0.5 * TIME
+    strides = Strides(np.arange(9.0), np.arange(1.0, 10.0), "r", "force")
+    done = filled(broken(x, 430, 20), strides)
+    assert np.abs(done.values[:, 0] - x).max() < 0.3
+    assert np.isnan(filled(broken(x, 430, 21), strides).values[430:451, 0]).all()
+
+
+def test_too_few_whole_strides_make_no_template():
+    strides = Strides(np.arange(4.0), np.arange(1.0, 5.0), "r", "force")
+    assert np.isnan(filled(broken(np.sin(TIME), 130, 15), strides).values[130:145, 0]).all()
+
+
+def test_findings_tell_short_from_long():
+    short, long = gap_findings(broken(np.sin(TIME), 300, 8))[0], gap_findings(broken(np.sin(TIME), 300, 30))[0]
+    assert (short.severity, long.severity) == ("note", "warning")
+    assert says(short.what, "1 gap, 0.080 s", "10.00 s", "0.080 s")
+    assert long.spans == ((3.0, 3.3),)
+    assert gap_findings(knee(np.sin(TIME))) == []
+
+
+@pytest.mark.parametrize(("samples", "severity"), [(5, "note"), (30, "warning")])
+def test_a_short_gap_at_an_end_is_a_note_and_stays_open(samples, severity):
+    """A recording that begins 50 ms later would be said to lack nothing."""
+    late = broken(np.sin(TIME), 0, samples)
+    assert [one.severity for one in gap_findings(late)] == [severity]
+    assert np.isnan(filled(late).values[:samples]).all()
+
+
+def test_an_empty_channel_is_one_gap():
+    finding = gap_findings(knee(np.full(1000, np.nan)))[0]
+    assert finding.severity == "warning"
+    assert finding.spans == ((0.0, pytest.approx(10.0)),)
+
+
+RATE = 100.0
+LONG = np.arange(3000) / RATE
+
+
+def _signal(seed):
+    """A mass on a spring that noise pushes: its spectrum falls with the fourth power of frequency."""
+    push = np.random.default_rng(seed).normal(size=len(LONG))
+    slow = sosfiltfilt(butter(4, 1.0, fs=RATE, output="sos"), lfilter([1.0], [1, -1.98, 0.984], push))
+    return slow / slow.std()
+
+
+def _trials(noise, cutoff=None, order=2, signal=_signal):
+    trials = [signal(seed) + noise * np.random.default_rng(99 + seed).normal(size=len(LONG)) for seed in range(4)]
+    if cutoff is None:
+        return trials
+    return [sosfiltfilt(butter(order, cutoff, fs=RATE, output="sos"), one) for one in trials]
+
+
+@pytest.mark.parametrize(("cutoff", "noise"), [(3.0, 0.1), (6.0, 0.01), (6.0, 0.1), (10.0, 0.01), (10.0, 0.1)])
+def test_the_cut_off_is_found(cutoff, noise):
+    found = recorded_filter(_trials(noise, cutoff), RATE)
+    assert found.cutoff_hz == pytest.approx(cutoff, rel=0.06)
+    assert found.gained > 100 and found.signal < 0.1
+
+
+def test_gaps_and_written_digits_do_not_matter():
+    trials = [np.round(one, 4) for one in _trials(0.02, 6.0)]
+    for trial in trials:
+        trial[700:730] = trial[2100:2110] = np.nan
+    assert recorded_filter(trials, RATE).cutoff_hz == pytest.approx(6.0, rel=0.06)
+
+
+def test_raw_records_show_none():
+    assert recorded_filter(_trials(0.02), RATE) is None
+    assert recorded_filter([np.round(one, 3) for one in _trials(1e-5)], RATE) is None
+    slow = [lfilter([0.05], [1, -0.95], one) for one in _trials(1.0)]
+    assert recorded_filter(slow, RATE) is None
+
+
+def test_a_smooth_signal_without_noise_is_one_with_a_signal_in_the_way_or_none():
+    found = recorded_filter(_trials(0.0), RATE)
+    assert found is None or found.signal > 10
+
+
+def _broad(seed):
+    return lfilter([1.0], [1, -1.8, 0.81], np.random.default_rng(seed).normal(size=len(LONG)))
+
+
+def test_where_the_signal_is_in_the_way_a_like_one_helps():
+    trials, like = _trials(0.02, 6.0, signal=_broad), [1.2 * _broad(seed) for seed in range(4)]
+    found = recorded_filter(trials, RATE, like)
+    assert found.cutoff_hz == pytest.approx(6.0, rel=0.1)
+    assert recorded_filter([_broad(seed) for seed in range(4)], RATE, like) is None
+
+
+def test_a_record_too_short_shows_none():
+    assert recorded_filter([np.zeros(127)], RATE) is None
+    assert spectrum_of([np.full(500, np.nan)]) is None
+
+
+def test_the_spectrum_is_that_of_whole_stretches():
+    trial = np.sin(2 * np.pi * 10 * LONG)
+    trial[1000:1005] = np.nan
+    spectrum = spectrum_of([trial])
+    assert spectrum.frequency[np.argmax(spectrum.power)] == pytest.approx(0.1, abs=0.003)
+    assert spectrum.windows == 2 + 6
+
+
+def test_a_steeper_filter_is_not_taken_for_one_of_order_2():
+    assert recorded_filter(_trials(0.1, 6.0, order=4), RATE) is None

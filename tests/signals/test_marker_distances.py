@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from texts import says
@@ -7,8 +5,8 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.standing import person_findings, segment_distances
 from gaitdisc.recording import Recording
-from gaitdisc.signals.marker_distances import person_findings, segment_distances
 
 PLACES = {
     "LASI": (0.0, 0.12, 0.9), "RASI": (0.0, -0.12, 0.9), "LPSI": (-0.15, 0.05, 0.92), "LKNE": (0.0, 0.1, 0.45),

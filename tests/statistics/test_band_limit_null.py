@@ -1,12 +1,10 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt, sosfreqz
 
-from gaitdisc.statistics.band_limit_null import analytic_null, simulate_null
+from gaitdisc.statistics.r2 import analytic_null, simulate_null
 
 
 def spectral(gain, rate_hz):

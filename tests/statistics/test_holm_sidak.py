@@ -20,10 +20,6 @@ def plainly(p):
     return adjusted
 
 
-def test_the_steps_of_eight_variables():
-    assert step_levels(8).round(4).tolist() == [0.0064, 0.0073, 0.0085, 0.0102, 0.0127, 0.0170, 0.0253, 0.05]
-
-
 def test_the_printed_level_of_the_dissertation():
     rejected = [0.00098, 0.00195, 0.00293, 0.00684]
     found = holm_sidak([*rejected, 0.0186, 0.1, 0.4, 0.9])

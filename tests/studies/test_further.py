@@ -4,6 +4,7 @@ import importlib
 from argparse import Namespace
 from pathlib import Path
 
+import further
 import numpy as np
 import pandas as pd
 import pytest
@@ -12,17 +13,11 @@ from texts import says
 STUDIES = Path(__file__).parents[2] / "studies"
 
 
-@pytest.fixture
-def further(monkeypatch):
-    monkeypatch.syspath_prepend(STUDIES)
-    return importlib.import_module("further")
-
-
 def given(folder, **other):
     return Namespace(**{"folder": folder, "tables": ["one"], "quick": True, "keep": True, "print": "", **other})
 
 
-def test_a_table_is_computed_once_kept_and_printed_again(further, tmp_path, capsys):
+def test_a_table_is_computed_once_kept_and_printed_again(tmp_path, capsys):
     calls = []
 
     def computed(quick):
@@ -43,14 +38,14 @@ def test_a_table_is_computed_once_kept_and_printed_again(further, tmp_path, caps
 
 
 @pytest.mark.parametrize("name", ["ch4_further", "ch4_outcomes", "ch5_further", "ch5_beyond"])
-def test_every_table_of_a_study_is_kept(further, name):
+def test_every_table_of_a_study_is_kept(name):
     tables = importlib.import_module(name).TABLES
     kept = pd.read_csv(STUDIES / f"{name}.csv")
     assert set(kept["table"]) == set(tables)
     assert list(kept) == ["table", *further.Number._fields]
 
 
-def test_power_is_told_within_people_better_than_by_shuffled_settings(further, gait_data):
+def test_power_is_told_within_people_better_than_by_shuffled_settings(gait_data):
     rows = pd.DataFrame(importlib.import_module("ch4_outcomes").energy(True)).set_index(["row", "column"])["value"]
     found = rows["both, means"]
     within = "within persons: R2 [1]"

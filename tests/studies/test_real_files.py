@@ -1,7 +1,7 @@
-import importlib
 import re
 
 import pytest
+import real_files
 from texts import says
 
 # By default the rooms read these files: tests/ingest/test_c3d.py and test_reading.py, tests/signals/test_emg.py and
@@ -11,8 +11,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def rows(gait_data):
-    module = importlib.import_module("real_files")
-    return {promise: (recordings, words) for recordings, promise, words in module.run(gait_data)}
+    return {promise: (recordings, words) for recordings, promise, words in real_files.run(gait_data)}
 
 
 def test_plates_and_events_agree_within_two_frames(rows):

@@ -1,7 +1,5 @@
 """Studies are written against `import gaitdisc as gd`; chapters 3 and 5 have parts of pages and windows besides."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Pages in a real browser, where there is one: nothing overflows, the cursor reads, a hostile name runs nothing."""
 
-from __future__ import annotations
-
 import html
 import json
 import re

@@ -1,17 +1,22 @@
-from __future__ import annotations
+"""A person's page, its PDF, and the index of all."""
 
 import base64
 import hashlib
 import re
 
+import numpy as np
 import pandas as pd
 import pytest
-from made_clinic import PROVENANCE, made_controls, made_person
+from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
-from gaitdisc.report.clinic.person_page import page_names, write_person_page
+from gaitdisc.report.clinic.panels import Panel, sheet
+from gaitdisc.report.clinic.person_page import page_names, write_index, write_person_page
+from gaitdisc.report.clinic.person_pdf import draw_panel, write_person_pdf
 from gaitdisc.results.clinical_reference import PersonSession
+from gaitdisc.results.leg_curves import KINEMATICS
+from gaitdisc.results.provenance import Refusal
 
 REFERENCE = made_controls(6)
 
@@ -80,3 +85,59 @@ def test_a_person_without_a_kept_cycle_has_a_page_with_the_reason(tmp_path):
     )
     text = _page(tmp_path, nothing).read_text(encoding="utf-8")
     assert "Left out" in text and "too short" in text and "Kinematics" not in text
+
+
+@pytest.fixture(scope="module")
+def reading():
+    return read_beside(made_person(), made_controls(6))
+
+
+def test_a_person_is_three_pages_of_pdf_with_the_same_bytes_again(reading, tmp_path):
+    person = PersonSession("P01", (reading,))
+    first = write_person_pdf(person, PROVENANCE, tmp_path / "a.pdf").read_bytes()
+    assert first[:5] == b"%PDF-"
+    assert first.count(b"/Type /Page ") == 3
+    assert write_person_pdf(person, PROVENANCE, tmp_path / "b.pdf").read_bytes() == first
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.pdf", "b.pdf"]
+
+
+def test_a_panel_has_the_very_curves(reading):
+    from matplotlib.figure import Figure
+
+    panel: Panel = next(one for one in sheet(reading, KINEMATICS) if one.name == "knee_flexion")
+    axes = Figure().add_axes((0, 0, 1, 1))
+    draw_panel(axes, panel)
+    drawn = [line.get_ydata() for line in axes.lines if len(line.get_ydata()) == 101]
+    np.testing.assert_array_equal(drawn[1], reading.legs["l"].mean("knee_flexion"))
+    assert axes.get_title(loc="left").splitlines() == ["knee flexion [deg]", "L 4, R 4"]
+
+
+def test_a_person_without_a_kept_cycle_has_a_sheet_with_the_reason(tmp_path):
+    person = made_person()
+    nothing = made_person(cycles=person.cycles.assign(kept=False), curves=person.curves[:0])
+    path = write_person_pdf(PersonSession("P01", (read_beside(nothing, None),)), PROVENANCE, tmp_path / "a.pdf")
+    assert path.read_bytes().count(b"/Type /Page ") == 1
+
+
+def test_refused_first_then_amber_then_green_each_with_why_and_link(tmp_path):
+    reference = made_controls(20)
+    good, few = made_person("P01"), made_person("P02", each=2, changed={"knee_angle_l": -40.0})
+    run = made_run(good, few, refusals=(Refusal("P09", "", "no walk. Record again."),))
+    sessions = [(PersonSession(one.subject, (read_beside(one, reference),)), one.subject) for one in (good, few)]
+    text = write_index(run, sessions, reference, tmp_path).read_text(encoding="utf-8")
+    rows = re.findall(r'<td class="light (\w+)">.*?<th scope="row">(.*?)</th>', text)
+    assert rows == [
+        ("red", "P09"),
+        ("amber", '<a href="people/P02.html">P02</a>'),
+        ("green", '<a href="people/P01.html">P01</a>'),
+    ]
+    assert says(text, "no walk. Record again") and says(text, "2 left, 2 right")
+    assert "Knee" in text or "knee" in text
+    assert says(text, "3 people; 1 refused, 1", "amber, 1 green")
+    assert len(pd.read_csv(tmp_path / "tables" / "people.csv")) == 3
+
+
+def test_an_index_of_nobody_but_refused_people_still_stands(tmp_path):
+    run = made_run(refusals=(Refusal("P01", "", "<b>no</b> walk"),))
+    text = write_index(run, [], None, tmp_path).read_text(encoding="utf-8")
+    assert "&lt;b&gt;no" in text and "No reference" in text

@@ -1,7 +1,5 @@
 """Words of the pages in another language, from a table that somebody filled in."""
 
-from __future__ import annotations
-
 import csv
 
 import pytest

@@ -1,0 +1,138 @@
+"""The studies of chapter 3 answer as the chapter says."""
+
+import ch3_burgers
+import ch3_lorenz
+import ch3_measurement_bias
+import ch3_van_der_pol
+import ch3_who_names
+import numpy as np
+import pytest
+from chapter3 import pages
+from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy, cell_of
+from chapter3.record import Conditions, recorded, system_of
+from texts import says
+
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.simulation_file import bundled
+
+
+def test_the_pulse_of_the_text_cannot_run():
+    assert says(ch3_burgers.text_start(ch3_burgers.Conditions(duration_s=2.0)), "every bound at 0 s")
+
+
+@pytest.mark.slow
+def test_the_quick_study_shows_both_metrics(tmp_path):
+    result = ch3_burgers.run(quick=True, folder=tmp_path)
+    assert "by the mean error" in result.tables[0].rows[1][2]
+
+
+def test_the_hidden_term_is_in_the_first_equation():
+    system = ch3_lorenz.system()
+    x = system.start[None]
+    assert (system.true(x) - system.known(x)).round(9).tolist() == [[-5.12, 0.0, 0.0]]
+
+
+@pytest.mark.slow
+def test_no_learned_rate_loses_before_the_first_jump_but_that_of_dmd(tmp_path):
+    cells = ch3_lorenz.run(quick=True, folder=tmp_path).cells["done right"]
+    for cell in cells:
+        if cell.approach == "dynamics" and cell.method not in ("dmd", "bopdmd"):
+            part = cell.parts["oracle forecast"]
+            assert part.accuracy(until_s=part.first_jump_s()).min() > 80
+
+
+def test_the_unscented_filter_finds_the_gain():
+    record = ch3_measurement_bias.recorded(
+        ch3_measurement_bias.systems()["code"], ch3_measurement_bias.Conditions(noise=0.001, duration_s=8.0)
+    )
+    said = ch3_measurement_bias.filters(record)
+    assert "gain found 1.100" in said or "gain found 1.099" in said
+
+
+@pytest.mark.slow
+def test_every_method_removes_most_of_the_bias_without_noise(tmp_path):
+    cells = ch3_measurement_bias.run(quick=True, folder=tmp_path).cells
+    assert all(
+        cell.parts["reconstruction"].accuracy()[0] > 95
+        for found in cells.values()
+        for cell in found
+        if not cell.noise and cell.method != "bopdmd"  # its mean over bags mixes modes whose eigenvalues are rounding
+    )
+
+
+def test_the_system_is_drawn_with_the_rate_that_it_lacks():
+    system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
+    cells = {"text": (cell_of(recorded(system, Conditions(duration_s=5.0)), "sindy", "dynamics"),)}
+    figures = {"system": "Fig. 3.2", "dynamics": "Fig. 3.3", "noise": "Fig. 3.5"}
+    stated, variant = pages.blocks_of(cells, figures, (), {"text": system})
+    assert [figure.name for figure in variant.figures] == ["system-1", "dynamics-1", "noise-1"]
+    numbers = variant.figures[0].numbers
+    assert np.allclose(numbers["missing rate"], -0.01 * numbers["x truth"] ** 3)
+    assert stated.tables[0].rows[0][0] == "Fig. 3.2"
+
+
+def test_text_and_code_hide_a_term_of_opposite_sign_and_start_apart():
+    text, code = ch3_van_der_pol.systems()["text"], ch3_van_der_pol.systems()["code"]
+    x = text.start[None] * 0 + 2.0
+    assert (text.true(x) - text.known(x))[0, 1] == pytest.approx(-0.08)
+    assert (code.true(x) - code.known(x))[0, 1] == pytest.approx(0.08)
+    assert (text.start.tolist(), code.start.tolist()) == ([0.1, 5.0], [0.1, 0.1])
+
+
+@pytest.mark.slow
+def test_the_quick_study_answers_every_statement(tmp_path):
+    result = ch3_van_der_pol.run(quick=True, folder=tmp_path)
+    captions = [ch3_van_der_pol.FIGURES[each] for each in ("system", "cost")]
+    assert [row[0] for row in result.tables[0].rows] == [where for where, *_ in ch3_van_der_pol.STATED] + captions
+    assert (tmp_path / "tables.md").exists()
+
+
+def test_what_sindy_should_say_is_what_is_hidden():
+    for case in ch3_who_names.cases():
+        x = case.system.start[None] + np.array([[0.3], [0.7]])
+        gap = case.system.true(x) - case.system.known(x)
+        if case.approach == "dynamics" and case.terms:
+            powers = {"x**3": x[:, 0] ** 3, "y": x[:, 1], "x**2*y": x[:, 0] ** 2 * x[:, 1]}
+            for output, terms in case.terms.items():
+                written = sum(value * powers[term] for term, value in terms.items())
+                assert gap[:, case.system.states.index(output)] == pytest.approx(written)
+        if not case.words:
+            assert not gap.any()
+
+
+@pytest.mark.slow
+def test_the_quick_study_names_the_cubic_of_the_text(tmp_path):
+    table = ch3_who_names.run(quick=True, folder=tmp_path).tables[0]
+    assert table.rows[0][3].startswith("named")
+    assert (tmp_path / "figures" / "names.svg").exists()
+
+
+TIME = np.arange(301) / 10
+TRUTH = np.sin(TIME)[:, None]
+
+
+def cell(augmented, diverged=None, seed=0, method="gp", seconds=1.0):
+    names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH, TRUTH + 0.2, augmented, diverged))
+    return DiscrepancyCell("s", method, "dynamics", "right", 0.0, seed, ("x",), names, seconds, 0.0)
+
+
+def test_a_statement_without_cells_is_not_answered():
+    assert pages.answered({"text": ()}, "dynamics", 0.0) == "not computed"
+
+
+def test_seeds_are_median_and_range_and_one_that_diverged_is_a_time():
+    quiet = [cell(TRUTH + off, seed=seed) for seed, off in enumerate((0.1, 0.05))]
+    assert "62.5 [50.0, 75.0]" in pages.answered({"text": tuple(quiet)}, "dynamics", 0.0)
+    lost = cell(np.where(TIME[:, None] > 3, np.nan, TRUTH), 3.0, 1)
+    said = pages.answered({"text": (quiet[0], lost)}, "dynamics", 0.0)
+    assert says(said, "diverged", "3.00 s", "1 of 2 seeds")
+    assert "50.0" not in said
+
+
+def test_captions_are_answered_with_cost_and_horizon():
+    cells = {"text": (cell(TRUTH + 0.1, seconds=5.0), cell(TRUTH + 0.05, method="sindy"))}
+    figures = {"cost": "Fig. 3.11", "horizon": "Fig. 3.9", "system": "Fig. 3.2", "noise": "Fig. 3.10"}
+    said = pages.blocks_of(cells, figures, ())[0].tables[0].rows
+    assert [where for where, _, _ in said] == ["Fig. 3.2", "Fig. 3.9", "Fig. 3.11"]
+    assert says(said[2][2], "SINDy 1.0 s", "Gaussian process 5.0 s")
+    assert "Gaussian process 50/50/50/50" in said[1][2]
