@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from gaitdisc.library.comparing import paired_tests as paired_tests
     from gaitdisc.library.comparing import permutation_clusters as permutation_clusters
     from gaitdisc.library.discovering import discover as discover
-    from gaitdisc.library.examples import example_files as example_files
-    from gaitdisc.library.examples import example_walks as example_walks
     from gaitdisc.library.filters import differentiate as differentiate
     from gaitdisc.library.filters import envelope as envelope
     from gaitdisc.library.filters import highpass as highpass
@@ -35,6 +33,8 @@ if TYPE_CHECKING:
     from gaitdisc.library.steps import contacts as contacts
     from gaitdisc.library.steps import contacts_by_detector as contacts_by_detector
     from gaitdisc.library.steps import cycles as cycles
+    from gaitdisc.library.walks import example_files as example_files
+    from gaitdisc.library.walks import example_walks as example_walks
     from gaitdisc.processing.inspection import Inspection as Inspection
     from gaitdisc.recording.field import Axis as Axis
     from gaitdisc.recording.field import Field as Field
@@ -65,8 +65,8 @@ _HOME = {
     "write": ("ingest.reading", "write_recording"),
     "C3DReader": ("ingest.c3d", "C3DReader"),
     "check": ("library.loading", "check"),
-    "example_files": ("library.examples", "example_files"),
-    "example_walks": ("library.examples", "example_walks"),
+    "example_files": ("library.walks", "example_files"),
+    "example_walks": ("library.walks", "example_walks"),
     "Trial": ("recording.trial", "Trial"),
     "Event": ("recording.trial", "Event"),
     "Recording": ("recording.recording", "Recording"),
