@@ -72,7 +72,7 @@ def build_oracle(simulation, oracle):
 
 def make_case(name, checkout, out):
     """Writes the five files of one rig."""
-    folder = next(f for f in (HERE / "open", HERE / "kept") if (f / f"{name}.py").exists())
+    folder = next(f for f in (HERE / "open", HERE / "kept", HERE / "second") if (f / f"{name}.py").exists())
     recipe = runpy.run_path(str(folder / f"{name}.py"))
     learned, unseen = recipe["read_trials"](load_files(recipe, checkout))
     case = Path(out) / name
