@@ -28,7 +28,7 @@ from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.results.discovery import ALPHA
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -39,7 +39,7 @@ SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 WHOLE_PERIOD = 0.8
-SUBSTEPS = 2
+SUBSTEPS, MOST_SUBSTEPS = 2, 64  # integration steps a sample
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
 
@@ -54,6 +54,7 @@ class Case:
     guess: StateGuess
     record_filter: RecordFilter
     alpha: float = ALPHA  # the greatest rate of false finds
+    substeps: int = SUBSTEPS  # integration steps a sample
 
     @property
     def rhythm(self) -> Rhythm:
@@ -92,7 +93,8 @@ class Case:
         """Return the segments, ready to be fitted, under noise of unit size."""
         channels = self.measured.observed.shape[2]
         noise = white_noise(np.ones(channels))
-        return Shooting(self.measured, segments, noise, SUBSTEPS, self.guess.states, record_filter=self.record_filter)
+        given = self.measured, segments, noise, self.substeps, self.guess.states
+        return Shooting(*given, record_filter=self.record_filter)
 
     @property
     def longest(self) -> int:
@@ -190,7 +192,24 @@ def set_up_case(
     measured = replace(measured, findings=(*measured.findings, *findings))
     learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
     case = Case(search, measured, learned, held_out, guess, passed, alpha)
-    return _less_idle(case)
+    return _less_idle(replace(case, substeps=_count_substeps(case)))
+
+
+def _count_substeps(case: Case) -> int:
+    """Return the integration steps a sample of which twice as many end short runs alike: too few run away."""
+    segments, machine = case.segments(case.learned, 0.0), compile_simulation(case.search.base)
+    rows = Rows(segments.trial, segments.begin, case.guess.starts(segments))
+    spread = np.nanstd(case.guess.states, axis=(0, 1))
+    spread, count = np.where(spread > 0, spread, 1.0), SUBSTEPS
+    while count < MOST_SUBSTEPS:
+        ends = [
+            machine.run(case.measured.drive, rows, FEWEST_SAMPLES - 1, substeps=many)[0][:, -1]
+            for many in (count, 2 * count)
+        ]
+        if np.allclose(*(one / spread for one in ends), rtol=0.0, atol=CRITERIA.model_error, equal_nan=True):
+            break
+        count *= 2
+    return count
 
 
 def _less_idle(case: Case) -> Case:

@@ -62,10 +62,10 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if plain:
         return shape_that_leaves_noise(case, as_read, fitted_shape(as_read, case.search, scale), plain) or plain
     names = len(named.model.parts)
-    suspect = not names or (named.noise.is_autocorrelated and not (exact and case.search.base.inexact))
+    suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = names > 1 or suspect
     shape = fitted_shape(as_read, case.search, scale) if wanted else None
-    autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect else None
+    autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect or not names else None
     if autocorrelated:
         return autocorrelated
     if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(case, shape, named))):
@@ -99,9 +99,12 @@ def shape_that_leaves_noise(
 ) -> Verdict | None:
     """Return the verdict on one shape without a name that leaves mere noise and that unseen data prefer to names.
 
-    Held-out data prefer it beyond chance, and in free runs as well: several names can imitate one law that has none.
+    Held-out data prefer it beyond chance, and in free runs as well: several names can imitate one law that has none. A
+    single name that leaves mere noise stands.
     """
     if shape is None or not leaves_noise(case, shape):
+        return None
+    if len(names.found.model.parts) == 1 and leaves_noise(case, names.found):
         return None
     if free_run_error(case, shape) > free_run_error(case, names.found):
         return None

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import fit_model
-from gaitdisc.discovery.case import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Case
+from gaitdisc.discovery.case import FEWEST_SAMPLES, MOST_SEARCHED, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
@@ -125,7 +125,7 @@ class _Bench:
         self.rate_of = kinematic_rates(self.simulation, compile_simulation(self.simulation))
         self.spread = np.nanstd(case.measured.observed, axis=(0, 1))
         self.samples = max(int(case.predictable_periods() * self.rhythm.samples), FEWEST_SAMPLES)
-        self.measured = case.measured
+        self.measured, self.substeps = case.measured, case.substeps
 
     def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
         """The fit of the start states, run by run."""
@@ -133,7 +133,7 @@ class _Bench:
         segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), self.samples).spread(
             MOST_SEARCHED
         )
-        shooting = Shooting(measured, segments, white_noise(self.spread), SUBSTEPS, guess.states)
+        shooting = Shooting(measured, segments, white_noise(self.spread), self.substeps, guess.states)
         return fit_model(shooting, self.simulation, (), guess.starts(segments)).fit, segments
 
     def errors(self, fit: Fitted, segments: Segments) -> NDArray[np.float64]:

@@ -142,3 +142,24 @@ def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
     segments = case.segments((0, 1))
     assert segments.margin == 80 // SHORT and segments.span >= 8
     assert np.isfinite(case.as_read().model.fit.misfit)
+
+
+@pytest.mark.parametrize(("lag", "steps"), [(0.1, 2), (0.004, 4)])  # two steps of 15 ms run away below 5.4 ms
+def test_a_fast_state_is_integrated_in_steps_that_do_not_run_away(lag, steps):
+    text = f"""
+title = "Lag"
+[states.m]
+unit = "N"
+[inputs.u]
+unit = "N"
+[parameters.lag]
+value = {lag}
+unit = "s"
+[equations]
+m = "(u - m)/lag"
+"""
+    t = np.arange(200) * 0.03
+    u = np.sin(t)
+    seen = np.stack([u + np.random.default_rng(seed).normal(0, 0.01, len(t)) for seed in range(4)])[..., None]
+    measured = Measured(Drive.of([u[:, None]] * 4, 1 / 0.03), seen, ("1", "2", "3", "4"), ("m",))
+    assert set_up_case(simulation_of(text, "lag.toml"), measured).substeps == steps

@@ -93,15 +93,17 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, a
 
 
 def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, as_read, monkeypatch):
-    names = SimpleNamespace(found="names", rivals=("rival",))
-    proofs, errors = iter([True, True, False, True, False]), {"shape": 0.1, names.found: 0.2}
-    monkeypatch.setattr(decision, "free_run_error", lambda _, one: errors[one])
-    monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
+    two, one = (SimpleNamespace(model=SimpleNamespace(parts=(None,) * count)) for count in (2, 1))
+    names = SimpleNamespace(found=two, rivals=("rival",))
+    proofs, errors = iter([True, True, False, True, False]), {"shape": 0.1}
+    monkeypatch.setattr(decision, "free_run_error", lambda _, now: errors["shape"] if now == "shape" else 0.2)
+    monkeypatch.setattr(decision, "leaves_noise", lambda _, now: now in ("shape", one))
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
     found = decision.shape_that_leaves_noise(case, as_read, "shape", names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None  # not preferred to names
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None  # not borne out
+    assert decision.shape_that_leaves_noise(case, as_read, "shape", SimpleNamespace(found=one)) is None  # leaves noise
     errors["shape"] = 0.3
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
     monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
