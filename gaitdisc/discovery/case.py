@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,7 @@ SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 WHOLE_PERIOD = 0.8
-SUBSTEPS, MOST_SUBSTEPS = 2, 64  # integration steps a sample
+TRIED_SUBSTEPS = (2, 4, 8)  # integration steps a sample
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
 
@@ -54,7 +54,7 @@ class Case:
     guess: StateGuess
     record_filter: RecordFilter
     alpha: float = ALPHA  # the greatest rate of false finds
-    substeps: int = SUBSTEPS  # integration steps a sample
+    substeps: int = TRIED_SUBSTEPS[0]  # integration steps a sample
 
     @property
     def rhythm(self) -> Rhythm:
@@ -200,16 +200,14 @@ def _count_substeps(case: Case) -> int:
     segments, machine = case.segments(case.learned, 0.0), compile_simulation(case.search.base)
     rows = Rows(segments.trial, segments.begin, case.guess.starts(segments))
     spread = np.nanstd(case.guess.states, axis=(0, 1))
-    spread, count = np.where(spread > 0, spread, 1.0), SUBSTEPS
-    while count < MOST_SUBSTEPS:
-        ends = [
-            machine.run(case.measured.drive, rows, FEWEST_SAMPLES - 1, substeps=many)[0][:, -1]
-            for many in (count, 2 * count)
-        ]
-        if np.allclose(*(one / spread for one in ends), rtol=0.0, atol=CRITERIA.model_error, equal_nan=True):
-            break
-        count *= 2
-    return count
+    spread = np.where(spread > 0, spread, 1.0)
+    ends = {
+        count: machine.run(case.measured.drive, rows, FEWEST_SAMPLES - 1, substeps=count)[0][:, -1] / spread
+        for count in (*TRIED_SUBSTEPS, 2 * TRIED_SUBSTEPS[-1])
+    }
+    alike = partial(np.allclose, rtol=0.0, atol=CRITERIA.model_error, equal_nan=True)
+    enough = [count for count in TRIED_SUBSTEPS if alike(ends[count], ends[2 * count])]
+    return enough[0] if enough else TRIED_SUBSTEPS[0]  # what moves faster than that is sampled too slowly
 
 
 def _less_idle(case: Case) -> Case:

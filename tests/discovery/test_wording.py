@@ -128,7 +128,7 @@ def test_random_pushes():
         "equation", "v", "process_noise", "", {"strength": Estimate(3.0, float("nan"), float("nan"), "N")}
     )
     said = sentence(mass(), (), verdict="process_noise", effects=(push,), where=(Whereabouts("equation", "v", 1.0),))
-    assert says(said, "3.00 N", "equation", "nothing")
+    assert says(said, "3.00 N", "equation", "no effect that repeats")
 
 
 def test_a_shape_without_a_name_says_over_which_states():
