@@ -12,7 +12,9 @@ PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
 BESIDE := -n $(JOBS) --dist worksteal
 CHAPTERS := tests/chapter3 tests/chapter5 studies/chapter3 studies/chapter5
 
-.PHONY: demo test chapters elsewhere slow lint format approve bench docs release clean
+PYTHONS := 3.11 3.12 3.13
+
+.PHONY: demo test chapters elsewhere pythons slow lint format approve bench docs release clean
 
 demo: $(VENV)/.base
 	$(BIN)/gaitdisc demo $(DEMO)
@@ -31,6 +33,10 @@ elsewhere: $(VENV)/.dev
 	found=$$($(BIN)/python -c 'import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))'); \
 	export NPY_DISABLE_CPU_FEATURES="$$found" OPENBLAS_CORETYPE=Nehalem ATEN_CPU_CAPABILITY=default NUMBA_CPU_NAME=generic; \
 	for part in "" "$(CHAPTERS)"; do $(PYTEST) $(BESIDE) --hypothesis-profile many -p randomly --randomly-seed=$$seed $$part; done
+
+# The default suite on each Python of the classifiers, each in its own environment; a release runs it.
+pythons:
+	@set -e; for version in $(PYTHONS); do $(MAKE) test PYTHON=python$$version VENV=$(VENV)-$$version; done
 
 slow: $(VENV)/.dev
 	$(PYTEST) $(BESIDE) -m slow
@@ -70,15 +76,17 @@ $(VENV)/.dev: $(VENV)/.base
 	touch $@
 
 clean:
-	rm -rf $(VENV) $(DEMO) dist build
+	rm -rf $(VENV) $(VENV)-3.* $(DEMO) dist build
 
 docs: $(VENV)/.dev
 	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir build/site
 
-# A release: versions agree and the changes have their date, or nothing is built; then wheel, sdist and pages.
+# A release: versions agree, the changes have their date and every Python passes, or nothing is built; then wheel, sdist
+# and pages.
 release: $(VENV)/.dev
 	$(BIN)/python .ci/agreed_version.py
+	$(MAKE) pythons
 	$(BIN)/python -m pip install --quiet build
 	rm -rf dist
 	$(BIN)/python -m build --outdir dist .

@@ -54,7 +54,7 @@ FUNCTIONS = {
     "influence": ("idle_parts",),
 }  # none of which reads a criterion
 ABOVE_ONE = ("mere_noise", "autocorrelated", "agrees", "follows", "unlike", "apart")
-BELOW_ONE = ("as_much", "reading")
+BELOW_ONE = ("reading",)
 TURNS = {"half": 0.5, "double": 2.0}
 
 kept: dict[tuple[str, ...], Any] = {}

@@ -26,6 +26,7 @@ SETTLING = 0.25  # of a trial, which is run before the record begins
 SHARES = (0.1, 0.25)  # of the rms of a rate, which a law makes
 PUSHES = (0.01, 0.1)  # of the motion's standard deviation, by which pushes move it
 NOISE = (0.01, 0.04)  # of each channel's standard deviation
+CONSTANT = 0.1  # of a law's rms: what moves less about its mean is a constant
 PUSH_TURNS = 3  # in which the size of pushes is found
 CUTOFF = 0.06  # of the sampling rate: the low-pass that the file does not say
 OFF = 0.05  # of each number
@@ -115,9 +116,11 @@ def hide_law(model: Model, kind: str, trial: Trial, motion: list[str], rng: np.r
     for law in ("0.0", text):
         model.law = compile(law, effect, "eval")
         rates.append([model.rates(*one) for one in zip(states, trial.moments, strict=True)])
-    base, change = (np.sqrt(np.mean(np.square(one), axis=0)) for one in (rates[0], np.subtract(*rates)))
+    moved = np.subtract(*rates)
+    base, change = (np.sqrt(np.mean(np.square(one), axis=0)) for one in (rates[0], moved))
     column = int(np.argmax(change))
-    if change[column] == 0:  # a spring that the run never reaches
+    # a spring that the run never reaches; friction that never reverses is a constant load, whatever its name
+    if moved[:, column].std() < CONSTANT * change[column] or change[column] == 0:
         model.law = compile("0.0", "nothing", "eval")
         return hide_law(model, kind, trial, motion, rng)
     term = f"{rng.uniform(*SHARES) * base[column] / change[column]:.5g}*({text})"

@@ -13,18 +13,8 @@ from pathlib import Path
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.units import known_units
 
-QUANTITIES = (
-    "angle",
-    "translation",
-    "marker",
-    "moment",
-    "force",
-    "vertical_force",
-    "pressure_centre",
-    "power",
-    "emg",
-    "signal",
-)
+QUANTITIES = ("angle", "translation", "marker", "moment", "force", "vertical_force",
+              "pressure_centre", "power", "emg", "signal")  # fmt: skip
 SIDES = ("r", "l", "")
 
 
@@ -37,18 +27,18 @@ class Channel:
     name : str
         OpenSim's name (`ankle_angle_r`), `emg_<muscle>_<side>` for EMG, `<marker>.x` for a marker coordinate.
     quantity : str
-        One of `QUANTITIES`; `signal` is anything that no other word fits (a voltage, a synchronisation pulse).
+        One of `QUANTITIES`; `signal` is for all other quantities (a voltage, a synchronisation pulse).
     unit : str
         One of `gaitdisc.units.known_units()`, or a rate of one of them.
     side : str
-        `r`, `l`, or empty where the quantity has no side.
+        `r`, `l`, or empty if the quantity has no side.
 
     Raises
     ------
     ChannelError
-        If the name is empty, or the quantity or side is none of the agreed words.
+        If the name is empty, or the quantity or side is unknown.
     UnitError
-        If the unit is not in the closed list.
+        If the unit is not in the list of units.
 
     Examples
     --------
@@ -64,23 +54,23 @@ class Channel:
     def __post_init__(self) -> None:
         """Refuse words outside the vocabulary."""
         if not self.name:
-            raise ChannelError("a channel needs a name", "the name is empty", "Name the column.")
+            raise ChannelError("every channel must have a name", "one name is empty", "Name the column.")
         if self.quantity not in QUANTITIES:
             raise ChannelError(
-                f"channel {self.name!r} needs a quantity of the vocabulary",
+                f"the quantity of channel {self.name!r} must be in the vocabulary",
                 f"found {self.quantity!r}",
                 f"Use one of: {', '.join(QUANTITIES)}.",
             )
         if self.side not in SIDES:
             raise ChannelError(
-                f"channel {self.name!r} needs side 'r', 'l' or ''",
+                f"the side of channel {self.name!r} must be 'r', 'l' or ''",
                 f"found {self.side!r}",
                 "Correct the side in channels.csv or in the study's [channels].",
             )
         base = re.sub(r"/s\d?$", "", self.unit)
         if base not in known_units():
             raise UnitError(
-                f"channel {self.name!r} needs a unit of the closed list",
+                f"the unit of channel {self.name!r} must be in the list of units",
                 f"found {self.unit!r}",
                 f"Use one of: {', '.join(known_units())}.",
             )
@@ -136,6 +126,12 @@ def nearest_word(word: str, among: Iterable[str]) -> str | None:
     by_fold = {candidate.lower(): candidate for candidate in among}
     close = difflib.get_close_matches(word.lower(), by_fold, n=1, cutoff=0.6)
     return by_fold[close[0]] if close else None
+
+
+def hint_nearest(word: str, among: Iterable[str]) -> str:
+    """Return the end of a sentence that names the nearest word, or nothing."""
+    nearest = nearest_word(word, among)
+    return f", the nearest is {nearest!r}" if nearest else ""
 
 
 def list_names(names: Sequence[str], most: int = 6, none: str = "nothing") -> str:
@@ -209,8 +205,8 @@ def vocabulary() -> Vocabulary:
             owner = aliases.setdefault(folded_label(label), row["name"])
             if owner != row["name"]:
                 raise ChannelError(
-                    "an alias in channels.csv may mean one channel only",
-                    f"{label!r} stands at {owner!r} and at {row['name']!r}",
+                    "an alias in channels.csv must belong to one channel only",
+                    f"{label!r} is an alias of {owner!r} and of {row['name']!r}",
                     "Remove it from one of them.",
                 )
     channels = tuple(Channel(r["name"], r["quantity"], r["unit"], r["side"]) for r in rows)

@@ -5,6 +5,7 @@ Exit codes: `gaitdisc/commands/options.py`.
 
 from __future__ import annotations
 
+import logging
 import signal
 import sys
 from collections.abc import Callable
@@ -18,7 +19,7 @@ import typer
 
 from gaitdisc._version import __version__
 from gaitdisc.commands.options import ENDED, REFUSED, Overwrite
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import LOG, GaitdiscError
 from gaitdisc.own_files import guarded
 
 NAMES = (
@@ -72,7 +73,9 @@ for _command in COMMANDS:
     app.command()(_command if _command.__name__ in UNGUARDED else _guarded(_command))
 
 
-def _version(wanted: bool) -> None:
+def _version(wanted: bool) -> None:  # called at the start of every command
+    LOG.handlers[:] = [logging.StreamHandler()]  # the standard error stream of this call
+    LOG.setLevel(logging.INFO)
     if wanted:
         typer.echo(f"gaitdisc {__version__}")
         raise typer.Exit

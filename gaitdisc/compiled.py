@@ -23,7 +23,9 @@ class _LenientCache(FunctionCache):
         try:
             super().save_overload(sig, data)
         except OSError as error:
-            warnings.warn(f"compiled code is not kept: the system says: {error.strerror or error}", stacklevel=2)
+            warnings.warn(
+                f"compiled code cannot be cached; the operating system reports: {error.strerror or error}", stacklevel=2
+            )
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:

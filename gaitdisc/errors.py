@@ -6,6 +6,11 @@ the sentence with its code and no traceback; anything that is not a `GaitdiscErr
 
 from __future__ import annotations
 
+import logging
+
+LOG = logging.getLogger("gaitdisc")  # progress; the command line prints it, a script attaches its own handler
+LOG.addHandler(logging.NullHandler())
+
 
 class GaitdiscError(ValueError):
     """A refusal that a user can act on.
@@ -13,11 +18,11 @@ class GaitdiscError(ValueError):
     Parameters
     ----------
     needed : str
-        What the operation needs, in the field's words, with the unit; empty where what was met says it.
+        What the operation needs, with the unit; empty if `found` says it.
     found : str
-        What was met instead: file, channel, frame, number, unit.
+        What was found instead: file, channel, frame, number, unit.
     remedy : str
-        What the user can do now, one sentence.
+        What to do, one sentence.
 
     Examples
     --------
@@ -36,12 +41,18 @@ class GaitdiscError(ValueError):
 
     @property
     def code(self) -> str:
-        """Short name of this kind of refusal, under which `docs/errors.md` explains it."""
+        """Short name of this kind of refusal, as explained in `docs/errors.md`."""
         return f"gd-{type(self).__name__.removesuffix('Error').lower()}"
 
 
 class ReadError(GaitdiscError):
     """A file cannot be read as the recording that it claims to be."""
+
+
+class MissingFileError(ReadError, FileNotFoundError):
+    """There is no such file; a `FileNotFoundError` as well."""
+
+    code = "gd-read"  # pyright: ignore
 
 
 class WriteError(GaitdiscError):

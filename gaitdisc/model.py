@@ -44,9 +44,9 @@ class Augmented:
             if one != other:
                 apart = sorted(set(one) ^ set(other)) or ["their order"]
                 raise ShapeError(
-                    f"models that are added need the same {what}",
-                    f"they have {len(one)} and {len(other)}, apart in {', '.join(apart[:3])}",
-                    "Fit both on the same channels.",
+                    f"models that are added must have the same {what}",
+                    f"they have {len(one)} and {len(other)}; they differ in {', '.join(apart[:3])}",
+                    "Fit both models on the same channels.",
                 )
 
     @property

@@ -87,7 +87,7 @@ class Guard:
         place = max(inside, key=lambda one: len(one.folder.parts))
         other = [name for name in KINDS if name != path.name and (path.parent / name).is_file()]
         if path.name in KINDS and other:
-            raise _refusal(path.parent, f"holds another kind of result ({other[0]})")
+            raise _refusal(path.parent, f"already holds another kind of result ({other[0]})")
         if not os.path.lexists(path) or (place.known and place.mends(path)):
             return place
         if os.path.exists(path) and any(os.path.samestat(path.stat(), one) for one in self.inputs):  # noqa: PTH110 never raises
@@ -96,9 +96,9 @@ class Guard:
         own = place.known if whole else path.is_file() and place.wrote(path, file_sha256(path))
         if not own and not self.overwrite:
             edited = not whole and place.wrote(path)
-            what = f"was changed since {place.command} wrote it" if edited else f"was not written by {place.command}"
+            what = f"was changed after {place.command} wrote it" if edited else f"was not written by {place.command}"
             way = "--overwrite" if self.command.startswith("gaitdisc") else "overwrite=True"
-            raise _refusal(path, f"exists and {what}", f", or give {way}")
+            raise _refusal(path, f"already exists and {what}", f", or use {way}")
         return place
 
 

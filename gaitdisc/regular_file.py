@@ -28,19 +28,19 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
     >>> check_regular(Path("/"))
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ReadError: a file is to be read; / is a folder. Name a file.
+    gaitdisc.errors.ReadError: the input must be a file; / is a folder. Give the path of a file.
     """
     refuse_nul(path)
     found = path.stat()
     name = path.name or str(path)
     if not stat.S_ISREG(found.st_mode):
-        kind = next((word for is_one, word in _KINDS if is_one(found.st_mode)), "no regular file")
-        raise ReadError("a file is to be read", f"{name} is {kind}", "Name a file.")
+        kind = next((word for is_one, word in _KINDS if is_one(found.st_mode)), "not a regular file")
+        raise ReadError("the input must be a file", f"{name} is {kind}", "Give the path of a file.")
     if found.st_size > largest_bytes:
         raise ReadError(
-            f"a file of at most {size_in_words(largest_bytes)} is to be read",
+            f"a file may have at most {size_in_words(largest_bytes)}",
             f"{name} has {size_in_words(found.st_size)}",
-            "Export the recording in parts, or only the channels that are needed.",
+            "Export the recording in parts, or export only the channels that you need.",
         )
     note_inputs([path])
     return found.st_size
@@ -50,7 +50,7 @@ def refuse_nul(path: Path) -> None:
     """Refuse a name that no system can have."""
     if "\0" in str(path):
         found = f"found {str(path.name)!r}"
-        raise ReadError("a file's name must not hold a NUL character", found, "Correct the name.")
+        raise ReadError("a file name must not contain a NUL character", found, "Correct the name.")
 
 
 def size_in_words(count: int) -> str:

@@ -20,11 +20,11 @@ def parsed_toml(text: str) -> dict[str, Any]:
     >>> parsed_toml("a = " + "[" * 50 + "]" * 50)
     Traceback (most recent call last):
     ...
-    tomllib.TOMLDecodeError: tables or lists are nested more than 40 deep
+    tomllib.TOMLDecodeError: tables or lists are nested more than 40 levels deep
     """
     if _MANY_DOTS.search(_NO_KEYS.sub("", text)):
         raise tomllib.TOMLDecodeError(f"a key has more than {DEEPEST} parts")
-    too_deep = f"tables or lists are nested more than {DEEPEST} deep"
+    too_deep = f"tables or lists are nested more than {DEEPEST} levels deep"
     try:
         table = tomllib.loads(text)
     except (RecursionError, MemoryError) as error:

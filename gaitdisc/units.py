@@ -127,9 +127,7 @@ def inner_unit(unit: str) -> str:
     """
     if unit not in _INNER:
         raise UnitError(
-            "a unit of the closed list is needed",
-            f"{unit!r} is not in it",
-            f"Use one of: {', '.join(_INNER)}.",
+            "a unit must be in the list of units", f"{unit!r} is not in the list", f"Use one of: {', '.join(_INNER)}."
         )
     return _INNER[unit]
 
@@ -146,9 +144,9 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
     inner, inner_to = inner_unit(unit), inner_unit(to)
     if inner != inner_to:
         raise UnitError(
-            f"a value in {unit!r} is to be given in {to!r}",
-            f"{unit!r} is measured in {inner!r}, {to!r} in {inner_to!r}",
-            "Correct the unit where the file or the study states it.",
+            f"{unit!r} must be convertible to {to!r}",
+            f"{unit!r} is converted to {inner!r}, {to!r} to {inner_to!r}",
+            "Correct the unit in the file or in the study.",
         )
     factor = unit_factor(unit, to) or math.nan  # the closed list is part of the table
     return values if factor == 1 else values * factor

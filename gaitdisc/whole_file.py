@@ -117,7 +117,7 @@ def _flush(folder: Path) -> None:
 
 def _refusal(path: Path, error: OSError) -> WriteError:
     return WriteError(
-        f"{path.name} is to be written whole into {path.parent}",
-        f"the system says: {error.strerror or error}",
-        "Make room or choose another folder; what stood there before is unchanged.",
+        f"{path.name} cannot be written to {path.parent}",
+        f"the operating system reports: {error.strerror or error}",
+        "Free some space or choose another folder. The earlier file, if there was one, is unchanged.",
     )

@@ -78,11 +78,7 @@ def upwards(name: str) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """Unit as it is printed.
-
-    >>> unit_text("deg/s2")
-    'deg/s²'
-    """
+    """Unit as it is printed."""
     return unit.replace("/s2", "/s²")
 
 
@@ -121,11 +117,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def listed(words: list[str]) -> str:
-    """Words as they stand in a sentence.
-
-    >>> listed(["a", "b", "c"])
-    'a, b and c'
-    """
+    """Words as they stand in a sentence."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 

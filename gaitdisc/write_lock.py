@@ -46,7 +46,7 @@ def write_lock(folder: Path, name: str = ".lock", run: bool = False) -> Iterator
             lock = _taken(locked, says)
             held.callback(_free, locked, lock)
             if lock is None and run:
-                raise OSError("this disk keeps no file locks")
+                raise OSError("this disk does not support file locks")
             holder = _holder(says)
             if holder.get("host", socket.gethostname()) != socket.gethostname():
                 _refuse(says, f"Process {holder.get('pid')} on {holder['host']}")
@@ -54,9 +54,9 @@ def write_lock(folder: Path, name: str = ".lock", run: bool = False) -> Iterator
             _sweep(folder, run)
         except OSError as error:
             raise WriteError(
-                "a command needs a folder that it can write and lock",
-                f"{folder}: the system says: {error.strerror or error}",
-                "Make room, mend the right to write, or choose another folder with --out.",
+                "the output folder must be writable and support file locks",
+                f"{folder}: the operating system reports: {error.strerror or error}",
+                "Free some space, correct the permissions, or choose another folder with --out.",
             ) from error
         held.callback(says.unlink, missing_ok=True)
         held.callback(_sweep, folder, run)
@@ -107,5 +107,5 @@ def _refuse(path: Path, holder: str) -> NoReturn:
     raise WriteError(
         "",
         f"{holder} is writing to {what}",
-        f"Wait for it or choose another --out; if that process is gone, delete {path.name}.",
+        f"Wait for it or choose another --out. If it ended, delete {path.name}.",
     )

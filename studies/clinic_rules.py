@@ -60,9 +60,9 @@ def row_of(kind: str, reference: ClinicalReference, people: int) -> dict[str, ob
         side = "lr"[k % 2]
         number = k + 1000 * KINDS.index(kind)
         reading = read_beside(cycles_of(Visit(f"P{k}", number, "", kind, side), PEOPLE_SEED), reference)
-        right = [one for one in reading.noted if one.side == side and one.rule == FOUND_AS.get(kind)]
-        found += bool(right)
-        other += any(one.side != side or kind not in FOUND_AS for one in reading.noted)
+        far = [one for one in reading.noted if one.tier > 1]
+        found += any(one.side == side and one.rule == FOUND_AS.get(kind) for one in far)
+        other += any(one.side != side or kind not in FOUND_AS for one in far)
     return {"planted": kind or "nothing", "pages": people, "found": found, "said elsewhere": other}
 
 

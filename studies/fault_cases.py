@@ -43,7 +43,7 @@ def held_back(data: Path) -> Iterator[Case]:
         yield case("numbers in m for mm", "looks like m", points_times, 1e-3)
         yield case("forces per kg", "per kg", analog, "^[FM]", 0.014)
         yield case("left and right swapped", SIDES, point_labels, _mirrored)
-        yield case("plates swapped", r"follows the other|swapped|cm beside the nearest foot", in_plates)
+        yield case("plates swapped", r"follows the other|exchanged|cm from the nearest foot", in_plates)
     names = {"S01DN603": gait / "treadmill_walk_ik" / "S01DN603_ik.mot"}
     names |= {f"exotendon {path.parent.name}": path for path in (gait / "exotendon_run").glob("*/manual_ik.mot")}
     yield from angle_cases(names)
@@ -78,9 +78,9 @@ def _young(gait: Path, kind: str = "straight") -> Iterator[Case]:
         yield case("forces per kg", r"per kg", analog, "Force|Moment", 0.02)
         yield case("left and right swapped", SIDES, point_labels, _mirrored)
         yield case("legs swapped", "left and right", point_labels, lambda x: _mirrored(x) if LEG.match(x) else x)
-        turned = r"flexion is (negative|positive)|turned"
+        turned = r"flexion is (negative|positive)|reversed"
         yield case("knee's sign", turned, points_times, -1.0, "KneeAngles", slice(0, 1))
-        yield case("plates swapped", r"follows the other|swapped|cm beside the nearest foot", in_plates)
+        yield case("plates swapped", r"follows the other|exchanged|cm from the nearest foot", in_plates)
         yield case("EMG channels exchanged", "exchanged", analog_exchanged, *LIVE[person])
         for other in (WALKERS[place - 1], WALKERS[place - 2]):
 
@@ -113,5 +113,5 @@ def _treadmill(gait: Path) -> Iterator[Case]:
     yield case("EMG in mV for V", "looks? like mV", analog, "Voltage", 1e3)
     yield case("forces per kg", "per kg", analog, "Force|Moment", 0.014)
     yield case("left and right swapped", SIDES, point_labels, _mirrored)
-    yield case("belts swapped", "swapped|follows the other", in_corners)
-    yield case("belts swapped", "swapped|follows the other", in_plates)
+    yield case("belts swapped", "exchanged|follows the other", in_corners)
+    yield case("belts swapped", "exchanged|follows the other", in_plates)

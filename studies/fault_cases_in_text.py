@@ -72,7 +72,7 @@ def angle_cases(records: Mapping[str, Path]) -> Iterator[Case]:
         yield Case("left and right swapped", name, files, in_storage("ik.mot", mirrored(SIDES)), "swapped")
         halves = {"left.mot": path, "right.mot": path}
 
-        yield Case("100 against 101 points", name, halves, _plant_halves, "share one time base")
+        yield Case("100 against 101 points", name, halves, _plant_halves, "have one time base")
 
 
 def _plant_halves(folder: Path) -> None:

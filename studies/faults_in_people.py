@@ -153,7 +153,7 @@ def loaded(person: Recorded) -> list[int]:
     """Plates of the first walk, the one that carried most first."""
     loads = InPlace(person.walk).loads()
     if len(loads) < 2 or max(loads) < STEP_N:
-        raise NotHereError("no plate saw a step")
+        raise NotHereError("no plate recorded a step")
     return list(np.argsort(loads)[::-1])
 
 
@@ -261,7 +261,7 @@ def recording_again(*parts: str) -> Plant:
     return plant
 
 
-SAME = r"counts once|samples are those|same (recording|file|trial|data)|identical|equal|twice|duplicate|copies"
+SAME = r"counted once|samples are identical|same (recording|file|trial|data)|identical|equal|twice|duplicate|copies"
 FOOT, PLATE = r"[LR](ANK|HEE|TOE)\b|foot|ankle", r"plate|force|newton|weigh"
 moved = partial(Kind, angles="markers", needs="kinematics")
 KINDS = (

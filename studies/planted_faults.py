@@ -37,7 +37,7 @@ TURNED_BACK = ("knee sign", "per body mass")  # notes that say that the reader s
 
 ALARM = re.compile(
     r"swapped|exchanged|mirrored|looks? like|another person|another shape|states? (degrees|radians)|per kg of body "
-    r"mass, though|of another foot|share one time base|counts|knee sign|follows the other foot|beside the nearest foot"
+    r"mass, contrary|of another foot|have one time base|counts|knee sign|follows the other foot|from the nearest foot"
 )
 
 

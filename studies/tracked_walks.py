@@ -34,7 +34,7 @@ import pandas as pd
 
 from gaitdisc.batch.tracked_joints import joints_of
 from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, tracked_pass, with_angle_noise
-from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
+from gaitdisc.discovery.prescribed import CLOSED, ResidualMoment
 from gaitdisc.engines.tracked_mapping import read_tracked
 
 WHITENED_DEG, SIZES = 0.3, (0.6, 1.4)
@@ -102,7 +102,7 @@ def searched(walk: Pass, draws: np.ndarray) -> dict[str, object]:
     }
 
 
-def regressed(walk: Pass, joint: LeftMoment) -> float:
+def regressed(walk: Pass, joint: ResidualMoment) -> float:
     """What a plain regression on angle and rate, learned from the other blocks, leaves of a joint's moment [N m]."""
     number = next(k for k, one in enumerate(walk.engine.coordinates) if one.port == joint.port)
     rates = [walk.dense(each[:, number]) for each in (walk.motion.q, walk.motion.v)]

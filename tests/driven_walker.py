@@ -86,11 +86,7 @@ class DrivenWalker:
         kinematics = _recording(time[::every], angles[::every] + rng.normal(0, 0.05, angles[::every].shape), names)
         return Trial(
             f"{self.name}_{condition}",
-            {
-                "kinematics": kinematics,
-                "emg": self._emg(rng, time, phase, angles),
-                "forces": _forces(rng, time, phase),
-            },
+            {"kinematics": kinematics, "emg": self._emg(rng, time, phase, angles), "forces": _forces(rng, time, phase)},
             subject=self.name,
             condition=condition,
         )

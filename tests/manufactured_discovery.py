@@ -44,7 +44,7 @@ def manufactured(**changes) -> Discovery:
         ("theta",),
         ("rad",),
         Runs(np.array([3, 3]), time, phase, *shapes, ("a", "b", "c", "d")),
-        (Finding("warning", "one trial", "walk.csv", "trial 'a' is the only one", "proof on other trials"),),
+        (Finding("warning", "one trial", "walk.csv", "trial 'a' is the only one", "test on other trials"),),
         Provenance({"title": "Ankle"}, 0, {"ankle.toml": "0" * 64}, {"gaitdisc": "0"}, "", "2026-01-01T00:00:00+00:00"),
     )
     return replace(discovery, **changes)

@@ -53,7 +53,7 @@ def test_words_outside_the_vocabulary_are_refused():
         Channel("knee", "angle", "deg", "right")
     with pytest.raises(UnitError, match="found 'grad'"):
         Channel("knee", "angle", "grad")
-    with pytest.raises(ChannelError, match="the name is empty"):
+    with pytest.raises(ChannelError, match="one name is empty"):
         Channel("", "angle", "deg")
 
 

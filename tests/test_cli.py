@@ -38,7 +38,7 @@ def test_the_help_loads_no_library_that_computes():
 def test_a_refusal_ends_with_its_code(tmp_path):
     done = called("check", tmp_path / "none")
     assert done.returncode == 1
-    assert done.stderr.startswith("SchemaError: a study, ") and done.stderr.endswith(". [gd-schema]\n")
+    assert done.stderr.startswith("SchemaError: the path must be a study") and done.stderr.endswith(". [gd-schema]\n")
 
 
 def _with_command(tmp_path, command, **environment):

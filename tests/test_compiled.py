@@ -33,7 +33,7 @@ def test_a_full_disk_costs_time_and_nothing_else(monkeypatch):
     def tripled(x):
         return 3 * x
 
-    with pytest.warns(UserWarning, match=r"not kept.*No space"):
+    with pytest.warns(UserWarning, match=r"cannot be cached.*No space"):
         assert tripled(2.0) == 6.0
 
 

@@ -25,7 +25,7 @@ def test_models_add():
 
 
 def test_models_of_other_outputs_do_not_add():
-    with pytest.raises(ShapeError, match=r"1.*1, apart in y"):
+    with pytest.raises(ShapeError, match=r"1.*in y"):
         augment(Line(1.0), Line(1.0, outputs=("z",)))
-    with pytest.raises(ShapeError, match="apart in their order"):
+    with pytest.raises(ShapeError, match="in their order"):
         augment(Line(1.0, inputs=("a", "b")), Line(1.0, inputs=("b", "a")))

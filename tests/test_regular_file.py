@@ -60,7 +60,7 @@ def test_what_is_no_file_is_refused_by_every_reader(tmp_path, name, kind, reques
     else:
         path.symlink_to("/dev/zero" if kind == "zero" else "/dev/null")
     word = {"pipe": "a named pipe", "socket": "a socket"}.get(kind, "a device")
-    with pytest.raises(ReadError, match=rf"{name}.*{word}. Name a file."):
+    with pytest.raises(ReadError, match=rf"{name}.*{word}. Give the path of a file."):
         READERS[name](path)
 
 

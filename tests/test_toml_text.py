@@ -38,7 +38,7 @@ def test_every_file_of_toml_refuses_it_in_words(tmp_path, read, text):
 def test_forty_levels_are_read_and_one_more_is_not():
     depth = DEEPEST
     assert parsed_toml("a = " + "[" * (depth - 1) + "]" * (depth - 1))
-    with pytest.raises(tomllib.TOMLDecodeError, match="nested more than 40 deep"):
+    with pytest.raises(tomllib.TOMLDecodeError, match="nested more than 40"):
         parsed_toml("a = " + "[" * depth + "]" * depth)
 
 

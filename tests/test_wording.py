@@ -2,18 +2,7 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from gaitdisc.words import (
-    counted,
-    direction_words,
-    label,
-    listed,
-    number,
-    p_words,
-    plain,
-    sideless,
-    unit_text,
-    upwards,
-)
+from gaitdisc.words import counted, direction_words, label, listed, number, p_words, plain, sideless, unit_text, upwards
 
 
 def test_sides_of_known_and_unknown_channels():

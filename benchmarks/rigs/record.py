@@ -63,6 +63,8 @@ def build_oracle(simulation, oracle):
     for signal, late in oracle.get("late", {}).items():
         head, body = simulation.split("[equations]")
         simulation = head + "[equations]" + re.sub(rf"\b{signal}\b", f"delay({signal}, {late:.4g})", body)
+    for column, text in oracle.get("observations", {}).items():
+        simulation = re.sub(rf'(\[observations\.{column}\]\nexpression = )".*"', rf'\g<1>"{text}"', simulation)
     effects = (
         f'\n[[effects]]\nport = "{e["port"]}"\nname = "{e["name"]}"\nterm = "{e["term"]}"\n'
         for e in oracle.get("effects", [])
@@ -72,7 +74,9 @@ def build_oracle(simulation, oracle):
 
 def make_case(name, checkout, out):
     """Writes the five files of one rig."""
-    folder = next(f for f in (HERE / "open", HERE / "kept", HERE / "second") if (f / f"{name}.py").exists())
+    folder = next(
+        f for f in (HERE / "open", HERE / "kept", HERE / "second", HERE / "third") if (f / f"{name}.py").exists()
+    )
     recipe = runpy.run_path(str(folder / f"{name}.py"))
     learned, unseen = recipe["read_trials"](load_files(recipe, checkout))
     case = Path(out) / name

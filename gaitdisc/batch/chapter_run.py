@@ -43,7 +43,7 @@ def lack_of(part: Part, data: Path | None) -> SchemaError | None:
         return SchemaError(f"{needs} {words}", "not installed here", "Run: pip install 'gaitdisc[chapter3]'.")
     folder = _data_folder(data)
     if part.data and not (folder / part.data).is_dir():
-        do = "Name the folder that holds it with --data, or as GAITDISC_DATA."
+        do = "Name the folder that contains it with --data or GAITDISC_DATA."
         return SchemaError(f"{needs} the data of {part.data}", f"{folder} has no such folder", do)
     return None
 
@@ -78,16 +78,19 @@ def _stands(folder: Path, begun: dict[str, Any]) -> bool:
         return False
     if not (folder / NAME).is_file():
         raise SchemaError(
-            "a part of a chapter needs a folder of its own",
-            f"{folder} holds {', '.join(sorted(path.name for path in folder.iterdir())[:3])} and no {NAME}",
+            "each part of a chapter must have its own folder",
+            f"{folder} contains {', '.join(sorted(path.name for path in folder.iterdir())[:3])}, but no {NAME}",
             "Choose another folder.",
         )
     held = read_sealed(folder / NAME)
-    for key, words in (("quick", ("the whole study", "the quick one")), ("code", ("other code",) * 2)):
+    for key, words in (
+        ("quick", ("the full study", "the quick study")),
+        ("code", ("another version of the code",) * 2),
+    ):
         if held.get(key) != begun[key]:
             raise SchemaError(
-                "numbers of one folder come from one program with one setting",
-                f"{folder} was begun by {words[bool(held.get(key))]}",
+                "all results in a folder must come from one program with one setting",
+                f"{folder} was started by {words[bool(held.get(key))]}",
                 "Choose another folder, or delete this one.",
             )
     return held["seconds"] is not None
@@ -118,9 +121,9 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
     if process.returncode:
         lines = said.read_text(encoding="utf-8").strip().splitlines()
         raise TrainingError(
-            f"part {part.name} of chapter {part.chapter} is to be computed",
+            f"part {part.name} of chapter {part.chapter} cannot be computed",
             f"its study ended with {lines[-1] if lines else f'exit code {process.returncode}'}",
-            f"Everything that it said is in {said}.",
+            f"Its complete output is in {said}.",
         )
     said.unlink()
     return text

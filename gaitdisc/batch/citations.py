@@ -29,8 +29,8 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "the Nominal, Exo, Discrepancy and Augmented models": ("ebers2023", "ebers2023exoskeletons"),
     "discrepancies of dynamics and of state": ("ebers2023", "ebers2024discrepancy"),
     "reconstruction of states from a few sensors": ("ebers2023", "ebers2024sensors"),
-    "networks, fitted by AdamW": ("loshchilov2019",),
-    "networks, fitted with Bayesian regularisation": ("mackay1992", "levenberg1944", "marquardt1963"),
+    "networks, trained with AdamW": ("loshchilov2019",),
+    "networks, trained with Bayesian regularisation": ("mackay1992", "levenberg1944", "marquardt1963"),
     "ridge regression": ("hoerl1970",),
     "random Fourier features": ("rahimi2007",),
     "SHRED": ("williams2024",),
@@ -47,7 +47,7 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "hip centres after Davis": ("davis1991",),
     "hip centres after Harrington": ("harrington2007",),
     "inertia of the segments": ("dumas2007",),
-    "intervals from models that left data out": ("barber2021",),
+    "intervals from models fitted without part of the data": ("barber2021",),
     "multiple shooting": ("bock1984",),
     "damped least squares": ("levenberg1944", "marquardt1963"),
     "information criterion": ("schwarz1978",),
@@ -58,7 +58,7 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "SINDy in weak form": ("messenger2021",),
     "exact dynamic mode decomposition": ("tu2014",),
     "optimised dynamic mode decomposition": ("askham2018",),
-    "optimised dynamic mode decomposition in bags": ("sashidhar2022",),
+    "bagged optimised dynamic mode decomposition": ("sashidhar2022",),
     "Gaussian processes": ("rasmussen2006",),
     "a Kalman filter": ("kalman1960",),
     "an unscented Kalman filter": ("julier2004",),
@@ -68,29 +68,29 @@ OF_MODELS = {
     "linear": ("ridge regression",),
     "delay ridge": ("ridge regression",),
     "fourier ridge": ("ridge regression", "random Fourier features"),
-    "shallow decoder": ("shallow decoder", "networks, fitted by AdamW"),
-    "shred": ("SHRED", "networks, fitted by AdamW"),
-    "masked shred": ("SHRED", "networks, fitted by AdamW"),
-    "shred ensemble": ("SHRED", "an ensemble of networks", "networks, fitted by AdamW"),
-    "shred-text": ("SHRED", "networks, fitted by AdamW"),
+    "shallow decoder": ("shallow decoder", "networks, trained with AdamW"),
+    "shred": ("SHRED", "networks, trained with AdamW"),
+    "masked shred": ("SHRED", "networks, trained with AdamW"),
+    "shred ensemble": ("SHRED", "an ensemble of networks", "networks, trained with AdamW"),
+    "shred-text": ("SHRED", "networks, trained with AdamW"),
 }
 DISCREPANCIES = (
     "discrepancies of dynamics and of state",
     "SINDy",
     "optimised dynamic mode decomposition",
     "Gaussian processes",
-    "networks, fitted with Bayesian regularisation",
+    "networks, trained with Bayesian regularisation",
 )
-RESPONSES = ("the Nominal, Exo, Discrepancy and Augmented models", "networks, fitted by AdamW", "ridge regression")
+RESPONSES = ("the Nominal, Exo, Discrepancy and Augmented models", "networks, trained with AdamW", "ridge regression")
 SENSED = (
     "reconstruction of states from a few sensors",
     *dict.fromkeys(one for each in OF_MODELS.values() for one in each),
 )
 TESTED = ("Wilcoxon's signed-rank test", "Holm-Sidak corrections")
 SEARCHED = ("multiple shooting", "damped least squares", "information criterion")
-LEFT_OUT = "intervals from models that left data out"
+LEFT_OUT = "intervals from models fitted without part of the data"
 OF_CHAPTERS = {3: DISCREPANCIES, 4: (*RESPONSES, *TESTED), 5: SENSED}
-BAGS = ("optimised dynamic mode decomposition in bags",)
+BAGS = ("bagged optimised dynamic mode decomposition",)
 MORE = {  # of these parts, beside what their chapter cites
     "tables": TESTED,
     "van_der_pol": BAGS,
@@ -158,9 +158,9 @@ def _of_part(folder: Path) -> tuple[str, ...]:
     part = read_sealed(folder / CHAPTER).get("part")
     if part not in OF_PARTS:
         raise SchemaError(
-            f"a part of a chapter is one of {', '.join(OF_PARTS)}",
+            f"the part of a chapter must be one of {', '.join(OF_PARTS)}",
             f"{folder.name}/{CHAPTER} names {str(part)[:40]!r}",
-            "Another version of gaitdisc wrote it; cite with that one.",
+            "Another version of gaitdisc wrote it. Cite with that version.",
         )
     return OF_PARTS[part]
 
@@ -169,7 +169,7 @@ def _of_run(run: ResponseRun) -> Iterator[str]:
     kinds = {str(kind) for response in run.responses for kind in response.r2["kind"]}
     yield from RESPONSES[:1] if run.responses else ()
     if "network" in kinds:
-        yield "networks, fitted by AdamW"
+        yield "networks, trained with AdamW"
     if kinds & {"ridge", "linear"}:
         yield "ridge regression"
     if any(response.held_out.bands for response in run.responses):
@@ -230,7 +230,5 @@ def entries() -> dict[str, str]:
     found = {match[1]: match[0] for match in re.finditer(r"^@\w+\{(\w+),\n.*?^\}", text, re.MULTILINE | re.DOTALL)}
     absent = sorted({key for keys in MENTIONED.values() for key in keys} - set(found))
     if absent:
-        raise SchemaError(
-            "every method that is cited stands in methods.bib", f"it lacks {', '.join(absent)}", "Add it."
-        )
+        raise SchemaError("methods.bib must contain all methods cited", f"it lacks {', '.join(absent)}", "Add it.")
     return found

@@ -7,18 +7,30 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
 from gaitdisc.batch.demonstration import FORCES, planted, write_trial
+from gaitdisc.channel import Channel
+from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import Person, drawn
-from gaitdisc.cohort.walk import walked
+from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk, walked
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Trial
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 16.0
-CONTROLS_SEED, WEEK_SEED = 50_000, 60_000
+CONTROLS_SEED, WEEK_SEED = (
+    52_000,
+    60_000,
+)  # twenty whose spreads are those of a hundred; 50_000: a third less at the knee
 CONDITION = "walking"
+# between healthy people, of the mean [deg] (Kadaba 1990, about); the feet point outwards by some 7 deg
+PELVIS_SD = {"pelvis_tilt": 4.0, "pelvis_obliquity": 1.0, "pelvis_rotation": 1.5}
+TOES_OUT_DEG, TOES_SD = -7.0, 4.0
+SWAY_DEG, SWAY_STEPS = 0.4, 12  # from cycle to cycle, over 0.12 s
 
 
 @dataclass(frozen=True)
@@ -28,11 +40,9 @@ class Visit:
     name: str
     number: int  # of the person, who is drawn by it
     session: str = ""
-    # what is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read, `child` for
-    # somebody of eight years and that size
+    # what is planted; empty for a healthy walk, `bad file` for a recording that cannot be read, `child` for somebody of
+    # eight years and that size
     what: str = ""
-    # what is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read, `child` for
-    # somebody of eight years and that size
     side: str = "r"
 
 
@@ -62,10 +72,42 @@ def person_of(visit: Visit, seed: int) -> Person:
 
 def made_walk(visit: Visit, seed: int) -> Trial:
     """Walk of a visit on a treadmill, measured, with what is planted."""
-    person = person_of(visit, seed)
-    walk = walked(person, None, WALK_S, seed=seed + 7 * visit.number + len(visit.session))
+    walk = walk_of(person_of(visit, seed), visit, seed)
     what = "" if visit.what in NO_GAIT else visit.what
-    return planted(measured(walk, f"{visit.name}_{CONDITION}", CONDITION), what, visit.side)
+    return planted(with_pelvis(walk, measured(walk, f"{visit.name}_{CONDITION}", CONDITION)), what, visit.side)
+
+
+def walk_of(person: Person, visit: Visit, seed: int) -> TrueWalk:
+    """What happens while somebody walks."""
+    return walked(person, None, WALK_S, seed=seed + 7 * visit.number + len(visit.session))
+
+
+def with_pelvis(walk: TrueWalk, trial: Trial) -> Trial:
+    """Trial whose angles are also those of the pelvis and of the feet in the laboratory: the nine of a profile score.
+
+    The pelvis moves by the habit of the person's speed with an offset of the person's own; signs are OpenSim's.
+    """
+    person, kinematics = walk.person, trial.stream("kinematics")
+    own, noise = (np.random.default_rng([round(person.mass_kg * 1e6), seed]) for seed in (61, walk.seed + 62))
+    phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)]
+    habit = {name: habitual(name, person.dimensionless_speed).at(phase) for name in PELVIS_SD}
+    tilt, obliquity, rotation = (habit[name] + sd * own.normal() for name, sd in PELVIS_SD.items())
+    toes = TOES_OUT_DEG + TOES_SD * own.normal() + 1.5 * own.normal(size=2)
+    columns = {"pelvis_tilt": -tilt, "pelvis_list": -obliquity, "pelvis_rotation": rotation}
+    columns |= {
+        f"foot_progression_angle_{side}": np.full(len(phase), toe) for side, toe in zip("rl", toes, strict=True)
+    }
+    added = np.column_stack([*columns.values()])
+    sway = gaussian_filter1d(noise.normal(size=added.shape), SWAY_STEPS, axis=0)
+    added = added + SWAY_DEG * sway / sway.std(axis=0)
+    channels = tuple(Channel(name, "angle", "deg", name[-1] if name[-2] == "_" else "") for name in columns)
+    both = replace(
+        kinematics,
+        values=np.hstack([kinematics.values, added]),
+        channels=(*kinematics.channels, *channels),
+        suspect=None,
+    )
+    return replace(trial, streams={**trial.streams, "kinematics": both})
 
 
 def write_week(

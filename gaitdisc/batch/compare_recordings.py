@@ -45,7 +45,7 @@ def compare_files(
     if walks[0].files and set(walks[0].files.values()) == set(walks[1].files.values()):
         raise SchemaError(
             "a comparison needs two different recordings",
-            f"{first.name} and {second.name} hold the same bytes",
+            f"{first.name} and {second.name} are identical files",
             "Name a simulated and a measured walk, or two conditions.",
         )
     found = compare_walks(walks[0], walks[1], channels, smallest=smallest)
@@ -66,9 +66,9 @@ def compare_study(
         walks = _walks_of(study, participant)
         if isinstance(walks, str):
             raise SchemaError(
-                f"both walks of {participant} are to be compared",
+                f"both walks of {participant} must be usable for a comparison",
                 walks.rstrip("."),
-                "Mend it, or choose another participant.",
+                "Correct the walk, or choose another participant.",
             )
         return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
     pairs, left_out = [], []

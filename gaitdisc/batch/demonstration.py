@@ -47,9 +47,7 @@ def write_demonstration(
     laboratory: `angles` of a treadmill; `markers`, two belts and a static trial; or short trials `overground`
     """
     if laboratory not in LABORATORIES:
-        raise SchemaError(
-            f"a laboratory gives one of: {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these."
-        )
+        raise SchemaError(f"laboratories are {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these.")
     participants, markers = [], laboratory != "angles"
     for person in the_twelve()[:people]:
         walks = walks_of(person, duration_s, hidden, markers)
@@ -135,7 +133,7 @@ def planted(trial: Trial, what: str, side: str) -> Trial:
     if not what:
         return trial
     if what not in PLANTED:
-        raise SchemaError(f"what is planted is one of: {', '.join(PLANTED)}", f"found {what!r}", "Use one of these.")
+        raise SchemaError(f"the difference must be one of {', '.join(PLANTED)}", f"found {what!r}", "Use one of these.")
     return PLANTED[what](trial, side)
 
 

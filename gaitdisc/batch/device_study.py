@@ -78,17 +78,22 @@ class DeviceWalks:
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Of both files, and of the calibration."""
-        own = (*self.nominal.findings, *self.device.findings, self._calibration(), *self._masses())
+        what, per_kg = "not estimated: no marker shows the foot", self.device.per_kg
+        if per_kg.size:  # which mass at the foot would be as large as what the moment model leaves
+            least = self.model.left_nm / float(np.nanstd(per_kg))
+            what = f"at the {WORDS[self.device.joint]}, {least:.1f} kg at the foot would have the size of the residual"
+        mass = Finding("note", "added mass", self.device.subject, what, "")
+        own = (*self.nominal.findings, *self.device.findings, self._calibration(), mass)
         return (*own, self._together(self.changed)) if self.changed else own
 
     def _together(self, found: Changed) -> Finding:
         what = (
-            f"gains are of both walks, fitted together with {spoken(found.change.name)} at {found.change.place}, which "
-            f"closes {100 * found.closed:.0f} % of the squared error on device strides left out of that fit"
+            f"the gains are fitted to both walks together with {spoken(found.change.name)} at {found.change.place}, "
+            f"which removes {100 * found.closed:.0f} % of the squared error on held-out device strides"
         )
         if found.rival:
             rival = f"{spoken(found.rival.name)} at {found.rival.place}"
-            what += f"; the next best, {rival}, leaves {found.rival_leaves:.2f} times as much of what was fitted"
+            what += f"; with the next best, {rival}, the error of the fit is {found.rival_leaves:.2f} times as large"
         return Finding("note", "moment model", self.nominal.subject, what, "")
 
     def _calibration(self) -> Finding:
@@ -96,30 +101,17 @@ class DeviceWalks:
         driven = driven_of(self.nominal)
         unseen = np.nanstd(model.others(driven)[np.isfinite(self.nominal.moment)])
         what = (
-            f"the {word}'s moment model leaves {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on Nominal strides "
-            f"left out of its fit (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms later; "
-            f"{unseen:.1f} N m come from what no electrode sees"
+            f"the residual of the {word}'s moment model is {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on "
+            f"held-out Nominal strides (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms "
+            f"later; {unseen:.1f} N m come from muscles without an electrode"
         )
         return Finding("note", "moment model", self.nominal.subject, what, "")
-
-    def _masses(self) -> list[Finding]:
-        """Say which mass at the foot would be as large as what the moment model leaves."""
-        per_kg = self.device.per_kg
-        if not per_kg.size:
-            return [Finding("note", "added mass", self.device.subject, "not weighed: no marker shows the foot", "")]
-        least = self.model.left_nm / float(np.nanstd(per_kg))
-        what = f"at the {WORDS[self.device.joint]}, {least:.1f} kg more at the foot would be as large as what is left"
-        return [Finding("note", "added mass", self.device.subject, what, "")]
 
     def with_model_error(self, found: Discovery) -> Discovery:
         """Return what was found with the number of both walks, whose interval holds the error of the moment model."""
         if self.agrees:
-            said = (
-                "The Nominal moment model follows the device walk as it follows Nominal strides left out of its fit: "
-            )
-            return replace(
-                found, verdict="no_gap", effects=(), sentence=f"{said}nothing is missing that it could show."
-            )
+            said = "The Nominal moment model predicts the device walk as well as held-out Nominal strides: "
+            return replace(found, verdict="no_gap", effects=(), sentence=f"{said}it shows no missing effect.")
         if self.changed is None:
             return replace(found, sentence=found.sentence + self._doubt(found))
         change, effects, sentence = self.changed.change, list(found.effects), found.sentence
@@ -131,7 +123,7 @@ class DeviceWalks:
             effects[same.index(True)] = replace(first, estimates={**first.estimates, change.number: new})
             sentence = sentence.replace(estimate_text(old), estimate_text(new))
             if abs(old.value - new.value) > APART * abs(new.value):
-                sentence += f" The written model has {old.value:.3g} {old.unit}, fitted beside what moved in it."
+                sentence += f" The written model has {old.value:.3g} {old.unit}, fitted with the other parameters."
         return replace(found, effects=tuple(effects), sentence=sentence + self._doubt(found))
 
     def _doubt(self, found: Discovery) -> str:
@@ -141,13 +133,13 @@ class DeviceWalks:
         seen = {name.split("_")[1] for name in self.nominal.muscles}
         unseen = [said for said, short in DEEP.items() if not seen & set(short)]
         which = " and ".join(unseen)
-        return f" Its size is not to be trusted: no electrode is on the hip's {which}." if unseen else ""
+        return f" Its size is unreliable: the hip's {which} has no electrode." if unseen else ""
 
 
 def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> DeviceWalks:
     """Read one joint of both walks of a participant; a walk that lacks EMG or moments is refused with its name."""
     if joint not in WORDS:
-        raise SchemaError(f"a joint is one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
+        raise SchemaError(f"the joint must be one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
     nominal, device = joint_records(study, participant, (joint,))[joint]
     model = nominal_moment(nominal)
     check_calibrated(model, nominal)
@@ -161,7 +153,7 @@ def joint_records(
     person = study.participant(participant)
     lacking = not_compared(study, person)
     if lacking:
-        raise SchemaError(f"both walks of {participant} are needed", lacking, "Name one trial of each condition.")
+        raise SchemaError(f"both walks of {participant} are required", lacking, "Name one trial of each condition.")
     words = words_of(study, person)
     records = []
     with C3DReader() as reader:
@@ -204,8 +196,8 @@ def with_foot_mass(found: Discovery, study: Study, participant: str) -> Discover
     if mass is None:
         return found
     said = (
-        f"added_foot_mass is {estimate_text(mass)}, from what the knee does to move it, and the hip bears it out; "
-        "the ankle hardly shows it."
+        f"added_foot_mass is {estimate_text(mass)}, estimated at the knee and supported by the hip; the ankle is "
+        "insensitive to it."
     )
     effect = FoundEffect("parameter", "added_foot_mass", "wrong_parameter", "", {"value": mass})
     return replace(found, verdict="wrong_parameter", effects=(effect,), sentence=said)
@@ -216,25 +208,26 @@ def check_kinetics(trial: Trial) -> None:
     wrong = [one for one in trial.findings if one.kind == "force balance" and one.severity == "warning"]
     if wrong:
         raise SchemaError(
-            "moments need forces that carry the body, to 12 % of its weight",
+            "moments need ground forces that balance the body weight within 12 %",
             f"{trial.name}: {wrong[0].what}",
-            "Correct mass_kg in the study file, or the plates' scale; what is left would be named after the error.",
+            "Correct mass_kg in the study file, or the scale of the plates. Otherwise an effect would be named after "
+            "this error.",
         )
     per_kg = [one for one in trial.findings if one.kind == "per body mass"]
     if per_kg:
         raise SchemaError(
-            "moments stated in N m are in N m",
+            "the unit of moments must be the one that is stated, N m",
             f"{trial.name}: {per_kg[0].channel} {per_kg[0].what}",
-            "Write their unit as N m/kg in [channels], or multiply by the body's mass.",
+            "Write their unit as N m/kg in [channels], or multiply them by the body mass.",
         )
     for key, word, mend in (
         ("emg", "EMG", "Add the file with the EMG, or name its channels in [channels]."),
-        ("moments", "joint moments", "Add force platforms, a static trial and mass_kg, or a .sto of moments."),
+        ("moments", "joint moments", "Add force plates, a static trial and mass_kg, or a .sto of moments."),
     ):
         if key not in trial.streams:
             why = next((f": {one.what}" for one in trial.findings if one.kind == "no moments"), "")
             raise NoMomentsError(
-                f"what a device does at a joint is named from {word} in both walks",
+                f"naming the effect of a device at a joint needs {word} in both walks",
                 f"{trial.name} has no {word}{why if key == 'moments' else ''}",
                 mend,
             )
@@ -245,10 +238,11 @@ def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
     if model.r2 >= LEAST_R2:
         return
     raise SchemaError(
-        f"a device is named beside a moment model that explains {100 * LEAST_R2:.0f} % of the variance of Nominal "
-        "strides left out of its fit",
-        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, {nominal.stride.max() + 1} strides",
-        "Record more strides, add the muscles that span the joint, or check that EMG and forces share a clock.",
+        f"the moment model must explain at least {100 * LEAST_R2:.0f} % of the variance of held-out Nominal strides "
+        "before a device is named",
+        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, with {nominal.stride.max() + 1} "
+        "strides",
+        "Record more strides, add muscles that span the joint, or check that EMG and forces share a clock.",
     )
 
 
@@ -271,7 +265,9 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     learned = known & ~held
     driven = driven_of(device)
     nominal = model.net(driven)
-    library = _library(device, model.by_muscle(driven))
+    angle, rate, phase = (np.nan_to_num(each) for each in (device.angle, device.rate, device.phase))
+    seen = (angle, rate, angle**2, rate**2, angle * rate, *model.by_muscle(driven).T, 100 * phase)
+    library = np.column_stack(seen)  # the last, percent stride, brings its harmonics
     names = (*map(str, range(library.shape[1] - 1)), "phi")
     samples = Samples(library, (device.moment - nominal)[:, None], names, ("left",), device.time, library[:, -1])
     augmented = nominal + fit_ridge(samples.rows(learned), HARMONICS)(library)[:, 0]
@@ -286,10 +282,3 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
         if name == "Nominal":
             sizes["Nominal + named effect"] = after if found.effects else sizes[name]
     return sizes
-
-
-def _library(device: JointRecord, by_muscle: Values) -> Values:
-    """Inputs of the plain regression; the last is percent stride, which brings its harmonics."""
-    angle, rate = np.nan_to_num(device.angle), np.nan_to_num(device.rate)
-    phase = 100 * np.nan_to_num(device.phase)
-    return np.column_stack([angle, rate, angle**2, rate**2, angle * rate, *by_muscle.T, phase])

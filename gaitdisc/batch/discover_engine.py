@@ -10,22 +10,36 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.batch.discover_files import discovered
+from gaitdisc.batch.discover_files import discovered, sealed
 from gaitdisc.batch.fit_by_engine import EngineFit
-from gaitdisc.discovery.candidate import SIGNAL_ERRORS
+from gaitdisc.discovery.answer import left_out
 from gaitdisc.discovery.catalogue import ALL, Request
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.grids import rhythm_of
+from gaitdisc.discovery.noise import sensor_noise
+from gaitdisc.discovery.paired_test import paired_test
 from gaitdisc.discovery.spiked_samples import without_spikes
+from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import expanded
-from gaitdisc.engines.mapping import other_values, read_mapping, with_input_changed
-from gaitdisc.engines.own_runs import OwnRuns, own_runs
+from gaitdisc.engines.mapping import other_values, read_mapping
+from gaitdisc.engines.own_runs import (
+    FEWER,
+    MERE_NOISE,
+    MOST_RUNS,
+    Driven,
+    OwnRuns,
+    left_by,
+    root_mean_square,
+    stretches_of,
+    trial_called,
+)
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import ENGINE, Discovery
+from gaitdisc.results.discovery import ENGINE, Discovery, GapSize, Runs
 from gaitdisc.results.effect_words import at_place, spoken
 from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.measured import Measured
@@ -34,8 +48,11 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.writing import write_simulation
 from gaitdisc.whole_file import write_whole
 
+_NONE, _NO_SIZE = np.empty((0, 0)), GapSize(0.0, 0.0, 0.0)
+_NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
+_NOTHING = Discovery("no_gap", "", (), (), (), _NO_SIZE, _NO_SIZE, (), (), _NO_RUNS)
 NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
-CONFIRMED = 0.97  # of the error that the engine's own runs leave of the record, above which nothing was shown
+DRAWN = 4  # runs of a picture
 SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
 MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
 
@@ -69,57 +86,163 @@ def discover_engine(
     refuse_unmeasured(mapping, engine, data)
     states = smoothed_states(mapping, engine, data)
     refuse_other_conventions(mapping, engine, data, states)
-    progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
-    linear, driven = expanded(mapping, engine, data, states)
-    read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now
+    met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
     fit = EngineFit(mapping, engine, data, states)
-    found, answer = discovered(linear, driven, request, read, progress, refitted=fit.refitted)
-    moved = {name: value for name, value in _moved(mapping, answer).items() if engine.as_force(name) is None}
-    if moved and (len(found.effects) > 1 or not fit.done):  # one number alone rests on the engine's own runs
-        progress(f"expanding again where {' and '.join(moved)} came to lie")
-        linear, driven = expanded(mapping, engine, data, states, moved)
-        found, answer = discovered(linear, driven, request, read, progress, refitted=fit.refitted)
-    augmented = in_mapping(mapping, answer, found)
-    progress("writing it into the model")
-    written = written_model(engine, augmented)
-    progress(f"running both with {engine.called}")
+    progress(f"running {engine.path.name} by {engine.called} along every trial")
     as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
-    runs = own_runs((as_read.engine, written.engine), (mapping, augmented), data, found.runs, states)
-    if found.effects and not written.absent and runs.share > CONFIRMED:
-        found, augmented, written = unconfirmed(found, runs), mapping, as_read
+    answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
+    if request.effects or not answer.runs.leave_mere_noise:
+        answer = searched(fit, answer, request, read, progress)
+    else:
+        units = tuple(answer.runs.units.values())
+        nothing = replace(_NOTHING, channels=data.channels, units=units, findings=data.findings)
+        found = sealed(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
+        answer = replace(answer, found=found)
+    found = answer.found
     findings = (
         *found.findings,
         *other_values(mapping, engine),
-        *_contacts(engine),
-        *_warned(engine, written.engine),
-        *_said(written, runs),
+        *met,
+        *_warned(engine, answer.written.engine),
+        *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
+        Finding("note", "own runs", "model", answer.runs.said, ""),
     )
-    if found.provenance is not None:
-        found = replace(found, provenance=replace(found.provenance, section=ENGINE))
-    return EngineAnswer(replace(found, findings=findings), augmented, written, runs, engine)
+    made = found.provenance and replace(found.provenance, section=ENGINE)
+    return replace(answer, found=replace(found, findings=findings, provenance=made))
+
+
+def searched(
+    fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str], progress: Callable[[str], None]
+) -> EngineAnswer:
+    """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
+    mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
+    progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
+    linear, driven = expanded(mapping, engine, data, states)
+    found, answer = discovered(linear, driven, request, read, progress, refitted=fit.noted)
+    now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
+    moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
+    if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
+        progress(f"expanding again where {' and '.join(moved)} came to lie")
+        linear, driven = expanded(mapping, engine, data, states, moved)
+        found, answer = discovered(linear, driven, request, read, progress, refitted=fit.noted)
+    progress(f"running it by {engine.called}")
+    runs = base.runs.among(np.isin(base.runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
+    augmented, written, _ = fit.written(found, fit.parts)
+    hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
+    pushed = [f"{one.name} at {one.place}" for one in found.effects if one.name == "process_noise"]
+    unchecked = " and ".join((*written.absent, *pushed))
+    if unchecked:
+        why = f"{engine.called} itself has not run {unchecked}: that rests on the expansion alone."
+        found = replace(found, sentence=f"{found.sentence} {why}")
+        return EngineAnswer(found, augmented, written, runs, engine)
+    if found.effects and found.verdict != "wrong_initial_condition":
+        if not engine.fibres:  # their runs take too long
+            found = fit.fitted(found, linear, runs.among(~held_out(found, runs, data)))
+        runs = with_floor(replace(runs, after=fit.left(found, fit.parts, runs)), hidden)
+        both = zip(found.effects, fit.parts, strict=True)
+        sure = tuple(part for one, part in both if request.effects or not one.small)
+        kept = sure if borne_out(runs, runs.before) else ()
+        for part in kept if len(kept) > 1 and not request.effects else ():
+            others = tuple(one for one in fit.parts if one is not part)
+            if not borne_out(runs, fit.left(found, others, runs)):
+                kept = tuple(one for one in kept if one is not part)
+        if not kept:
+            runs = replace(runs, after=runs.before)
+            if not at_noise(runs):
+                found = unconfirmed(with_own_runs(found, runs, fit, linear), runs)
+                return EngineAnswer(found, mapping, base.written, runs, engine)
+            found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
+        elif len(kept) < len(fit.parts):
+            both = list(zip(found.effects, fit.parts, strict=True))
+            idle = tuple(replace(one, small=True) for one, part in both if part not in kept)
+            effects = tuple(one for one, part in both if part in kept)
+            fit.parts, found = kept, replace(found, effects=effects, rivals=(*idle, *found.rivals))
+            runs = replace(runs, after=fit.left(found, kept, runs))
+        if kept:
+            augmented, written, _ = fit.written(found, fit.parts)
+    if not found.effects and at_noise(runs):  # the expansion errs, through a contact say
+        found = replace(found, verdict="no_gap", rivals=(), explanations=())
+    runs = with_floor(runs, hidden)
+    return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
+
+
+def at_noise(runs: OwnRuns) -> bool:
+    """Whether the engine's runs of the model as read leave no more than the noise in any channel."""
+    return bool((root_mean_square(runs.before) < np.sqrt(MERE_NOISE) * runs.floor).all())
+
+
+def with_floor(runs: OwnRuns, hidden: list[float]) -> OwnRuns:
+    """Return runs with the noise that a search saw (channel,), where these do not leave less."""
+    return replace(runs, floor=np.fmax(runs.floor, np.fmin(hidden, root_mean_square(runs.after))))
+
+
+def borne_out(runs: OwnRuns, without: NDArray[np.float64]) -> bool:
+    """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
+    test = paired_test(without, runs.after, runs.floor)
+    return test.bears_out and test.fall > CRITERIA.margin
+
+
+def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
+    """Run a model as read along every trial."""
+    mapping, data = fit.mapping, fit.measured
+    at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, FEWER if engine.fibres else MOST_RUNS)
+    left = left_by(Driven(engine, mapping, data.drive.inputs), data, at, fit.states)
+    sensors = {name: mapping.sensor(name) for name in data.channels}
+    given = np.array([one.sd or np.nan for one in sensors.values()], float)
+    floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
+    units = {name: one.unit for name, one in sensors.items()}
+    return OwnRuns(left, left, at, engine.called, units, floor, fit.states.shape[2])
+
+
+def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:
+    """Which of the engine's runs (run,) the search held out."""
+    drawn = zip(found.runs.trial, found.runs.time[:, 0], strict=True) if found.runs.time.size else ()
+    begun = {trial_called(data, found.runs.names[k]): time for k, time in reversed([*drawn])}
+    times = zip(runs.at.trial, data.drive.time0[runs.at.trial] + (runs.at.first + 1) / data.rate, strict=True)
+    return np.array([time > begun.get(trial, np.inf) for trial, time in times])
+
+
+def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulation) -> Discovery:
+    """Return the answer with errors and shares of the engine's own runs, held out as the search did."""
+    at, data, sizes = runs.at, fit.measured, []
+    spread, times = np.nanstd(data.observed, axis=(0, 1)), data.drive.time0[at.trial] + at.first / data.rate
+    held = held_out(found, runs, data)
+    for some, size in ((~held, found.train), (held, found.held_out)):
+        which = some if some.any() else ~some
+        rows = np.array([*(root_mean_square(one[which]) for one in (runs.before, runs.after)), runs.floor])
+        whole = np.sqrt(np.mean((rows / spread) ** 2, axis=1)).tolist()
+        channels = dict(zip(data.channels, map(tuple, rows.T.tolist()), strict=True))
+        sizes.append(replace(size, before=whole[0], after=whole[1], noise_floor=whole[2], channels=channels))
+    effects = tuple(replace(one, held_out=1 - sizes[1].unexplained) for one in found.effects)
+    named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
+    shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
+    seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
+    time, numbers = times[shown, None] + np.arange(at.length) / data.rate, (str(k + 1) for k in range(len(data.trials)))
+    again = (at.trial[shown][1:] == at.trial[shown][:-1])[:, None] & (time[1:] <= time[:-1, -1:])
+    seen[1:][again] = np.nan  # where two runs overlap, the first is drawn
+    simulated, augmented = seen - runs.before[shown], seen - runs.after[shown]
+    found = replace(
+        found,
+        train=sizes[0],
+        held_out=sizes[1],
+        effects=effects,
+        explanations=(*named, *found.explanations[len(named) :]),
+        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, tuple(numbers)),
+    )
+    said = sentence_of(found, base, fit.parts if effects else ())
+    return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))
 
 
 def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
     named = " and ".join(f"the {spoken(one.name)} {at_place(one.kind, one.place)}" for one in found.effects)
     sentence = (
-        f"Nothing is named: {runs.engine}'s own runs over what was held out miss the record as much with as without "
-        f"{named}, which runs of the expanded model spoke for; its integrator's step or the expansion makes such a "
-        f"difference. Let {runs.engine} take shorter steps, or record at a higher rate."
+        f"Not proven: {named}. {runs.engine}'s own runs miss the record as much with as without, by more than the "
+        "sensors' noise; runs of the expanded model spoke for it. Trials of other movement would decide."
     )
-    before = {name: (size, size, floor) for name, (size, _, floor) in found.held_out.channels.items()}
-    held_out = replace(found.held_out, after=found.held_out.before, channels=before, p=float("nan"))
+    rivals = (*found.effects, *found.rivals)
     return replace(
-        found,
-        verdict="no_gap",
-        sentence=sentence,
-        where=(),
-        effects=(),
-        corrections=(),
-        rivals=(*found.effects, *found.rivals),
-        train=replace(found.train, after=found.train.before),
-        held_out=held_out,
-        runs=replace(found.runs, augmented=found.runs.simulated),
+        found, verdict="unexplained", sentence=sentence, effects=(), corrections=(), explanations=(), rivals=rivals
     )
 
 
@@ -184,37 +307,22 @@ def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> NDAr
     return found
 
 
-def in_mapping(mapping: Simulation, answer: Simulation, found: Discovery) -> Simulation:
-    """What was found in the expanded simulation, in the model's mapping."""
-    values = answer.values()
-    changed = mapping.with_values({name: values[name] for name in mapping.values()})
-    own = {state.name for state in answer.states[len(mapping.states) :]}
-    for term in answer.effects:
-        if not own & set(names(parsed(term.term))):  # a state of an effect's own is not the model's
-            changed = changed.with_effect(term)
-    for name, text in answer.observations:
-        changed = changed.with_observation(name, text)
-    for effect in found.effects:
-        if effect.kind == "input" and SIGNAL_ERRORS[effect.name][2]:
-            slot, _, form = SIGNAL_ERRORS[effect.name]
-            number = repr(effect.estimates[slot].value) if slot in effect.estimates else "1"
-            changed = with_input_changed(changed, effect.place, form.format(s=effect.place, **{slot: number}))
-    starts = {one.name: one.initial for one in answer.states if one.initial is not None and one.name not in own}
-    return changed.with_starts(starts)
-
-
-def _moved(mapping: Simulation, answer: Simulation) -> dict[str, float]:
-    """Parameters that came to lie where their slopes no longer hold."""
-    before, after = mapping.values(), answer.values()
-    return {name: after[name] for name in before if abs(after[name] - before[name]) > MOVED * abs(before[name])}
-
-
-def _contacts(engine: Engine) -> tuple[Finding, ...]:
+def _known(engine: Engine, states: NDArray[np.float64], data: Measured) -> tuple[Finding, ...]:
+    """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
+    found, inside = [], np.arange(states.shape[1]) < data.samples[:, None]
+    for number, one in enumerate(engine.coordinates):
+        q = states[inside][:, number]
+        share = 100 * np.mean((q <= one.low) | (q >= one.high))
+        if share:
+            what = (
+                f"{one.called} is at its limit ({one.low:.3g} to {one.high:.3g} {one.unit}) in {share:.2g} % of samples"
+            )
+            found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
     touched = getattr(engine, "contacts", 0)
-    what = (
-        f"bodies touch in the record ({touched} contacts at most): forces there are stiff and were expanded as they are"
-    )
-    return (Finding("warning", "contact", "model", what, "what rests on runs through a contact"),) if touched else ()
+    if touched:
+        what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"
+        found.append(Finding("warning", "contact", "model", what, "what rests on runs through a contact"))
+    return tuple(found)
 
 
 def _warned(*engines: Engine) -> tuple[Finding, ...]:
@@ -224,9 +332,3 @@ def _warned(*engines: Engine) -> tuple[Finding, ...]:
         Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "what rests on such a run")
         for what in said
     )
-
-
-def _said(written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:
-    """What the engine itself says of the answer."""
-    found = [Finding("note", "written back", "model", what, "") for what in written.notes]
-    return (*found, Finding("note", "own runs", "model", runs.said, ""))

@@ -42,10 +42,7 @@ def discover_files(
 
 
 def discover_model(
-    model: PythonSimulation,
-    measured: Path,
-    request: Request = ALL,
-    progress: Callable[[str], None] = lambda _: None,
+    model: PythonSimulation, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Discovery, PythonSimulation]:
     """Find what a simulation that is a Python object lacks against a table of measured trials."""
     progress(f"reading {measured.name}")
@@ -86,7 +83,7 @@ def discover_study(
         progress("comparing the motion alone")
         model, data = nominal_and_trials(read, participant, joint)
         found, augmented = discovered(model, data, request, walks, progress)
-        said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
+        said = f"{lacking.needed.capitalize()}, but {lacking.found}; no effect can be named. From the motion alone: "
         return replace(found, sentence=said + found.sentence), augmented
     model = tracked_joint(both.device, both.both_walks_model)
     data = tracked_trials(both.device, both.both_walks_model, model)
@@ -94,7 +91,7 @@ def discover_study(
     found, augmented = both.with_model_error(found), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
-        progress("weighing the foot at knee and hip")
+        progress("estimating the mass of the foot at knee and hip")
         found = with_foot_mass(found, read, participant)
     if found.provenance is not None:
         found = replace(found, provenance=replace(found.provenance, section=DEVICE))
@@ -124,18 +121,25 @@ def discovered(
             found, augmented = discover(model, data, request, progress, weighed, refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
-            "a simulation must be predictable from each sample to the next",
-            f"samples are {1 / data.rate:.4g} s apart, over which its slopes overflow",
-            "Write times in seconds, not in milliseconds; or record at a higher rate.",
+            "each sample of a simulation must be predictable from the previous one",
+            f"samples are {1 / data.rate:.4g} s apart, and its derivatives overflow within one step",
+            "Write times in seconds, not in milliseconds, or record at a higher rate.",
         ) from error
-    settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}
+    listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
+    return sealed(replace(found, findings=(*listed, *found.findings)), augmented, data, files), augmented
+
+
+def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
+    """Return an answer with what it rests on, and without a name of a person.
+
+    model: with what was found
+    """
+    settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, SIMULATION)
-    listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
-    public = PublicWords(_own_words(augmented), {path.name: called for path, called in files.items()})
-    findings = tuple(map(public.finding, (*listed, *found.findings)))
-    return replace(found, findings=findings, provenance=made), augmented
+    public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
+    return replace(found, findings=tuple(map(public.finding, found.findings)), provenance=made)
 
 
 def _trial_name(name: str, number: int) -> str:

@@ -2,164 +2,128 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.batch.joint_and_trials import lagged
+from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
-from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.noise import noise_of
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.estimates import named_estimates
+from gaitdisc.discovery.paired_test import sum_error
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.segments import cut_segments
-from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.engines.engine import Engine, Motion
-from gaitdisc.engines.own_runs import recorded_motion, trial_called
+from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.mapping import REPLACED, with_input_changed
+from gaitdisc.engines.own_runs import Driven, OwnRuns, Start, left_by
 from gaitdisc.engines.written import WrittenModel, written_model
-from gaitdisc.simulation.compiled_simulation import Compiled
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.results.discovery import Discovery
+from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-TURNS = (1, 4)
-NUDGE = 1e-3  # of states and numbers: an adaptive integrator does not resolve less
+TURNS = 3
+STEP = 0.01  # of a number, for its slope: over less, runs that meet limits or friction do not change smoothly
 ENOUGH = 0.1  # of the misfit, a third of a standard error
-STARTING = 8  # turns
-FOLLOWED = 4.0  # times the noise's variance, which a run leaves at most that follows the record
-MOST = 0.8  # of the runs, which are to follow it
-SHORTEST = 16  # samples of a run
-EXACT = ("missing_physics", "wrong_parameter", "sensor_error")  # verdicts on what a model's own file or a column can be
 
 
 @dataclass
 class EngineFit:
-    """A model of an engine and its record, which fit what a search found."""
+    """A model of an engine and its record, and what a search of its expansion found."""
 
     mapping: Simulation
     engine: Engine
     measured: Measured  # driven by the controls
-    states: NDArray[np.float64]  # (trial, sample, state), smoothed: where fibres and activations are taken from
-    done: bool = False  # whether the last answer's numbers are of the engine's own runs
+    states: NDArray[np.float64]  # (trial, sample, state), smoothed: where starts and fibres are taken from
+    parts: tuple[Part, ...] = ()  # of what was found
 
-    def refitted(self, found: ScoredModel) -> CandidateModel:
-        """Return what was found with numbers, and their covariance, of the engine's own runs.
+    def noted(self, found: ScoredModel) -> CandidateModel:
+        """Return what was found as it is, once its parts are kept."""
+        self.parts = found.model.parts
+        return found.model
 
-        As it was where nothing was found, where some of it has no form in the model's file, and where muscles have
-        fibres: a run of these takes too long.
+    def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
+        """What was found, in the model's mapping; with the states that effects bring along behind the model's own."""
+        changed = self.mapping.with_values({one.parameter: one.found.value for one in found.corrections})
+        for part in parts:
+            one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
+            form = SIGNAL_ERRORS[one.name][2] if one.verdict == "input_error" else ""
+            if form:
+                changed = with_input_changed(changed, one.place, form.format(s=one.place, **numbers))
+            elif one.verdict != "input_error":
+                changed = one.written(changed, numbers)
+        starts = {one.place: one.estimates["initial"].value for one in found.effects if one.kind == "state"}
+        return changed.with_starts(starts)
+
+    def written(self, found: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
+        """Return the mapping with what was found, the model with it, and that as the engine runs it."""
+        whole, data = self.in_mapping(found, parts), self.measured
+        written, own = written_model(self.engine, whole), {one.name for one in whole.states[len(self.mapping.states) :]}
+        kept = tuple(one for one in whole.effects if not own & set(names(parsed(one.term))))
+        augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
+        controls, lags, called = data.drive.inputs.copy(), {}, [one.name for one in self.engine.controls]
+        plain = replace(augmented, model="", effects=(), definitions=())
+        for name, expression in augmented.definitions:
+            column = called.index(name.removeprefix(REPLACED))
+            for trial, samples in enumerate(data.samples):
+                u, x = data.drive.inputs[trial, :samples], np.zeros((samples, len(plain.states)))
+                points = Points(data.time(trial)[:samples], x, u, rate=data.rate)
+                controls[trial, :samples, column] = evaluate(plain, expression, points)
+        for part in parts:
+            if part.candidate.name == "input_lag":
+                column = called.index(part.candidate.place)
+                lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
+                controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
+        return augmented, written, Driven(written.engine, augmented, controls, lags)
+
+    def left(
+        self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Start] | None = None
+    ) -> NDArray[np.float64]:
+        """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
+        return left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
+
+    def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
+        """Return what was found with numbers of the engine's own runs, whose starts follow them (Gauss-Newton).
+
+        base: says what the numbers are
+        runs: of what was learned from
         """
-        model, self.done = found.model, False
-        exact = all(part.candidate.verdict in EXACT and not part.candidate.states for part in model.parts)
-        if not model.parts or self.engine.fibres or not exact:
-            return model
-        runs = _Runs(self, model, found.shooting.measured)
-        if runs.written(model.fit.values).absent:
-            return model
-        shooting = replace(found.shooting, prior=model.fit.prior, nudge=NUDGE)
-        machine = cast("Compiled", runs)
-        fit = shooting.at(machine, (), model.fit.values, model.fit.starts)
-        if not _followed(fit).all():
-            fit = shooting.fitted(machine, (), model.fit.values, model.fit.starts, STARTING, 1.0)
-        while _followed(fit).mean() < MOST and shooting.segments.span >= 2 * SHORTEST:  # the motion is chaotic
-            shooting, starts = _halved(shooting, found)
-            fit = shooting.fitted(machine, (), model.fit.values, starts, STARTING, 1.0)
-        kept = np.flatnonzero(_followed(fit))
-        if not kept.size:
-            return model
-        shooting, starts = replace(shooting, segments=shooting.segments.among(kept)), fit.starts[kept]
-        for turns in TURNS:  # with the noise that the search saw, then with that of these runs
-            fit = shooting.fitted(machine, model.fit.free, fit.values, starts, turns, ENOUGH)
-            if not np.isfinite(fit.misfit):
-                return model
-            used, starts = fit.starts.shape[1] / fit.residual.shape[2], fit.starts
-            noise = noise_of(fit.residual, used, autocorrelation=shooting.filter_autocorrelation)
-            shooting = shooting.with_noise(noise)
-        self.done = True
-        return replace(model, parts=runs.parts(fit.values), fit=fit)
+        slots = [(number, slot) for number, part in enumerate(self.parts) for slot in part.candidate.slots]
+        values = np.array([self.parts[number].values[slot] for number, slot in slots])
 
+        def parts_at(values: NDArray[np.float64]) -> tuple[Part, ...]:
+            each = dict(zip(slots, values.tolist(), strict=True))
+            of_part = ({slot: each[number, slot] for slot in one.values} for number, one in enumerate(self.parts))
+            return tuple(replace(one, values=own) for one, own in zip(self.parts, of_part, strict=True))
 
-def _followed(fit: Fitted) -> NDArray[np.bool_]:
-    """Which runs (segment,) follow the record."""
-    return fit.misfits <= FOLLOWED * fit.white[0].size
+        def white(values: NDArray[np.float64], near: dict[int, Start]) -> NDArray[np.float64]:
+            left = self.left(found, parts_at(values), runs, near) / runs.floor
+            return np.nan_to_num(left, posinf=1e6, neginf=-1e6).ravel()
 
-
-def _halved(shooting: Shooting, found: ScoredModel) -> tuple[Shooting, NDArray[np.float64]]:
-    """Runs half as long, and where they begin (segment, state): on the runs of the search."""
-    segments, samples = shooting.segments, shooting.measured.samples
-    trials = tuple(np.unique(segments.trial).tolist())
-    shorter = cut_segments(samples, trials, segments.span // 2, segments.margin, segments.every)
-    states = found.model.fit.states
-    known = np.full((len(samples), int(samples.max()), states.shape[2]), np.nan)
-    starts = found.shooting.segments.put(known, states)[shorter.trial, shorter.begin]
-    there = np.flatnonzero(np.isfinite(starts).all(axis=1))
-    return replace(shooting, segments=shorter.among(there)), starts[there]
-
-
-class _Runs:
-    """Runs of what was found by the engine, in the place of those of its expansion."""
-
-    def __init__(self, given: EngineFit, model: CandidateModel, searched: Measured) -> None:
-        self.given, self.model, self.searched = given, model, searched
-        self.parameters, self.observe = model.machine.parameters, model.machine.observe
-        self._engines: dict[bytes, WrittenModel] = {}
-
-    def parts(self, values: NDArray[np.float64]) -> tuple[Part, ...]:
-        """Explanations with numbers of a fit (parameter,)."""
-        return tuple(
-            replace(part, values={slot: float(values[self.parameters.index(name)]) for slot, name in names.items()})
-            for part, names in zip(self.model.parts, self.model.names, strict=True)
-        )
-
-    def written(self, values: NDArray[np.float64]) -> WrittenModel:
-        """The model's own file with numbers of a fit (parameter,) in it."""
-        key = values.tobytes()
-        if key not in self._engines:
-            mapping = self.given.mapping
-            moved = {name: float(values[self.parameters.index(name)]) for name in self.model.fit.prior.names}
-            mapping = mapping.with_values(moved)
-            for part in self.parts(values):
-                mapping = part.candidate.written(mapping, {slot: repr(one) for slot, one in part.values.items()})
-            self._engines[key] = written_model(self.given.engine, mapping)
-        return self._engines[key]
-
-    @cached_property
-    def recorded(self) -> Mapping[int, Motion]:
-        """The motion of each trial of the search, by its number in the record."""
-        trials = {trial_called(self.given.measured, name) for name in self.searched.trials}
-        return recorded_motion(self.given.engine, self.given.measured, self.given.states, trials)
-
-    def run(
-        self, drive: Drive, rows: Rows, steps: int, *, substeps: int, past: NDArray[np.float64] | None
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """As of a simulation that is compiled; the engine takes its own steps, and nothing in it comes late."""
-        del substeps, past
-        measured, n = self.given.measured, len(self.given.engine.coordinates)
-        values = np.broadcast_to(
-            self.model.machine.defaults if rows.values is None else rows.values,
-            (len(rows.trial), len(self.parameters)),
-        )
-        found = np.full((len(rows.trial), steps + 1, 2 * n), np.nan)
-        _, version = np.unique(values, axis=0, return_inverse=True)
-        for one in range(version.max() + 1):
-            some = np.flatnonzero(version.ravel() == one)
-            engine = self.written(np.ascontiguousarray(values[some[0]])).engine
-            begun = []
-            controls = np.empty((len(some), steps + 1, len(engine.controls)))
-            for place, row in enumerate(some):
-                trial = trial_called(measured, self.searched.trials[rows.trial[row]])
-                later = drive.time0[rows.trial[row]] - measured.drive.time0[trial]
-                first = round(later * drive.rate) + int(rows.begin[row])
-                begun.append((trial, first))
-                controls[place] = measured.drive.inputs[trial, first : first + steps + 1]
-            start = _joined([self.recorded[trial].at(np.array([first])) for trial, first in begun])
-            q, v = rows.starts[some, :n], rows.starts[some, n:]
-            found[some] = engine.run(engine.near(start, q, v), controls, drive.rate)
-        return found, np.asarray(np.isfinite(found).all(axis=(1, 2)))
-
-
-def _joined(motions: list[Motion]) -> Motion:
-    """Points of several motions as those of one."""
-    q, v, u = (np.concatenate([getattr(one, field) for one in motions]) for field in ("q", "v", "u"))
-    return Motion(q, v, u)
+        near: dict[int, Start] = {}
+        now, slopes = white(values, near), np.zeros((0, len(slots)))
+        for _ in range(TURNS):
+            steps = STEP * np.maximum(np.abs(values), STEP) * np.eye(len(slots))
+            slopes = np.column_stack([(white(values + step, near.copy()) - now) / step.sum() for step in steps])
+            moved = values + np.asarray(np.linalg.lstsq(slopes, -now, rcond=None)[0], np.float64)
+            ahead = near.copy()
+            tried = white(moved, ahead)
+            gained = float(now @ now - tried @ tried)
+            if gained > 0:
+                values, now, near = moved, tried, ahead
+            if gained < ENOUGH:
+                break
+        self.parts = parts_at(values)
+        left = np.where(np.isfinite(runs.before), now.reshape(runs.before.shape), np.nan)
+        influence = np.linalg.pinv(slopes).reshape(len(slots), *left.shape)  # of each sample on each number
+        covariance = np.diag([sum_error(one, left) ** 2 for one in influence])
+        effects = []
+        for number, (one, part) in enumerate(zip(found.effects, self.parts, strict=True)):
+            own = [k for k, (other, _) in enumerate(slots) if other == number]
+            numbers, idle = named_estimates(part, covariance[np.ix_(own, own)], base), part.candidate.idle
+            away = [abs(values[k] - idle[slots[k][1]]) for k in own if slots[k][1] in idle]
+            sure = [CRITERIA.certain * np.sqrt(covariance[k, k]) for k in own if slots[k][1] in idle]
+            effects.append(replace(one, term=part.term, estimates=numbers, small=bool(np.less(away, sure).all())))
+        return replace(found, effects=tuple(effects))

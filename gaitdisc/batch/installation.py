@@ -65,9 +65,7 @@ def _read_back(what: str, written: Callable[[Path], tuple[Recording, str]]) -> C
             same = np.allclose(stream[made.names[0]], made.values[:, 0], atol=1e-6)
     except Exception as error:  # whatever it is, the installation does not read this kind of file
         return Check(f"reads {what}", "wrong", f"{type(error).__name__}: {error}")
-    return Check(
-        f"reads {what}", "ok" if same else "wrong", "as written" if same else "other numbers than were written"
-    )
+    return Check(f"reads {what}", "ok" if same else "wrong", "as written" if same else "other than written")
 
 
 def _c3d(folder: Path) -> tuple[Recording, str]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,15 +35,9 @@ GROUPS = {
     "hip_flexion": ("hip_extensors", "hip_flexors"),
 }
 EFFECTS = (
-    "constant_load",
-    "linear_stiffness",
-    "one_sided_spring",
-    "dead_zone_spring",
-    "viscous_damping",
-    "one_sided_damper",
-    "coulomb_friction",
-    "phase_locked_moment",
-)
+    "constant_load", "linear_stiffness", "one_sided_spring", "dead_zone_spring", "viscous_damping", "one_sided_damper",
+    "coulomb_friction", "phase_locked_moment",
+)  # fmt: skip
 WORDS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
 Values = NDArray[np.float64]
 
@@ -53,9 +47,10 @@ def driven_of(record: JointRecord) -> Driven:
     signs = np.array([sign_at(record.joint, name) for name in record.muscles], float)
     if not signs.any():
         raise ChannelError(
-            f"a device at the {WORDS[record.joint]} is named from EMG of a muscle that turns the {WORDS[record.joint]}",
+            f"naming a device at the {WORDS[record.joint]} needs EMG of a muscle that spans the {WORDS[record.joint]}",
             f"{record.subject} {record.condition} has {', '.join(record.muscles)}",
-            f"Search another joint, as --participant {record.subject}:ankle_angle, or name a muscle in [channels].",
+            f"Choose another joint, such as --participant {record.subject}:ankle_angle, or name a muscle in "
+            "[channels].",
         )
     return Driven(
         np.nan_to_num(record.envelopes[:, signs != 0]),
@@ -86,43 +81,26 @@ def changes_of(record: JointRecord) -> list[Change]:
     word, once = f"{WORDS[record.joint]}_moment", np.zeros(1)
     low, high = np.quantile(record.angle[record.stride >= 0], ENGAGED)
     angles = np.arange(low, high, ENGAGED_STEP)
-    changes = [
-        Change("constant_load", word, "load", once, columns=lambda d, _: np.ones((len(d.angle), 1))),
-        Change(
-            "linear_stiffness", word, "stiffness", once, columns=lambda d, _: np.column_stack([d.angle**0, -d.angle])
-        ),
-        Change(
-            "one_sided_spring",
-            word,
-            "stiffness",
-            angles,
-            columns=lambda d, at: -np.maximum(0, d.angle - at)[:, None],
-            piece=f"max(0, {WORDS[record.joint]} ",
-        ),
-        Change(
-            "one_sided_spring",
-            word,
-            "stiffness",
-            -angles,
-            columns=lambda d, at: np.maximum(0, -at - d.angle)[:, None],
-            piece="max(0, _",
-        ),
-        Change("viscous_damping", word, "damping", once, columns=lambda d, _: -d.rate[:, None]),
-        Change("coulomb_friction", word, "friction", once, columns=lambda d, _: -np.sign(d.rate)[:, None]),
-        Change("wrong_parameter", "emg_delay", "value", DELAYS_S, _later),
-    ]
+    above, below = f"max(0, {WORDS[record.joint]} ", "max(0, _"
+    shapes = (
+        ("constant_load", "load", once, "", lambda d, _: np.ones((len(d.angle), 1))),
+        ("linear_stiffness", "stiffness", once, "", lambda d, _: np.column_stack([d.angle**0, -d.angle])),
+        ("one_sided_spring", "stiffness", angles, above, lambda d, at: -np.maximum(0, d.angle - at)[:, None]),
+        ("one_sided_spring", "stiffness", -angles, below, lambda d, at: np.maximum(0, -at - d.angle)[:, None]),
+        ("viscous_damping", "damping", once, "", lambda d, _: -d.rate[:, None]),
+        ("coulomb_friction", "friction", once, "", lambda d, _: -np.sign(d.rate)[:, None]),
+    )
+    changes = [Change(name, word, number, at, columns=by, piece=piece) for name, number, at, piece, by in shapes]
+    changes.append(Change("wrong_parameter", "emg_delay", "value", DELAYS_S, _later))
     signs = driven_of(record).signs
     for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
         if (signs == sign).any():
-            strength = f"{group}_strength"
-            changes.append(Change("wrong_parameter", strength, "value", STRENGTHS, _stronger(sign), neutral=1.0))
-    return [*changes, foot_mass_of(record)] if record.per_kg.size else changes
-
-
-def foot_mass_of(record: JointRecord) -> Change:
-    """Return what each kg more at the foot changes in the net moment of inverse dynamics that does not know it."""
-    per_kg = -record.per_kg[:, None]
-    return Change("wrong_parameter", "added_foot_mass", "value", np.zeros(1), columns=lambda _, __: per_kg)
+            strength = f"{group}_strength", "value", STRENGTHS
+            changes.append(Change("wrong_parameter", *strength, partial(_stronger, sign), neutral=1.0))
+    if record.per_kg.size:  # what each kg more at the foot changes in a net moment that does not know it
+        per_kg = -record.per_kg[:, None]
+        changes.append(Change("wrong_parameter", "added_foot_mass", "value", once, columns=lambda _, __: per_kg))
+    return changes
 
 
 def _later(driven: Driven, delay_s: float) -> Driven:
@@ -131,9 +109,8 @@ def _later(driven: Driven, delay_s: float) -> Driven:
     return replace(driven, envelopes=late)
 
 
-def _stronger(sign: int) -> Callable[[Driven, float], Driven]:
-    """Return how the muscles of one sign become so much stronger."""
-    return lambda driven, by: replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
+def _stronger(sign: int, driven: Driven, by: float) -> Driven:
+    return replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
 
 
 def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
@@ -150,23 +127,25 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
         Input("reference", "rad/s^2", "recorded motion, low-passed: acceleration + 57*rate + 800*angle"),
         *(Input(name, "1", "activation, from its EMG as in the Nominal walk") for name, _ in muscles),
         *(Input(f"{name}_gain", "N m", "moment at activation 1, as in the Nominal walk") for name, _ in muscles),
-        Input("others", "N m", "what no electrode sees, as in the Nominal walk"),
+        Input("others", "N m", "moment of muscles without an electrode, as in the Nominal walk"),
         Input("phase", "1", "percent stride / 100"),
     ]
     groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]
-    numbers = [Parameter("emg_delay", 0.0, "s", meaning="by which EMG acts later than in the Nominal walk")]
+    numbers = [Parameter("emg_delay", 0.0, "s", meaning="additional delay of EMG compared with the Nominal walk")]
     numbers += [
-        Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the Nominal walk's")
+        Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "compared with the Nominal walk")
         for group in groups
     ]
     said = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
     said += ["others", f"{word}_moment"]
     if carried:
-        inputs.append(Input("per_kg", "N m/kg", "what each kg more at the foot adds to the moment that muscles make"))
-        numbers.append(Parameter("added_foot_mass", 0.0, "kg", meaning="at the foot, beyond the body's own"))
+        inputs.append(Input("per_kg", "N m/kg", "change of the muscles' moment per kg added to the foot"))
+        numbers.append(
+            Parameter("added_foot_mass", 0.0, "kg", meaning="at the foot, in addition to the body's own mass")
+        )
     total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
     return Simulation(
-        title=f"{word} of {record.subject}: Nominal moment model against inverse dynamics",
+        title=f"{word} of {record.subject}: Nominal moment model and inverse dynamics",
         states=(
             State(word, "rad", meaning=f"{record.joint}_{record.side}"),
             State("rate", "rad/s"),
@@ -174,7 +153,7 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
         ),
         inputs=tuple(inputs),
         parameters=tuple(numbers),
-        ports=(Port(f"{word}_moment", "N m", "a moment that is no muscle's"),),
+        ports=(Port(f"{word}_moment", "N m", "a moment that no muscle produces"),),
         definitions=(("model", total),),
         equations=(
             (word, "rate"),
@@ -200,41 +179,42 @@ def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulat
         "per_kg": record.per_kg,
     }
     inputs = np.column_stack([columns[one.name] for one in simulation.inputs])
-    seen = np.column_stack([record.seen, _through_lag(record.moment, driven.rate_hz)])
+    known, at = np.isfinite(record.moment), np.arange(len(record.moment))
+    late = lagged(np.interp(at, at[known], record.moment[known])[None], driven.rate_hz / RATE_HZ)[0]  # as its state
+    seen = np.column_stack([record.seen, np.where(known, late, np.nan)])
     usable = np.isfinite(inputs).all(axis=1) & np.isfinite(record.seen)
     trials: list[TrialColumns] = []
     first, last = 0, int(record.stride.max())
     while first + STRIDES - 1 <= last:
         inside = np.flatnonzero((record.stride >= first) & (record.stride < first + STRIDES))
         whole = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
-        if whole and np.isfinite(record.moment[inside]).mean() > KNOWN:
+        whole = whole and np.isfinite(record.moment[inside]).mean() > KNOWN
+        if whole:
             kept = inside[::step]
             trials.append(TrialColumns(str(len(trials) + 1), record.time[kept], inputs[kept], seen[kept]))
-            first += STRIDES
-        else:
-            first += 1
+        first += STRIDES if whole else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"what a device does is proven on strides held out: {FEWEST_TRIALS} times {STRIDES} strides in a row, with "
-            "the load of the foot known in half of them",
+            f"a device is tested on held-out strides: this needs {FEWEST_TRIALS} times {STRIDES} strides in a row, "
+            "half of them with a known load on the foot",
             f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
-            "Record longer, or keep each foot on its own plate.",
+            "Record longer, and keep each foot on its own plate.",
         )
     driving = [one.name for one in simulation.inputs]
     return measured_of_trials(trials, driving, [name for name, _ in simulation.observations], record.subject)
 
 
-def _through_lag(moment: Values, rate_hz: float) -> Values:
-    """Return a moment as the simulation's own state follows it: y' = RATE_HZ (moment - y), straight between samples."""
+def lagged(signal: Values, samples: float) -> Values:
+    """Signal (trial, sample) behind a first-order lag, linear between samples and at rest at first.
+
+    >>> bool(np.isclose(lagged(np.arange(200.0)[None], 5.0)[0, -1], 194.0))
+    True
+    """
     from scipy.signal import lfilter
 
-    known = np.isfinite(moment)
-    at = np.arange(len(moment))
-    whole = np.interp(at, at[known], moment[known])
-    keep = np.exp(-RATE_HZ / rate_hz)
-    held = (1 - keep) * rate_hz / RATE_HZ
-    late = lfilter([1 - held, held - keep], [1.0, -keep], whole - whole[0])[: len(moment)] + whole[0]
-    return np.where(known, late, np.nan)
+    kept = np.exp(-1 / samples)
+    late = samples * (1 - kept)
+    return signal[:, :1] + lfilter([1 - late, late - kept], [1, -kept], signal - signal[:, :1])
 
 
 def weighed(candidate: Candidate) -> bool:

@@ -36,9 +36,9 @@ def nominal_and_trials(
     walks, refusals = processed_walks(study, study.participant(participant))
     if refusals:
         raise SchemaError(
-            f"both walks of {participant} are needed",
+            f"both walks of {participant} are required",
             "; ".join(f"{one.condition}: {one.reason}" for one in refusals),
-            "Mend it, or choose another participant.",
+            "Correct the walk, or choose another participant.",
         )
     nominal, device = (walks[word] for word in study.conditions.both)
     name = f"{joint}_{study.strides.side}"
@@ -61,7 +61,7 @@ def nominal_model(walk: Walk, name: str) -> Simulation:
         states=(State("theta", "rad", meaning=name), State("omega", "rad/s")),
         inputs=(Input("phase", "1", meaning="percent stride / 100"),),
         parameters=(Parameter("stiffness", stiffness, "1/s^2"), Parameter("damping", damping, "1/s")),
-        ports=(Port("acceleration", "rad/s^2", meaning="what the device adds, and what the person changes"),),
+        ports=(Port("acceleration", "rad/s^2", meaning="moment of the device and of the person's adaptation"),),
         definitions=(("habit", " + ".join(pieces)),),
         equations=(("theta", "omega"), ("omega", "habit - stiffness*theta - damping*omega + acceleration")),
         observations=(("theta", "theta"),),
@@ -76,17 +76,15 @@ def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
     trials: list[TrialColumns] = []
     first = 0
     while first + strides <= len(own):
-        last = first + strides - 1
-        inside = (time >= own.start[first]) & (time < own.end[last])
-        if np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all():
+        inside = (time >= own.start[first]) & (time < own.end[first + strides - 1])
+        whole = np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all()
+        if whole:
             label = str(len(trials) + 1)
             trials.append(TrialColumns(label, time[inside], phase[inside, None], angle[inside, None]))
-            first = last + 1
-        else:
-            first += 1
+        first += strides if whole else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"`discover` needs {FEWEST_TRIALS * strides} strides, {strides} in a row at a time",
+            f"`discover` needs {FEWEST_TRIALS * strides} strides, with {strides} in a row in each trial",
             f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
             "Record longer, or use fewer strides in a trial.",
         )

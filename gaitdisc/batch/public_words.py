@@ -26,7 +26,7 @@ from gaitdisc.recording import Finding, Recording, Trial
 
 Result = TypeVar("Result")
 HIDDEN = "…"
-WHERE = f"({HIDDEN}: words of the recording; `gaitdisc check` shows them.)"
+WHERE = f"({HIDDEN}: a label of the recording; `gaitdisc check` shows it.)"
 _TEXT = re.compile(r"\"\"\".*?\"\"\"|(?<![\"'])#[^\n]*", re.DOTALL)  # docstrings and comments, which cite people
 _LITERAL = re.compile(r"\"([^\"\n]*)\"|'([^'\n]*)'")
 _WORD = re.compile(r"\w+")
@@ -44,7 +44,7 @@ class PublicWords:
         """Sentence without a word of the recordings.
 
         >>> PublicWords().said("column 'Erika' has no unit")
-        "column '…' has no unit (…: words of the recording; `gaitdisc check` shows them.)"
+        "column '…' has no unit (…: a label of the recording; `gaitdisc check` shows it.)"
         >>> PublicWords(files={"Erika.mot": "the recording"}).said("Erika.mot has no unit")
         'the recording has no unit'
         """
@@ -89,7 +89,7 @@ class PublicWords:
             kept[key] = kept[key].selected(names)
         if not left_out:
             return trial
-        what = f"{left_out} channels, whose labels are outside the vocabulary"
+        what = f"{left_out} channels, whose labels are not in the vocabulary"
         spoils = "these channels; map them in the study's [channels], or name them"
         kept = {key: recording for key, recording in kept.items() if recording.names}
         finding = Finding("note", "left out", trial.name, what, spoils)

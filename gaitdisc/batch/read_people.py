@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.errors import GaitdiscError, SchemaError
@@ -25,10 +25,17 @@ def people_of(run: StudyRun) -> list[str]:
 
 
 def sessions_of(
-    run: StudyRun, reference: ClinicalReference | None
+    run: StudyRun,
+    reference: ClinicalReference | None,
+    stands: Callable[[str, Sequence[PooledCycles]], bool] = lambda *_: False,
 ) -> Iterator[tuple[str, PersonSession | GaitdiscError]]:
-    """Each person and session read, one after the other, or why it could not be; with its title."""
+    """Each person and session read, one after the other, or why it could not be; with its title.
+
+    stands: whether a page of these cycles is there already, which is not read again
+    """
     for key, own in _by_session(run).items():
+        if stands(_title(*key), own):
+            continue
         try:
             readings = _readings(own, run, reference)
             yield _title(*key), PersonSession(_title(*key), readings, contrasts_of(readings))

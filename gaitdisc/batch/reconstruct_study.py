@@ -31,8 +31,8 @@ from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
 ACROSS = {
-    SUBJECT: "each person by models of the others; the next in the list is who they are chosen by",
-    CONDITION: "walks of one condition, by models of the person's other walks, the last 15 % of each checked",
+    SUBJECT: "each person by models of the others; the next person in the list is used for validation",
+    CONDITION: "walks of one condition, by models of the person's other walks (last 15 % of each for validation)",
 }
 CALIBRATION_STRIDES = 10
 
@@ -112,9 +112,9 @@ def _tested(walks: Sequence[SensedWalk], person: str, condition: str) -> list[in
     tested = [k for k, word in enumerate(words) if word == condition]
     if not tested or len(tested) == len(words):
         raise SchemaError(
-            "a split across conditions needs walks of the condition that is tested, and others to fit",
+            "a split across conditions needs walks of the tested condition and others for training",
             f"--condition is {condition!r}, {person} has {', '.join(sorted(set(words)))}",
-            "Name a condition with --condition, or take another split.",
+            "Name a condition with --condition, or use another split.",
         )
     return tested
 
@@ -131,21 +131,19 @@ def _result(
     rule = (RULES | ACROSS)[settings.split]
     if settings.split == SUBJECT:
         models |= {
-            CALIBRATED.format(kind): f"the same, corrected for the person by {CALIBRATION_STRIDES} strides"
+            CALIBRATED.format(kind): f"the same, corrected for the person with {CALIBRATION_STRIDES} strides"
             for kind in settings.kinds
         }
     if what.lags.ahead:
         models |= BASELINES
-    used = {
-        **public_settings(study, {"filters", "strides", "conditions"}),
-        "reconstruct": asdict(settings),
-    }
+    used = {**public_settings(study, {"filters", "strides", "conditions"}), "reconstruct": asdict(settings)}
     return Reconstruction(
         public_title(study),
         walks.named(what.sensors),
         walks.named(what.states),
         f"{settings.split}: {rule}",
-        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model gives "
+        f"{what.lags.count} samples of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model "
+        "estimates "
         + (f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at")
         + " the last of them",
         models,
@@ -167,9 +165,9 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
-            "sensors are searched for the states at their last reading",
+            "the sensor search is available for the states at their last sample",
             f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
-            "Search without --targets and --ahead; then name the sensors with --sensors.",
+            "Search without --targets and --ahead. Then name the sensors with --sensors.",
         )
     walks = sensed_walks(study, (), settings.condition_read)
     names, lags = [channel.name for channel in walks.channels], settings.lags(walks.rate_hz)
@@ -225,8 +223,8 @@ def reconstruct_recording(
     known = np.isfinite(states.values).all(axis=1)
     if known.sum() < 2:
         raise SamplingError(
-            f"states are reconstructed from {what.reach_s:.2f} s of readings",
-            f"{file.name} lasts {kinematics.duration_s:.2f} s, and no such stretch of it lacks no value",
+            f"a reconstruction needs {what.reach_s:.2f} s of sensor data without gaps",
+            f"{file.name} lasts {kinematics.duration_s:.2f} s, and every such period has a missing value",
             "Record longer, or fill the gaps.",
         )
     first, last = np.flatnonzero(known)[[0, -1]]

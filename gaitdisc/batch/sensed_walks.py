@@ -97,9 +97,9 @@ def sensed_walks(
                 files |= {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     if not walks:
         raise ChannelError(
-            "reconstruction needs walks that can be processed",
+            "reconstruction needs at least one usable walk",
             f"all are refused, the first: {refusals[0].reason}" if refusals else "the study has none",
-            "Mend what the sentence names, or choose other sensors.",
+            "Correct what the message names, or choose other sensors.",
         )
     _refuse_units([walk for found in walks.values() for walk in found])
     channels, left_out = _moving([walk for found in walks.values() for walk in found], sensors)
@@ -113,12 +113,7 @@ def sensed_walks(
 
 
 def _walks(
-    study: Study,
-    person: Participant,
-    condition: str,
-    reader: C3DReader,
-    public: PublicWords,
-    refusals: list[Refusal],
+    study: Study, person: Participant, condition: str, reader: C3DReader, public: PublicWords, refusals: list[Refusal]
 ) -> list[ReadWalk]:
     found = []
     own = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
@@ -163,10 +158,10 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
         if not lacking and not still:
             kept.append(channel)
             continue
-        why = f"does not move in {len(still)}" if still else f"is missing in {len(lacking)}"
+        why = f"does not vary in {len(still)}" if still else f"is missing in {len(lacking)}"
         what = f"{channel.name} {why} of {len(walks)} walks"
         if channel.name in sensors:
-            raise ChannelError("a sensor must move in every walk", what, "Choose another sensor.")
+            raise ChannelError("a sensor must vary in every walk", what, "Choose another sensor.")
         findings.append(Finding("note", "left out", "the study", what, "this state is not reconstructed", channel.name))
     return tuple(kept), findings
 
@@ -184,9 +179,9 @@ def _refuse_units(walks: Sequence[SensedWalk]) -> None:
             unit, where = first.setdefault(channel.name, (channel.unit, file))
             if unit != channel.unit:
                 raise UnitError(
-                    f"reconstruction needs {channel.name} in one unit in all walks",
+                    f"{channel.name} must have the same unit in all walks",
                     f"{where} has it in {unit!r}, {file} in {channel.unit!r}",
-                    "Name the unit in the study's [channels], or leave the walks of one unit out.",
+                    "State the unit in the study's [channels], or exclude the walks with one of the units.",
                 )
 
 
@@ -195,7 +190,7 @@ def _refuse_rates(people: dict[str, tuple[SensedWalk, ...]]) -> None:
     if len(rates) > 1:
         (one, first), (other, second) = list(rates.items())[:2]
         raise SamplingError(
-            "reconstruction needs one rate in all walks",
+            "all walks must have the same rate for reconstruction",
             f"{first} was recorded at {one:g} Hz, {second} at {other:g} Hz",
-            "Resample the kinematics onto one rate.",
+            "Resample the kinematics to one rate.",
         )

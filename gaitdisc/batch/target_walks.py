@@ -50,7 +50,7 @@ def target_walk(
     values = interpolated(wanted.time, wanted.values, read.time)
     if not np.isfinite(values).any():
         raise SamplingError(
-            f"trial {trial.name}: {targets} and sensors need a span of time in common",
+            f"trial {trial.name}: {targets} and sensors must overlap in time",
             f"sensors last from {read.time[0]:.2f} to {read.time[-1]:.2f} s, "
             f"{targets} from {wanted.time[0]:.2f} to {wanted.time[-1]:.2f} s",
             "Check that the files belong to the same trial and clock.",
@@ -70,7 +70,7 @@ def refuse_unknown_targets(targets: str) -> None:
     """Refuse what cannot be reconstructed."""
     if targets not in (STATES, *TARGETS):
         known = ", ".join((STATES, *TARGETS))
-        raise SchemaError("a reconstruction has one kind of quantity", f"{targets!r} is none", f"Use: {known}.")
+        raise SchemaError("the kind of quantity is unknown", f"{targets!r} does not exist", f"Use: {known}.")
 
 
 def _sensors_of(trial: Trial, sensors: Sequence[str]) -> Recording:
@@ -91,12 +91,12 @@ def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, li
         found = found.selected([name for name in found.names if name not in dead])
     if not found.names:
         raise ChannelError(
-            f"trial {trial.name}: {targets} are to be reconstructed",
-            f"none is alive: {', '.join(dead)}" if dead else f"it has no {' or '.join(quantities)}",
-            "Leave the trial out, or reconstruct something else.",
+            f"trial {trial.name} must have {targets}",
+            f"none is usable: {', '.join(dead)}" if dead else f"it has no {' or '.join(quantities)}",
+            "Exclude the trial, or reconstruct another quantity.",
         )
     findings = [
-        Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle is left out", name)
+        Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle, which is excluded", name)
         for name, finding in dead.items()
     ]
     if key == "emg":

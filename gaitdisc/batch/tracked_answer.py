@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import named_estimates
-from gaitdisc.discovery.prescribed import JointFinding, LeftMoment, Named
+from gaitdisc.discovery.prescribed import JointFinding, Named
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.results.discovery import Discovery, FoundEffect, GapSize, Runs, Whereabouts
+from gaitdisc.results.effect_words import amount, at_place, spoken
 from gaitdisc.simulation.simulation import Simulation
 
 Values = NDArray[np.float64]
@@ -19,47 +20,48 @@ Values = NDArray[np.float64]
 
 def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     """Return what the joints show, as an answer."""
-    named = [(one.joint, one.named, one.rivals) for one in joints if one.named is not None]
-    effects, rivals, where, parts = [], [], [], []
-    for joint, best, others in named:
-        assert best is not None
-        effects.append(_effect(base, best, _closed(joint, best)))
-        parts.append(best.part)
-        where.append(Whereabouts(best.part.candidate.kind, best.part.candidate.place, 1.0 / len(named)))
-        rivals += [
-            replace(_effect(base, one, float("nan")), tied=best.gained - one.gained < CRITERIA.tie)
-            for one in others[1:4]
-        ]
-    if not named and joints:
-        strongest = max(joints, key=lambda one: one.rivals[0].gained if one.rivals else -np.inf)
-        rivals = [_effect(base, one, float("nan")) for one in strongest.rivals[:1]]
-    verdict = parts[0].candidate.verdict if parts else "no_gap"
-    channels = tuple(f"net_{one.joint.port}" for one in joints)
+    named = [(one, one.named) for one in joints if one.named is not None]
+    effects, rivals = [], []
+    for one, best in named:
+        left = float(np.sum((one.joint.left - best.predicted) ** 2))
+        effects.append(_effect(base, best, 1 - left / max(float(np.sum(one.joint.left**2)), 1e-300)))
+        beside = [replace(_effect(base, each), tied=best.gained - each.gained < CRITERIA.tie) for each in one.rivals]
+        rivals += beside[1:4]
+    ordered = sorted((one for one in joints if one.rivals), key=lambda one: -one.rivals[0].gained)
+    if not named:
+        rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
     units = tuple(sensor.unit for sensor in base.sensors) if joints else ()
-    held = _gap(joints, [one.named.predicted if one.named else 0.0 for one in joints])
-    train = _gap(joints, [one.named.explained if one.named else 0.0 for one in joints])
     found = Discovery(
-        verdict, "", tuple(where), tuple(effects), tuple(rivals), train, held, channels, units, _runs(joints)
+        named[0][1].part.candidate.verdict if named else "no_gap",
+        "",
+        tuple(Whereabouts(one.kind, one.place, 1.0 / len(named)) for one in effects),
+        tuple(effects),
+        tuple(rivals),
+        _gap(joints, [one.named.explained if one.named else 0.0 for one in joints]),
+        _gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
+        tuple(f"net_{one.joint.port}" for one in joints),
+        units,
+        _runs(joints),
     )
-    return sentence_of(found, base, tuple(parts))
+    sizes = found.held_out.channels.values()
+    if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
+        return sentence_of(found, base, tuple(best.part for _, best in named))
+    first, (one,) = ordered[0], rivals
+    before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
+    unit = units[joints.index(first)]
+    sentence = (
+        f"Not proven: {spoken(one.name)} {at_place(one.kind, one.place)} explains most of what is left, from "
+        f"{amount(before)} to {amount(after)} {unit} where it is fitted (noise floor {amount(first.joint.floor)}). "
+        "It does not bear that out on time held out, or has too little evidence: a longer walk or a second one would."
+    )
+    return replace(found, verdict="unexplained", sentence=sentence)
 
 
-def _effect(base: Simulation, one: Named, closed: float) -> FoundEffect:
+def _effect(base: Simulation, one: Named, closed: float = float("nan")) -> FoundEffect:
     candidate = one.part.candidate
-    return FoundEffect(
-        candidate.kind,
-        candidate.place,
-        candidate.name,
-        one.part.term,
-        named_estimates(one.part, one.covariance, base),
-        closed,
-        one.gained,
-        bounds=candidate.bounds,
-    )
-
-
-def _closed(joint: LeftMoment, one: Named) -> float:
-    return float(1 - np.sum((joint.left - one.predicted) ** 2) / max(np.sum(joint.left**2), 1e-300))
+    place = candidate.kind, candidate.place, candidate.name
+    numbers = named_estimates(one.part, one.covariance, base)
+    return FoundEffect(*place, one.part.term, numbers, closed, one.gained, bounds=candidate.bounds)
 
 
 def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:

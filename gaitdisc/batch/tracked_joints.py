@@ -13,7 +13,7 @@ from gaitdisc.batch.tracked_pass import Pass
 from gaitdisc.discovery.candidate import Candidate, candidates_of
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.prescribed import JointFinding, LeftMoment, joint_finding
+from gaitdisc.discovery.prescribed import JointFinding, ResidualMoment, joint_finding
 from gaitdisc.discovery.record_filter import DENSE
 from gaitdisc.engines.mapping import drafted
 from gaitdisc.errors import SamplingError
@@ -31,7 +31,13 @@ def joints_of(
     walk: Pass, angle_noise: Values, more: tuple[Shape, ...] = (), progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Simulation, list[JointFinding]]:
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
-    _refuse_short(walk)
+    if len(walk.times) < FEWEST:
+        raise SamplingError(
+            f"what is left is named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
+            f"{walk.cutoff_hz:g} Hz",
+            f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
+            "Record longer.",
+        )
     base = _simulation(walk)
     candidates = _candidates(base, walk, more)
     joints = []
@@ -40,16 +46,6 @@ def joints_of(
         joint = _left(walk, base, number, angle_noise)
         joints.append(joint_finding(joint, candidates[number], len(walk.joints)))
     return base, joints
-
-
-def _refuse_short(walk: Pass) -> None:
-    if len(walk.times) < FEWEST:
-        raise SamplingError(
-            f"what is left is named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
-            f"{walk.cutoff_hz:g} Hz",
-            f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
-            "Record longer.",
-        )
 
 
 def _simulation(walk: Pass) -> Simulation:
@@ -95,7 +91,7 @@ def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> dict[i
     return found
 
 
-def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> LeftMoment:
+def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> ResidualMoment:
     motion, one = walk.motion, walk.engine.coordinates[number]
     states, inputs = np.hstack([motion.q, motion.v]), np.zeros((len(motion.time), len(base.inputs)))
     points = Points(motion.time, states, inputs)
@@ -118,7 +114,7 @@ def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> Lef
         pieces = [np.broadcast_to(evaluate(base, piece, extras), len(motion.time)) for piece in candidate.pieces]
         return walk.dense(np.column_stack(pieces))
 
-    return LeftMoment(
+    return ResidualMoment(
         one.port,
         walk.times,
         walk.dense(walk.left[:, number]),

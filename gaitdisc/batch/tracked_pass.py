@@ -81,6 +81,10 @@ class Pass:
         """Values (sample, ...) after the record's low-pass, at these samples."""
         return sosfiltfilt(self.sections, values, axis=0)[self.kept]
 
+    def size(self, values: Values) -> float:
+        """Root mean square of values (sample,) after the record's low-pass."""
+        return float(np.sqrt(np.mean(self.dense(values) ** 2)))
+
     @cached_property
     def sections(self) -> Values:
         """Low-pass of the record, in second-order sections."""
@@ -137,7 +141,7 @@ def balance(walk: Pass) -> list[Finding]:
     engine, up = walk.engine, walk.engine.vertical
     found = []
     for k in engine.base:
-        one, size = engine.coordinates[k], float(np.sqrt(np.mean(walk.dense(walk.demanded[:, k]) ** 2)))
+        one, size = engine.coordinates[k], walk.size(walk.demanded[:, k])
         what = f"{one.called}: {size:.3g} {one.force_unit} (root mean square) that neither ground nor body explain"
         found.append(Finding("note", "residual", "model", what, "", one.called))
     if up < 0:
@@ -162,7 +166,7 @@ def refuse_other_motion(walk: Pass) -> None:
     given = np.abs(walk.pulls).max(axis=(0, 1)) if walk.pulls.shape[1] else np.zeros(len(engine.coordinates))
     for k in engine.base:
         one = engine.coordinates[k]
-        size = float(np.sqrt(np.mean(walk.dense(walk.left[:, k]) ** 2)))
+        size = walk.size(walk.left[:, k])
         if one.unit == "m" and given[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
                 f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
@@ -174,7 +178,7 @@ def refuse_other_motion(walk: Pass) -> None:
 def only_residuals(walk: Pass) -> str:
     """Return what can be said where no file gives the forces of muscles."""
     sizes = [
-        f"{amount(float(np.sqrt(np.mean(walk.dense(walk.demanded[:, k]) ** 2))))} {one.force_unit} at {one.called}"
+        f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}"
         for k, one in enumerate(walk.engine.coordinates)
         if k in walk.engine.base
     ]

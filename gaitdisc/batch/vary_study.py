@@ -43,11 +43,7 @@ Progress = Callable[[float], None]
 
 
 def vary_study(
-    study: Study,
-    folder: Path,
-    question: str,
-    workers: Workers | None = None,
-    progress: StudyProgress = lambda *_: None,
+    study: Study, folder: Path, question: str, workers: Workers | None = None, progress: StudyProgress = lambda *_: None
 ) -> VariantRun:
     """Fit every participant's models with one thing changed at a time; the run itself is made first if it is not there.
 
@@ -56,7 +52,7 @@ def vary_study(
     progress: called with a pseudonym and the fraction of that participant's work that is done
     """
     if question not in QUESTIONS:
-        raise SchemaError(f"a question is one of: {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
+        raise SchemaError(f"questions are {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
     workers = workers or Workers()
     run = run_study(study, folder, workers)
     with write_lock(folder, run=True):

@@ -123,9 +123,9 @@ def _cluster(address: str) -> Iterator[None]:
         from distributed import Client
     except ImportError as error:
         raise ClusterError(
-            "a cluster needs the extra 'cluster' (dask.distributed)",
-            "it is not installed here",
-            "Install gaitdisc[cluster], or leave --cluster out.",
+            "a cluster requires the extra 'cluster' (dask.distributed)",
+            "it is not installed",
+            "Install gaitdisc[cluster], or omit --cluster.",
         ) from error
     from joblib import parallel_config
 
@@ -133,9 +133,9 @@ def _cluster(address: str) -> Iterator[None]:
         client = Client(address, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise ClusterError(
-            "a cluster needs a Dask scheduler that answers",
+            "a cluster needs a Dask scheduler that responds",
             f"{address}: {str(error)[:200] or type(error).__name__}",
-            "Start one with `dask scheduler`, correct the address, or leave --cluster out.",
+            "Start one with `dask scheduler`, correct the address, or omit --cluster.",
         ) from error
     try:
         with parallel_config(backend="dask"):
@@ -210,8 +210,8 @@ def _reason(error: BaseException, jobs: int) -> str:
     what = "ran out of memory" if isinstance(error, MemoryError) else f"was killed ({signals[1] if signals else '?'})"
     fewer = f"run it with --jobs {jobs - 1}, or on" if jobs > 1 else "use"
     return (
-        f"a participant needs a process that lives until its unit is computed; {TRIES} times it {what}, as where "
-        f"memory runs out (this machine has {_memory()}). What others have is kept; {fewer} a machine with more memory."
+        f"The process of a participant {what} {TRIES} times, probably because memory is short (this machine has "
+        f"{_memory()}). Results of the others are kept; {fewer} a machine with more memory."
     )
 
 

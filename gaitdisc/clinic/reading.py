@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.clinic.like_controls import like_controls, like_published
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
-from gaitdisc.clinic.rules import outstanding
+from gaitdisc.clinic.rules import outstanding, speed_words
 from gaitdisc.errors import ComparisonError
+from gaitdisc.recording import Finding
 from gaitdisc.results.clinical_reference import (
+    FEW,
     Band,
     ClinicalReading,
     ClinicalReference,
@@ -25,7 +27,6 @@ from gaitdisc.results.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFI
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
 
-FEW = 3  # cycles of a leg below which a mean is that of single steps
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
 NO_CYCLE = "no cycle is kept"
 NO_LEGS = "a published reference has means and spreads, no single legs to take limits from"
@@ -50,8 +51,8 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         why = f"nobody of the reference walked {pooled.condition!r}; it has {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
-    numbers, silent = ((), why) if why else outstanding(legs, like.curves, of_values=like.values)
     profile, no_profile = (None, why) if why else profile_of(legs, like.curves)
+    numbers, silent = ((), why) if why else outstanding(legs, like.curves, None, like.values, profile)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
     light, reasons = light_of(pooled, legs)
     return ClinicalReading(
@@ -68,7 +69,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         consistency_of(legs),
         bands(like.curves),
         spatiotemporal_limits(like.values),
-        () if why else like.words,
+        () if why else (*like.words, *speed_words(legs, like.values)),
     )
 
 
@@ -114,26 +115,38 @@ def multiple_correlation(curves: NDArray[np.float64]) -> float:
 
 
 def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tuple[str, ...]]:
-    """Red where nothing is reported, amber where it rests on little or something is spoiled, else green."""
+    """Red where nothing is reported, amber where something can be done about it, each with what; else green."""
     if not legs:
         return "red", tuple(refusal.reason for refusal in pooled.refusals) or (NO_CYCLE,)
     reasons = []
     few = [f"{pooled.counted(side)} {SIDES[side]}" for side in FEET if pooled.counted(side) < FEW]
     if few:
-        reasons.append(f"few cycles: {', '.join(few)}")
-    if pooled.refusals:
-        reasons.append(f"trials left out: {len({refusal.condition for refusal in pooled.refusals})}")
-    lost = list(dict.fromkeys(one.channel for one in pooled.findings if one.severity == "refused" and one.channel))
-    muscles = [name for name in lost if name.startswith("emg_")]
-    others = [name for name in lost if name not in muscles]
-    if muscles:
-        reasons.append(f"EMG left out: {len(muscles)} channels" if len(muscles) > 1 else "EMG left out: 1 channel")
-    if others:
-        reasons.append(f"channels left out: {', '.join(others)}")
-    kinds = list(dict.fromkeys(one.kind for one in pooled.findings if one.severity == "warning"))
-    if kinds:
-        reasons.append(f"warnings: {', '.join(kinds)}")
+        gone = len({refusal.condition for refusal in pooled.refusals})
+        words = f" ({gone} {'trial is' if gone == 1 else 'trials are'} left out)" if gone else ""
+        reasons.append(f"few cycles, {', '.join(few)}{words}: record until each leg has {FEW}")
+    lost: dict[str, list[Finding]] = {}
+    for one in pooled.findings:
+        if one.severity == "refused" and one.channel:
+            lost.setdefault(one.channel, []).append(one)
+    loose = [name for name in lost if name.startswith("emg_") and not _is_absent(lost[name], pooled.trials)]
+    if loose:
+        reasons.append(f"EMG lost in some trials, {', '.join(loose)}: fasten the electrodes")
+    reasons += [f"{name} left out: {_remedy(own[0])}" for name, own in lost.items() if not name.startswith("emg_")]
+    kinds = {one.kind: one for one in reversed(pooled.findings) if one.severity == "warning"}
+    reasons += [f"{kind}: {_remedy(one)}" for kind, one in reversed(kinds.items())]
     return ("amber" if reasons else "green"), tuple(reasons)
+
+
+def _is_absent(own: Sequence[Finding], trials: int) -> bool:
+    """Whether an electrode was never plugged in: nothing came from it in any trial, which is no fault."""
+    return len({one.file for one in own}) >= trials
+
+
+def _remedy(one: Finding) -> str:
+    """What to do: what a finding ends with, or where to look."""
+    _, there, remedy = one.spoils.rpartition("; ")
+    where = f" of {one.channel}" if one.channel else ""
+    return remedy if there else f"look at the curves{where} before you use {one.spoils or 'them'}"
 
 
 def variable_score(curves: NDArray[np.float64], mean: NDArray[np.float64]) -> NDArray[np.float64]:

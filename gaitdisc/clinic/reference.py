@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,9 @@ from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Provenance
 
 FEWEST = 5  # people below whom no limit is drawn
-ALPHA = 0.05  # chance that a healthy person's page says anything
+ALPHA = 0.05  # chance that anything of a healthy person's page is beyond its limits
+LINE_PEOPLE = 10  # controls from whom on limits follow the speed: the line's degree of freedom widens them by 2 %
+FARTHEST = 2.0  # d²/Sxx: how far a line is followed beyond the controls' speeds; limits widen up to √3 times
 SETTINGS = ("filters", "kinematics", "strides")
 
 
@@ -61,20 +64,50 @@ def bands(legs: Sequence[ReferenceLeg]) -> dict[str, Band]:
     return found
 
 
-def limits_of(values: NDArray[np.float64], people: int, tests: int = 1) -> Limits:
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Numbers of the reference's legs, and the speed that each was taken at where limits follow it."""
+
+    values: NDArray[np.float64]  # (leg,)
+    people: int
+    speeds: NDArray[np.float64] | None = None  # (leg,) [m/s]
+
+    def leverage(self, speed: float | None) -> float:
+        """d²/Sxx of a speed, people as the count: legs of one person walk at one speed; infinite without speeds."""
+        if self.speeds is None or speed is None or self.people < LINE_PEOPLE or not np.ptp(self.speeds):
+            return float("inf")
+        return float((speed - self.speeds.mean()) ** 2 / self.speeds.var() / self.people)
+
+    def limits(self, tests: int = 1, speed: float | None = None) -> Limits:
+        """Limits for one more leg, at a speed where the line of the numbers over the speed reaches that far.
+
+        >>> Sample(np.array([58.0, 60.0, 62.0, 60.0]), 4).limits().mean
+        60.0
+        """
+        mean, rest, far = float(self.values.mean()), self.values - self.values.mean(), self.leverage(speed)
+        follows = speed is not None and self.speeds is not None and far <= FARTHEST
+        if speed is not None and self.speeds is not None and follows:
+            own = self.speeds - self.speeds.mean()
+            slope = float(own @ self.values / (own @ own))
+            mean, rest = mean + slope * (speed - float(self.speeds.mean())), rest - slope * own
+        free = self.people - 1 - follows
+        legs = (len(self.values) - 1) * free / max(self.people - 1, 1)  # degrees of freedom of the spread over legs
+        sd = float(np.sqrt(rest @ rest / legs)) if legs > 0 else float("nan")
+        return limits_about(mean, sd, self.people, tests, far if follows else None)
+
+
+def limits_about(mean: float, sd: float, people: int, tests: int = 1, far: float | None = None) -> Limits:
     """Limits within which one more healthy leg lies, all of so many tests together, with probability 1 - ALPHA.
 
-    Prediction limits of a normal distribution whose mean and spread are themselves estimated; legs of one person are
-    alike, so that people count as degrees of freedom. Bonferroni's correction for the tests.
-
-    >>> limits_of(np.array([58.0, 60.0, 62.0, 60.0]), 4).mean
-    60.0
+    mean ± t(1 - ALPHA / (2 tests), n - 1) · sd · √(1 + 1/n): prediction limits of a normal distribution whose mean and
+    spread are themselves estimated; legs of one person are alike, so that n counts people. Bonferroni's correction for
+    the tests. About a line n - 2 degrees of freedom are left, and its leverage is added under the root.
     """
-    mean, sd = float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else float("nan")
     if people < FEWEST:
         return Limits(float("-inf"), float("inf"), mean, sd, people)
-    reach = float(student.ppf(1 - ALPHA / (2 * tests), people - 1)) * sd * np.sqrt(1 + 1 / people)
-    return Limits(mean - reach, mean + reach, mean, sd, people)
+    free, wider = people - 1 - (far is not None), far or 0.0
+    reach = float(student.ppf(1 - ALPHA / (2 * tests), free)) * sd * float(np.sqrt(1 + 1 / people + wider))
+    return Limits(mean - reach, mean + reach, mean, sd * float(np.sqrt(1 + wider)), people)
 
 
 def spatiotemporal_limits(legs: Sequence[ReferenceLeg]) -> Mapping[str, Limits]:
@@ -82,5 +115,5 @@ def spatiotemporal_limits(legs: Sequence[ReferenceLeg]) -> Mapping[str, Limits]:
     found = {}
     for name in dict.fromkeys(name for leg in legs for name in leg.values):
         own = [leg for leg in legs if name in leg.values]
-        found[name] = limits_of(np.array([leg.values[name] for leg in own]), len({leg.person for leg in own}))
+        found[name] = Sample(np.array([leg.values[name] for leg in own]), len({leg.person for leg in own})).limits()
     return found

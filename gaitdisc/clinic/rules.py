@@ -1,4 +1,4 @@
-"""What of a person's legs lies beyond the limits of the reference, by the rules of `rules.toml`; the farthest first."""
+"""What of a person's legs stands out from the reference, in two tiers, by the rules of `rules.toml`."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.clinic.reference import FEWEST, limits_of
+from gaitdisc.clinic.reference import FARTHEST, FEWEST, Sample, limits_about
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reference import Noted, ReferenceLeg
+from gaitdisc.results.clinical_reference import FEW, SCORE_LEAST, Limits, Noted, Profile, ReferenceLeg, Score
 from gaitdisc.results.leg_curves import BY_NAME, LegCurves
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
 
-PARTS = ("contact", "loading", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
+PARTS = ("contact", "loading", "single support", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
+RULE_WORDS = ("name", "variable", "value", "part", "take", "less", "more", "group")
 TAKES = {"min": np.min, "max": np.max, "mean": np.mean, "range": np.ptp}
 LOADING, LATE, PUSH_OFF = (0, 20), 30, (50, 75)  # % of the cycle
 SPATIOTEMPORAL_UNITS = {
@@ -26,7 +27,11 @@ SPATIOTEMPORAL_UNITS = {
     "per_min": ("steps/min", 0),
     "s": ("s", 2),
     "m": ("m", 2),
+    "deg": ("deg", 1),
 }
+SPEED = "speed_m_per_s"
+SCORE = "gait profile score"
+SCORE_WORDS = "gait profile score above that of the controls"
 
 
 @dataclass(frozen=True)
@@ -41,6 +46,7 @@ class Rule:
     least: float  # smallest distance to the reference's mean that is spoken of
     less: str  # what too small a number is called; empty where it is nothing
     more: str  # what too large a number is called; empty where it is nothing
+    group: str = ""  # rules of one group and direction say one thing; empty: of one variable
 
     @property
     def unit(self) -> str:
@@ -80,6 +86,7 @@ def part_of(part: str, stance_percent: float) -> slice | None:
     else:
         off, swing = stance_percent, 100 - stance_percent
         first, last = {
+            "single support": (round(off) - 50, 50),  # of legs that walk alike: the other's off and contact
             "stance": (0, round(off)),
             "late stance": (LATE, round(off)),
             "swing": (round(off), 100),
@@ -101,14 +108,14 @@ def rules() -> tuple[Rule, ...]:
 
 def rule_words() -> list[str]:
     """Name of every rule, and what it calls too little and too much."""
-    return [word for rule in rules() for word in (rule.name, rule.less, rule.more) if word]
+    return [word for rule in rules() for word in (rule.name, rule.less, rule.more) if word] + [SCORE, SCORE_WORDS]
 
 
 def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
     """Rules of a table, each checked."""
     found = []
     for entry in data["rules"]:
-        words = {key: str(entry.get(key, "")) for key in ("name", "variable", "value", "part", "take", "less", "more")}
+        words = {key: str(entry.get(key, "")) for key in RULE_WORDS}
         least = entry.get("least")
         known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
         said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
@@ -135,40 +142,81 @@ def outstanding(
     reference: Sequence[ReferenceLeg],
     table: Sequence[Rule] | None = None,
     of_values: Sequence[ReferenceLeg] = (),
+    profile: Profile | None = None,
 ) -> tuple[tuple[Noted, ...], str]:
     """Every number that a rule takes of a person's legs, those that stand out first; and why there is none.
 
     table: those of `rules.toml` where none are given
     of_values: controls for spatiotemporal values, where they are others than those for curves
+    profile: its score is one number more
     """
     people = len({leg.person for leg in reference})
     if people < FEWEST:
         count = f"{people} people" if people != 1 else "1 person"
         return (), f"limits need a reference of {FEWEST} people or more; it has {count} who walked so"
-    sets = [(rule, of_values or reference if rule.value else reference) for rule in table or rules()]
-    known = [(rule, values) for rule, own in sets if (values := _of_reference(rule, own)) is not None]
-    numbers, found = [], []
-    for rule, values in known:
+    wide = of_values or reference  # a speed that the group for curves lacks is on the line of everybody
+    near = wide if speed_words(legs, reference) else reference
+    sets = [(rule, wide if rule.value else near) for rule in table or rules()]
+    samples = [(rule, sample) for rule, own in sets if (sample := _sample(rule, own)) is not None]
+    numbers = []
+    for rule, sample in samples:
         for leg in legs.values():
             curves = {name: leg.mean(name) for name in leg.cycles if name == rule.variable}
             own = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
             if (number := rule.number(curves, own, leg.stance_percent)) is not None:
-                numbers.append((rule, values, leg, number))
-    for rule, values, leg, number in numbers:
-        limits = limits_of(*values, tests=len(numbers))
-        shown, low, high = (round(one, rule.digits) for one in (number, limits.low, limits.high))
-        beyond = rule.less if shown < low else rule.more if shown > high else ""  # as printed: 50 is not beyond 50
-        words = beyond if abs(number - limits.mean) >= rule.least else ""
+                numbers.append((rule, sample, leg, number))
+    score = profile.both if profile is not None and profile.both and np.isfinite(profile.both.reference_sd) else None
+    tests, found = len(numbers) + (score is not None), []
+    for rule, sample, leg, number in numbers:
+        own_speed = float(leg.values[SPEED].mean()) if SPEED in leg.values and rule.value != SPEED else None
         count = len(leg.cycles[rule.variable]) if rule.variable else len(leg.values[rule.value])
-        reach = limits.high - limits.mean
-        excess = abs(number - limits.mean) / reach if reach > 0 else float("inf")
-        found.append(Noted(rule.name, words, leg.side, number, rule.unit, rule.digits, limits, count, excess))
-    return tuple(sorted(found, key=lambda one: (not one.words, -one.excess))), ""
+        found.append(_note(rule, leg.side, number, sample.limits(tests, own_speed), count))
+    if score is not None:
+        found.append(_note_score(score, legs, tests))
+    return tuple(sorted(found, key=lambda one: (-one.tier, -one.excess))), ""
 
 
-def _of_reference(rule: Rule, reference: Sequence[ReferenceLeg]) -> tuple[np.ndarray, int] | None:
-    """Numbers of the reference's legs and how many people these are; None below the fewest people."""
-    found = [(leg.person, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference]
-    known = [(person, number) for person, number in found if number is not None]
-    people = len({person for person, _ in known})
-    return (np.array([number for _, number in known]), people) if people >= FEWEST else None
+def speed_words(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]) -> tuple[str, ...]:
+    """What of a speed that no control walks at is allowed for."""
+    speeds = np.array([leg.values[SPEED] for leg in reference if SPEED in leg.values])
+    own = [float(leg.values[SPEED].mean()) for leg in legs.values() if SPEED in leg.values]
+    if not own or not len(speeds) or speeds.min() <= np.mean(own) <= speeds.max():
+        return ()
+    speed, sample = float(np.mean(own)), Sample(speeds, len({leg.person for leg in reference}), speeds)
+    range_words = f"{speed:.2f} m/s is outside the controls' {speeds.min():.2f} to {speeds.max():.2f} m/s"
+    if sample.leverage(speed) <= FARTHEST:
+        return (f"{range_words}: limits are those at this speed, on a line through the controls.",)
+    return (f"{range_words}, too far to allow for it: what stands out may be due to the speed.",)
+
+
+def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> Noted:
+    def beyond(low: float, high: float) -> bool:  # as printed: 50 is not beyond 50
+        return not round(low, rule.digits) <= round(number, rule.digits) <= round(high, rule.digits)
+
+    above = number > limits.mean
+    words = rule.more if above else rule.less
+    reach = limits.high - limits.mean
+    excess = abs(number - limits.mean) / reach if reach > 0 else float("inf")
+    spoken = words and count >= FEW and abs(number - limits.mean) >= rule.least
+    tier = 2 if spoken and beyond(limits.low, limits.high) else 1 if spoken and beyond(*limits.band) else 0
+    group = f"{rule.group or rule.variable or rule.value} {'more' if above else 'less'}"
+    shown = (number, rule.unit, rule.digits, limits, count, excess, tier, group)
+    return Noted(rule.name, words if tier else "", side, *shown)
+
+
+def _note_score(score: Score, legs: Mapping[str, LegCurves], tests: int) -> Noted:
+    """Gait profile score of both legs, read as a number of the page."""
+    limits = limits_about(score.reference_mean, score.reference_sd, score.people, tests)
+    rule = Rule(SCORE, "", "profile_deg", "", "", SCORE_LEAST, "", SCORE_WORDS)
+    return _note(rule, "", score.value, limits, min(leg.count for leg in legs.values()))
+
+
+def _sample(rule: Rule, reference: Sequence[ReferenceLeg]) -> Sample | None:
+    """Numbers of the reference's legs, and their speeds where all are known; None below the fewest people."""
+    found = [(leg, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference]
+    known = [(leg, number) for leg, number in found if number is not None]
+    people = len({leg.person for leg, _ in known})
+    if people < FEWEST:
+        return None
+    speeds = np.array([leg.values.get(SPEED, np.nan) for leg, _ in known])
+    return Sample(np.array([number for _, number in known]), people, speeds if np.isfinite(speeds).all() else None)

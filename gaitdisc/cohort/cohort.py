@@ -108,7 +108,7 @@ def walked_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterato
 def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, float]:
     if hidden not in HIDDEN:
         raise SchemaError(
-            f"the effect that is hidden is one of: {', '.join(HIDDEN)}", f"found {hidden!r}", "Use one of these."
+            f"the hidden effect must be one of {', '.join(HIDDEN)}", f"found {hidden!r}", "Use one of these."
         )
     spring = Spring(STIFFNESS * (0.6 if hidden == "scaled moment" else 1.0))
     if hidden in ("spring", "scaled moment"):

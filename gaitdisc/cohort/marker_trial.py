@@ -224,10 +224,7 @@ def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generat
         )
         force = force @ TO_LABORATORY.T
         moment = np.cross(point - belt.corners.mean(axis=0), force)
-        columns += [
-            force + rng.normal(0.0, FORCE_N, force.shape),
-            moment + rng.normal(0.0, MOMENT_NM, moment.shape),
-        ]
+        columns += [force + rng.normal(0.0, FORCE_N, force.shape), moment + rng.normal(0.0, MOMENT_NM, moment.shape)]
         channels += [
             Channel(f"{belt.name}_{kind}{axis}", "vertical_force" if kind + axis == "fz" else quantity, unit)
             for kind, quantity, unit in (("f", "force", "N"), ("m", "moment", "N m"))
@@ -308,7 +305,4 @@ def _seen(
     """Force and moment about the middle of the plate, as it reports them."""
     apart = belt.corners.mean(axis=0) - plate.corners.mean(axis=0) + walked_m[:, None] * np.array([1.0, 0.0, 0.0])
     moment = step.moment + np.cross(apart, step.force)
-    return [
-        step.force + rng.normal(0.0, FORCE_N, step.force.shape),
-        moment + rng.normal(0.0, MOMENT_NM, moment.shape),
-    ]
+    return [step.force + rng.normal(0.0, FORCE_N, step.force.shape), moment + rng.normal(0.0, MOMENT_NM, moment.shape)]

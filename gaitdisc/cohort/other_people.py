@@ -30,15 +30,11 @@ class Pattern:
 PATTERNS = {
     "stiff knee": Pattern((("knee_angle", 0.74, 0.20, -26.0), ("hip_adduction", 0.78, 0.18, -4.0))),
     "drop foot": Pattern(
-        (
-            ("ankle_angle", 0.86, 0.24, -16.0),
-            ("hip_flexion", 0.84, 0.20, 7.0),
-            ("knee_angle", 0.78, 0.20, 8.0),
-        ),
+        (("ankle_angle", 0.86, 0.24, -16.0), ("hip_flexion", 0.84, 0.20, 7.0), ("knee_angle", 0.78, 0.20, 8.0)),
         (("emg_ta", 0.35),),
     ),
     "crouch": Pattern(
-        (("knee_angle", 0.0, ALWAYS, 22.0), ("hip_flexion", 0.0, ALWAYS, 13.0), ("ankle_angle", 0.0, ALWAYS, 9.0)),
+        (("knee_angle", 0.0, ALWAYS, 22.0), ("hip_flexion", 0.0, ALWAYS, 13.0), ("ankle_angle", 0.0, ALWAYS, 9.0))
     ),
     "asymmetric": Pattern((("knee_angle", 0.74, 0.20, -18.0), ("hip_flexion", 0.85, 0.25, -6.0)), (), (1,)),
 }
@@ -62,7 +58,9 @@ def somebody(kind: str, seed: int = 1, sex: str = "f") -> Person:
 def walking_with(person: Person, pattern: str) -> Person:
     """Return the same person, who walks in one of `PATTERNS`."""
     if pattern not in PATTERNS:
-        raise SchemaError(f"a person is one of: {', '.join(PEOPLE)}", f"found {pattern!r}", "Use one of these.")
+        raise SchemaError(
+            f"the kind of person must be one of {', '.join(PEOPLE)}", f"found {pattern!r}", "Use one of these."
+        )
     chosen = PATTERNS[pattern]
     bumps = tuple(
         Bump(side, JOINTS.index(joint), centre, half_width, degrees)

@@ -125,9 +125,9 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
     quick, slow, upright = moved(leg, tuple(strengths), Belt(), _loop(person), worn, tables, noise)
     if not upright:
         raise StrideError(
-            "a walk needs legs that stay under the body",
+            "the legs of a simulated walk must stay under the body",
             f"{person.name}, {device.stiffness:g} N m/deg, seed {seed}: a segment turned by more than 143 deg",
-            "Draw another person; please report the seed.",
+            "Draw another person, and please report the seed.",
         )
     return _kept(person, device, seed, quick, slow)
 

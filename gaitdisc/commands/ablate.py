@@ -14,12 +14,12 @@ def ablate(
     study: StudyPlace,
     out: RunPlace = None,
     length: Annotated[list[float] | None, typer.Option(help="Training length [s]; may be repeated.")] = None,
-    part: Annotated[str, typer.Option(help="Seconds of the training part that are taken: first or last.")] = "first",
+    part: Annotated[str, typer.Option(help="Seconds of the training part to use: first or last.")] = "first",
     jobs: Jobs = 1,
     cluster: Cluster = "",
     quiet: Quiet = False,
 ) -> None:
-    """Fit the models to less and less data: how much is enough."""
+    """Fit the models to less and less data, to find how much is enough."""
     from gaitdisc.batch.vary_study import ablate_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.response.modalities import LENGTHS_S

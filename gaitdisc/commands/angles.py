@@ -9,25 +9,25 @@ import typer
 
 
 def angles(
-    trial: Annotated[Path, typer.Argument(help="Markers of the trial, .c3d or .trc; or segments of Theia3D, .c3d.")],
+    trial: Annotated[Path, typer.Argument(help="Markers of the trial (.c3d, .trc), or segments of Theia3D (.c3d).")],
     out: Annotated[Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto.")],
     static: Annotated[
         Path | None,
-        typer.Option("--static", help="Markers of the same person standing: .c3d or .trc; segments need none."),
+        typer.Option("--static", help="Static trial of the same person (.c3d, .trc); not needed for segments."),
     ] = None,
     marker_set: Annotated[
-        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; recognised by the labels by default.")
+        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; by default recognised by the labels.")
     ] = "",
-    joints: Annotated[str, typer.Option(help="free, held or planar; as the marker set says by default.")] = "",
+    joints: Annotated[str, typer.Option(help="free, held or planar; by default as in the marker set.")] = "",
     forward: Annotated[
         tuple[float, float, float] | None, typer.Option(help="Direction of walking in the laboratory's axes.")
     ] = None,
     widths: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(help="Left and right knee, left and right ankle [m], where the static file has none."),
+        typer.Option(help="Left and right knee, left and right ankle [m], if the static file has none."),
     ] = None,
 ) -> None:
-    """Joint angles from markers or segments, with the package's signs; widths are those of the static C3D, if any."""
+    """Joint angles from markers or segments, with the package's signs; widths come from the static C3D, if any."""
     from dataclasses import replace
 
     from gaitdisc.ingest.c3d_kinetics import body_measures_in

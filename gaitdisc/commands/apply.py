@@ -14,20 +14,20 @@ def apply(
     model: Annotated[Path, typer.Argument(help="Folder of a model that `gaitdisc reconstruct` saved.")],
     recording: Annotated[Path, typer.Argument(help="File with the model's sensors.")],
     calibrate: Annotated[
-        Path | None, typer.Option(help="A walk of the same person with all states, to correct the model by.")
+        Path | None, typer.Option(help="A walk of the same person with all states, used to correct the model.")
     ] = None,
-    missing: Annotated[str, typer.Option(help="What stands for a missing reading: none, mean or last.")] = "none",
+    missing: Annotated[str, typer.Option(help="Replacement of a missing reading: none, mean or last.")] = "none",
     out: Annotated[
         Path | None, typer.Option(help="File to write; by default RECORDING_reconstructed.mot in this folder.")
     ] = None,
 ) -> None:
-    """Reconstruct the states of a recording by a saved model, with their errors where the recording has them."""
+    """Reconstruct the states of a recording with a saved model, and their errors if they were recorded."""
     from gaitdisc.batch.reconstruct_study import reconstruct_recording
     from gaitdisc.own_files import claim_file
 
     if model.is_file():
         raise SchemaError(
-            "a model is a folder that `gaitdisc reconstruct` saved",
+            "a model must be a folder that `gaitdisc reconstruct` saved",
             f"{model.name} is a file",
             "Name the model first: gaitdisc apply MODEL RECORDING.",
         )

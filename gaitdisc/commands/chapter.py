@@ -10,15 +10,16 @@ import typer
 from gaitdisc.batch.chapter_parts import Part, costs, parts_of
 from gaitdisc.commands.options import SOME_REFUSED, Quiet
 from gaitdisc.commands.run_report import stoppable_bar
+from gaitdisc.errors import LOG
 
 NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar goes before it is done
 
 
 def chapter(
-    number: Annotated[int, typer.Argument(metavar="3|4|5", help="The chapter.")],
-    out: Annotated[Path, typer.Argument(help="Folder to write; each part has a folder of its own in it.")],
-    part: Annotated[str, typer.Option(help="This part alone.")] = "",
-    quick: Annotated[bool, typer.Option("--quick", help="A small part of each study, as its test runs it.")] = False,
+    number: Annotated[int, typer.Argument(metavar="3|4|5", help="Number of the chapter: 3, 4 or 5.")],
+    out: Annotated[Path, typer.Argument(help="Folder to write; each part has its own folder inside.")],
+    part: Annotated[str, typer.Option(help="Compute only this part.")] = "",
+    quick: Annotated[bool, typer.Option("--quick", help="Compute a small part of each study, as in its test.")] = False,
     data: Annotated[
         Path | None, typer.Option(help="Folder of real recordings, gait/ and fields/; by default GAITDISC_DATA.")
     ] = None,
@@ -37,7 +38,7 @@ def chapter(
         for place, one in enumerate(possible, 1):
             before, words = sum(seconds.values()) - left, f"{one.name}, {place} of {len(possible)}"
             if not quiet:
-                typer.echo(f"{words}: about {left / 60:.1f} min of one core left in all", err=True)
+                LOG.info(f"{words}: about {left / 60:.1f} min of one core remain in total")
             left -= seconds[one]
 
             def ticked(spent: float, one: Part = one, before: float = before, words: str = words) -> None:
@@ -47,15 +48,15 @@ def chapter(
             typer.echo(f"{one.name}: {'kept as it stands' if made.kept else 'done'}: {made.folder}")
     for one in parts:
         if one not in possible:
-            typer.echo(f"left out: {lacks[one]}", err=True)
+            LOG.info(f"left out: {lacks[one]}")
     if len(possible) < len(parts):
         raise typer.Exit(SOME_REFUSED)
 
 
-chapter.__doc__ = f"""Compute the tables and figures of chapter 3, 4 or 5 anew, by the studies behind the pages.
+chapter.__doc__ = f"""Compute the tables and figures of chapter 3, 4 or 5 again, with the studies behind the pages.
 
-What is finished is kept; the same command goes on from where it was stopped. Each part writes its page or tables, and
-`printed.md` with what it prints. Minutes are of one core, roughly; in brackets with --quick.
+Finished parts are kept; the same command continues after an interruption. Each part writes its page or tables, and its
+output to `printed.md`. Times are approximate minutes of one core; in brackets with --quick.
 
 \b
 {costs()}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, Json
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import LOG, SchemaError
 
 if TYPE_CHECKING:
     from gaitdisc.processing.inspection import Inspection
@@ -26,12 +26,12 @@ def check(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Read everything, write nothing, and print a traffic light for each trial."""
+    """Read all files without writing any, and print a traffic light for each trial."""
     seen = []
     for inspection in _inspections(what):
         seen.append(inspection)
         if not as_json:
-            typer.echo(f"  read {inspection.participant} {inspection.name}", err=True)
+            LOG.info(f"  read {inspection.participant} {inspection.name}")
     if as_json:
         typer.echo(json.dumps([_as_dict(inspection) for inspection in seen], indent=1))
     else:
@@ -48,7 +48,7 @@ def _inspections(what: Path) -> Iterator[Inspection]:
     from gaitdisc.processing.inspection import inspected_file, inspected_study
 
     if not what.exists():
-        raise SchemaError("a study, a recording or a folder is needed", f"{what} is not there", "Check the path.")
+        raise SchemaError("the path must be a study, recording or folder", f"{what} does not exist", "Check the path.")
     if what.suffix == ".toml" or (what / "study.toml").is_file():
         yield from inspected_study(load_study(what))
         return
@@ -57,8 +57,8 @@ def _inspections(what: Path) -> Iterator[Inspection]:
         files = sorted(file for file in what.rglob("*") if file.suffix.lower() in ENDINGS)
         if not files:
             raise SchemaError(
-                f"a study or recordings ({', '.join(ENDINGS)}) are needed",
-                f"{what} holds none",
+                f"the path must lead to a study or to recordings ({', '.join(ENDINGS)})",
+                f"{what} contains none",
                 "Name a study, a file, or a folder of recordings.",
             )
     with C3DReader() as reader:
@@ -77,10 +77,7 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
     table = Table("light", "who", "trial", "channels", "strides", "warnings", box=box.SIMPLE)
     for inspection in seen:
         light = LIGHTS[inspection.light]
-        lines = [
-            f"{side} {kept}" + (f" ({lost} dropped)" if lost else "")
-            for side, (kept, lost) in inspection.strides.items()
-        ]
+        rows = [f"{side} {n}" + (f" ({out} dropped)" if out else "") for side, (n, out) in inspection.strides.items()]
         warnings = sum(finding.severity != "note" for finding in inspection.findings)
         table.add_row(
             plain(inspection.light, light),
@@ -90,7 +87,7 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
                     inspection.participant,
                     "\n".join(part for part in (inspection.condition, inspection.name) if part),
                     "\n".join(f"{key} {words}" for key, words in inspection.streams.items()),
-                    "\n".join(lines),
+                    "\n".join(rows),
                     str(warnings or ""),
                 ),
             ),

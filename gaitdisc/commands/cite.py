@@ -12,7 +12,7 @@ def cite(
     folder: Annotated[Path, typer.Argument(help="Folder of a result, or of a part of a chapter.")],
     out: Annotated[Path | None, typer.Option(help="File to write, .bib; by default it is printed.")] = None,
 ) -> None:
-    """Print BibTeX of this program and of the methods that the result in a folder really used."""
+    """Print BibTeX of this program and of the methods that the result in a folder used."""
     from gaitdisc.batch.citations import citations_of
     from gaitdisc.whole_file import write_whole
 

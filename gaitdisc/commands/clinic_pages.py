@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,13 +10,16 @@ from gaitdisc.errors import GaitdiscError, SchemaError, WriteError
 from gaitdisc.whole_file import remove_file, write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from gaitdisc.ingest.study import Study
     from gaitdisc.report.clinic.values import PageWords
     from gaitdisc.results.clinical_reference import ClinicalReference, PersonSession
+    from gaitdisc.results.pooled_cycles import PooledCycles
     from gaitdisc.results.provenance import Provenance
     from gaitdisc.results.study_run import StudyRun
 
+LABORATORY = "laboratory"  # folder of a run: what the pages were drawn with
 REFERENCE = "reference"  # folder of a run, beside its cycles
 WORDS = "words.csv"  # of another language, beside them
 
@@ -73,14 +76,49 @@ def _english() -> list[str]:
 
 
 def kept_words(run_folder: Path) -> PageWords:
-    """Words of the pages of a run: English where no others were kept."""
+    """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
+    from gaitdisc.report.clinic.laboratory import load_laboratory
     from gaitdisc.report.clinic.values import ENGLISH, read_words
 
-    return read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
+    words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
+    return replace(words, laboratory=load_laboratory(run_folder))
+
+
+def say_new_recordings(study: Study) -> None:
+    """Say how many recordings lie beside those of each person that the study does not name; their names stay away."""
+    import typer
+
+    owners: dict[Path, str] = {}
+    named = {
+        study.path_of(file).resolve(): one.id for one in study.participants for t in one.trials for file in t.files
+    }
+    for path, who in named.items():
+        owners.setdefault(path.parent, who)
+    endings, found = {path.suffix.lower() for path in named}, dict.fromkeys(owners.values(), 0)
+    for folder, who in owners.items():
+        beside = folder.iterdir() if folder.is_dir() else ()
+        found[who] += sum(one.suffix.lower() in endings and one.resolve() not in named for one in beside)
+    new = ", ".join(f"{count} beside those of {who}" for who, count in found.items() if count)
+    if new:
+        words = "New recordings are not in the study file: {}. Take them up: gaitdisc watch STUDY --from RECORDINGS."
+        typer.echo(words.format(new), err=True)
+
+
+def _keep_laboratory(run_folder: Path) -> None:
+    """Note beside a run what `clinic.toml` says, so that pages of another laboratory do not stand."""
+    from gaitdisc.report.clinic.laboratory import Laboratory, load_laboratory
+    from gaitdisc.results.unit_folder import sealed_text
+
+    own, place = load_laboratory(run_folder), run_folder / LABORATORY / "laboratory.json"
+    if own == Laboratory():
+        remove_file(place)
+    else:
+        write_whole(place, sealed_text(asdict(own)))
 
 
 def page_of_run(run: StudyRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
+    _keep_laboratory(run_folder)
     from gaitdisc.report.saved_page import page_of
     from gaitdisc.results.kind import find_kind
 
@@ -101,39 +139,66 @@ def write_people(
     if not run.of(CYCLES):
         return None
     from gaitdisc.batch.read_people import people_of, sessions_of
-    from gaitdisc.report.clinic.person_page import page_names, write_index
+    from gaitdisc.report.clinic.kept_parts import hash_cycles, keep_part, read_part
+    from gaitdisc.report.clinic.person_page import index_rows, page_names, write_index
 
     report, reference, people = run_folder / "report", kept_reference(run_folder), people_of(run)
     say = kept_words(run_folder)
     names = dict(zip(people, page_names(people), strict=True))
-    written, failed = [], []
-    for title, person in sessions_of(run, reference):
+    house = say.laboratory
+    shared = repr(replace(say, laboratory=replace(house, affected={}, comments={})))
+    rests_on = (_hash_folder(run_folder / REFERENCE), shared, run.nominal, str(pdf))
+    rows: dict[str, list[dict[str, str]]] = {}
+    keys: dict[str, str] = {}
+    failed: list[tuple[str, str]] = []
+
+    def stands(title: str, own: Sequence[PooledCycles]) -> bool:
+        said = (repr(words.get(own[0].subject)) for words in (house.affected, house.comments))
+        keys[title] = hash_cycles(own, *rests_on, *said)
+        kept = read_part(report, f"people-{names[title]}", keys[title])
+        if kept:
+            rows[title] = kept
+        return bool(kept)
+
+    for title, person in sessions_of(run, reference, stands):
         if isinstance(person, GaitdiscError):
             failed.append((title, str(person)))
             continue
         try:
-            for page in _pages(person, names[title], reference, run.provenance, report, say, pdf):
+            pages = _pages(person, names[title], reference, run.provenance, report, say, pdf)
+            for page in pages:
                 progress(page)
-            written.append((person, names[title]))
+            rows[title] = index_rows(person, names[title], say)
+            files = [*pages, *(report / "people" / names[title]).glob("*.csv")]
+            keep_part(report, f"people-{names[title]}", keys[title], rows[title], files)
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
             raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
-    return write_index(_with_failed(run, failed, run_folder), written, reference, report, say)
+    own = [row for title in names for row in rows.get(title, [])]
+    return write_index(_with_failed(run, failed, run_folder), own, reference, report, say)
 
 
-def write_before_after(run: StudyRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
-    """Write the page of a person before and after."""
+def _hash_folder(folder: Path) -> str:
+    from gaitdisc.results.unit_folder import file_sha256
+
+    return " ".join(file_sha256(path) for path in sorted(folder.glob("*")) if path.is_file())
+
+
+def write_before_after(
+    run: StudyRun, run_folder: Path, person: str, words: tuple[str, str], pdf: bool = False
+) -> list[Path]:
+    """Write the page of a person before and after, as HTML and where wanted as PDF."""
     from gaitdisc.batch.read_people import before_and_after, readings_of
     from gaitdisc.clinic.reading import contrast_of
-    from gaitdisc.report.clinic.person_page import PersonSession, page_names, write_person_page
+    from gaitdisc.report.clinic.person_page import PersonSession, page_names
 
     reference = kept_reference(run_folder)
     before, after = before_and_after(readings_of(run, reference), person, words)
     title = f"{person} {words[0]} {words[1]}"
     page = PersonSession(title, (after, before), (contrast_of(before, after),))
     name = page_names([title])[0]
-    return write_person_page(page, name, reference, run.provenance, run_folder / "report", kept_words(run_folder))
+    return _pages(page, name, reference, run.provenance, run_folder / "report", kept_words(run_folder), pdf)
 
 
 def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
@@ -169,7 +234,7 @@ def _pages(
     from gaitdisc.report.clinic.person_page import write_person_page
 
     page = write_person_page(person, name, reference, provenance, report, say)
-    if not pdf:
+    if not (pdf or say.laboratory.pdf):
         return [page]
     from gaitdisc.report.clinic.person_pdf import write_person_pdf
 

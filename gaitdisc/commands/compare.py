@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.options import SOME_REFUSED
+from gaitdisc.errors import LOG
 
 if TYPE_CHECKING:
     from gaitdisc.results.mismatch import Mismatch, Smallest
@@ -22,23 +23,24 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
         Path | None, typer.Option(help="Folder of the report; by default ./compare, or STUDY/compare.")
     ] = None,
     participant: Annotated[
-        str, typer.Option(help="Of a study: compare the strides of this one; by default all, paired.")
+        str,
+        typer.Option(help="In a study: compare the strides of this participant; by default all participants, paired."),
     ] = "",
     channel: Annotated[list[str] | None, typer.Option(help="Only this channel; may be repeated.")] = None,
-    cutoff: Annotated[float, typer.Option(min=1.0, help="Low-pass of two files' angles and moments [Hz].")] = 6.0,
+    cutoff: Annotated[float, typer.Option(min=1.0, help="Low-pass of the angles and moments of two files [Hz].")] = 6.0,
     detector: Annotated[
-        str, typer.Option(help="Initial contact in two files: auto, force, events, markers or angles.")
+        str, typer.Option(help="Detector of initial contact in two files: auto, force, events, markers or angles.")
     ] = "auto",
-    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest difference of an angle named [deg].")] = 2.0,
-    smallest_moment: Annotated[float, typer.Option(min=0.0, help="The same of a moment [N m/kg].")] = 0.1,
+    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference named [deg].")] = 2.0,
+    smallest_moment: Annotated[float, typer.Option(min=0.0, help="The same for moments [N m/kg].")] = 0.1,
     smallest_share: Annotated[
-        float, typer.Option(min=0.0, help="The same of all else: share of the range of the curve.")
+        float, typer.Option(min=0.0, help="Smallest difference of other channels: share of the range of the curve.")
     ] = 0.05,
     body_weight: Annotated[
-        float | None, typer.Option(min=1.0, help="Body weight [N]: forces are named from that share of it.")
+        float | None, typer.Option(min=1.0, help="Body weight [N]; forces are then named from that share of it.")
     ] = None,
 ) -> None:
-    """Say where over the stride two walks disagree, how much, and whether that is more than chance."""
+    """Compare two walks over the stride: where they differ, by how much, and whether significantly."""
     from rich.console import Console
 
     from gaitdisc.batch.compare_recordings import compare_files
@@ -54,7 +56,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     if second is None:
         mismatch = _of_study(first, participant, channels, smallest)
     elif participant:
-        raise typer.BadParameter("--participant belongs to a study; two files are given")
+        raise typer.BadParameter("--participant requires a study; two files are given")
     else:
         mismatch = compare_files(first, second, channels, cutoff, detector, smallest)
     mismatch.save(folder)
@@ -63,7 +65,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     Console().print(mismatch_text(mismatch))
     for finding in mismatch.findings:
         if finding.severity != "note":
-            typer.echo(finding.line(), err=True)
+            LOG.info(finding.line())
     typer.echo(f"report: {page}")
     if any(finding.severity == "refused" for finding in mismatch.findings):
         raise typer.Exit(SOME_REFUSED)

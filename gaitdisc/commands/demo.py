@@ -9,25 +9,30 @@ import typer
 
 from gaitdisc.commands.options import SOME_REFUSED, Jobs, Quiet
 from gaitdisc.commands.run_report import report_on
+from gaitdisc.errors import LOG
 
 
 def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
-    folder: Annotated[Path, typer.Argument(help="Folder to make.")] = Path("demo"),
+    folder: Annotated[Path, typer.Argument(help="Folder to create.")] = Path("demo"),
     seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk; the dissertation's is 240.")] = 60.0,
-    people: Annotated[int, typer.Option(min=1, max=12, help="How many of the twelve.")] = 12,
+    people: Annotated[int, typer.Option(min=1, max=12, help="Number of participants, at most twelve.")] = 12,
     hide: Annotated[
-        str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
+        str, typer.Option(help="Difference between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
-    clinic: Annotated[bool, typer.Option("--clinic", help="A week of a clinic instead: people, pages, index.")] = False,
+    clinic: Annotated[
+        bool, typer.Option("--clinic", help="Simulate a week of a clinic instead: people, pages, index.")
+    ] = False,
     laboratory: Annotated[
-        str, typer.Option(help="What it gives: angles; markers and belts; or overground, short trials over two plates.")
+        str,
+        typer.Option(help="Data of each walk: angles; markers and belts; or overground, short trials over two plates."),
     ] = "angles",
     jobs: Jobs = 2,
     quiet: Quiet = False,
 ) -> None:
-    """Let the embedded cohort walk without and with an ankle spring, and do the whole job on its recordings."""
+    """Simulate walks of the embedded cohort without and with an ankle spring, and analyse them completely."""
+    LOG.setLevel("WARNING" if quiet else "INFO")
     if clinic:
-        return _clinic(folder, jobs, quiet)
+        return _clinic(folder, jobs)
     from gaitdisc.batch.demonstration import write_demonstration
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
@@ -37,10 +42,8 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
-    typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition: simulated, no people.")
-    write_demonstration(
-        folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet), laboratory
-    )
+    typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition (simulated).")
+    write_demonstration(folder, seconds, people, hide, lambda who, _: LOG.info(f"  {who}"), laboratory)
     study = load_study(folder)
     try:
         run = folder / "run"
@@ -48,12 +51,10 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     except typer.Exit as ended:
         if ended.exit_code != SOME_REFUSED:
             raise
-        typer.echo(
-            "Whoever changes the way of walking late in a trial is meant to be refused; that is the demonstration."
-        )
+        typer.echo("A participant whose gait changes late is refused on purpose, to demonstrate the refusal.")
 
 
-def _clinic(folder: Path, jobs: int, quiet: bool) -> None:
+def _clinic(folder: Path, jobs: int) -> None:
     """A made week of a clinic, from recordings to pages that find what was planted."""
     from gaitdisc.batch.clinic_demonstration import write_week
     from gaitdisc.batch.run_study import run_study
@@ -67,8 +68,8 @@ def _clinic(folder: Path, jobs: int, quiet: bool) -> None:
     claim_folder(folder, "planted.json", "reference", "controls", "controls/study.toml", "week", "week/study.toml")
     for part in ("controls", "week"):
         claim_run(folder / part / "run")
-    typer.echo("20 controls and a week of 8 people, one of them a child, walk 16 s each: simulated, no people.")
-    controls, week, planted = write_week(folder, progress=lambda who: typer.echo(f"  {who}", err=True, nl=not quiet))
+    typer.echo("20 controls and 8 patients, one of them a child, walk 16 s each (simulated).")
+    controls, week, planted = write_week(folder, progress=lambda who: LOG.info(f"  {who}"))
     workers = Workers(jobs)
     own = run_study(controls, controls.folder / "run", workers)
     save_reference(reference_of(own.cycles, own.title, own.provenance), folder / "reference")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.options import Quiet
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.own_files import claim_folder
 
 if TYPE_CHECKING:
@@ -32,28 +32,28 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     measured: Annotated[
         Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV, Parquet; .mot of a model).")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
+    out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("found"),
     participant: Annotated[
         str,
         typer.Option(
-            help="Of a study: W01, W01:knee_angle, or all. The Nominal walk calibrates, the device walk is searched."
+            help="In a study: W01, W01:knee_angle, or all. The Nominal walk calibrates; the device walk is searched."
         ),
     ] = "",
-    catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
+    catalogue: Annotated[Path | None, typer.Option(help="Your own effects, in addition to the included ones.")] = None,
     effects: Annotated[
-        str, typer.Option(help="Search nothing: fit exactly these, effect@place, with commas between them.")
+        str, typer.Option(help="Fit exactly these effects without a search: effect@place, separated by commas.")
     ] = "",
-    alpha: Annotated[float, typer.Option(help="The greatest rate of false finds.")] = 0.05,
-    draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
+    alpha: Annotated[float, typer.Option(help="Maximum false-positive rate.")] = 0.05,
+    draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html as well.")] = True,
     quiet: Quiet = False,
 ) -> None:
-    """Find what the simulation lacks, name it, add it, and show the gap shrink on data that were held out."""
+    """Identify the effect that the simulation lacks, add it, and report the error on held-out data."""
     if measured is None and not participant:
         raise SchemaError(
-            "a discovery needs a simulation file and measured trials, or a study and one of its participants",
+            "a discovery needs a simulation file and measured trials, or a study and a participant",
             f"only {simulation.name} is given",
-            "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. "
-            "Of a study, add --participant.",
+            "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. For a study, add "
+            "--participant.",
         )
     if measured is not None:
         claim_folder(out, *FILES)
@@ -61,7 +61,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     def progress(step: str) -> None:
         if not quiet:
-            typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
+            LOG.info("%6.1f s  %s", time.perf_counter() - began, step)
 
     from gaitdisc.batch.discover_files import discover_files, discover_study
     from gaitdisc.discovery.catalogue import Request
@@ -128,7 +128,7 @@ def _write(
     typer.echo("\n".join([found.sentence, *notes]))
     for finding in found.findings:
         if finding.severity != "note":
-            typer.echo(finding.line(), err=True)
+            LOG.info(finding.line())
     typer.echo(f"{'report' if draw else 'found'}: {place}")
 
 
@@ -146,7 +146,7 @@ def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discover
         try:
             found[person.id] = discovered(person.id, out / person.id)
         except GaitdiscError as error:
-            typer.echo(f"refused: {error}", err=True)
+            LOG.info(f"refused: {error}")
     table = over_people(found)
     write_csv(table, out / "people.csv", "%.6g")
     for line in lines(table):

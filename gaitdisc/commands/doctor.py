@@ -8,7 +8,7 @@ from gaitdisc.commands.options import REFUSED
 
 
 def doctor() -> None:
-    """Look at versions, readers, fonts and browser, and read files that are written for it; nothing is changed."""
+    """Check versions, fonts and browser, and the readers with test files; nothing is changed."""
     import shutil
 
     from gaitdisc.batch.installation import Check, checks
@@ -18,11 +18,11 @@ def doctor() -> None:
     fonts = fonts_found()
     found.append(Check("fonts", "ok" if fonts else "wrong", ", ".join(fonts) or "none of the figures' fonts"))
     browser = next(filter(None, map(shutil.which, ("chromium", "google-chrome", "firefox", "msedge"))), None)
-    found.append(Check("browser", "ok" if browser else "absent", "found" if browser else "pages open in any other too"))
+    found.append(Check("browser", "ok" if browser else "absent", "found" if browser else "pages open in any browser"))
     for one in found:
         typer.echo(f"{one.state:7}{one.what:14}{one.words}")
     wrong = [one.what for one in found if one.state == "wrong"]
     if wrong:
-        typer.echo(f"wrong: {', '.join(wrong)}. Install gaitdisc again in an environment of its own.", err=True)
+        typer.echo(f"wrong: {', '.join(wrong)}. Install gaitdisc again in a separate environment.", err=True)
         raise typer.Exit(REFUSED)
     typer.echo("This installation works.")

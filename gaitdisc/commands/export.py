@@ -7,30 +7,33 @@ from typing import Annotated
 
 import typer
 
+from gaitdisc.errors import LOG
+
 
 def export(
     files: Annotated[
         list[Path],
-        typer.Argument(help="Files of one walk: angles, forces, EMG; the folder of a run; or the folder of a model."),
+        typer.Argument(help="Files of one walk (angles, forces, EMG), the folder of a run, or the folder of a model."),
     ],
     out: Annotated[
         Path,
         typer.Option(
-            "--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto; .onnx of a model; of a run a folder."
+            "--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto; .onnx for a model; a folder for a run."
         ),
     ],
-    rate: Annotated[float, typer.Option(min=1.0, help="Samples a second of the result.")] = 100.0,
+    rate: Annotated[float, typer.Option(min=1.0, help="Sampling rate of the result [samples per second].")] = 100.0,
     stream: Annotated[list[str] | None, typer.Option(help="Only this stream; may be repeated.")] = None,
     labels: Annotated[
-        bool,
-        typer.Option("--labels", help="Keep labels that are outside the vocabulary; without it they are numbered."),
+        bool, typer.Option("--labels", help="Keep labels that are not in the vocabulary; by default they are numbered.")
     ] = False,
-    parquet: Annotated[bool, typer.Option("--parquet", help="Tables of a run as Parquet in place of CSV.")] = False,
-    mot: Annotated[bool, typer.Option("--mot", help="Of a run also the mean cycle of each foot, as .mot.")] = False,
+    parquet: Annotated[bool, typer.Option("--parquet", help="Tables of a run as Parquet instead of CSV.")] = False,
+    mot: Annotated[
+        bool, typer.Option("--mot", help="For a run, also write the mean cycle of each foot as .mot.")
+    ] = False,
 ) -> None:
-    """Bring EMG, force and kinematics of one walk to one time base, low-passed where they are faster than it.
+    """Resample EMG, force and kinematics of one walk to one time base, with a low-pass for faster signals.
 
-    Of a run with pooled cycles: cycles, curves, means and spatiotemporal values, each as one tidy table.
+    For a run with pooled cycles: cycles, curves, means and spatiotemporal values, each as one tidy table.
     """
     from gaitdisc.own_files import claim_file
 
@@ -50,7 +53,7 @@ def export(
         together, count = with_public_labels(together)
         if count:
             what = "label is" if count == 1 else "labels are"
-            typer.echo(f"{count} {what} outside the vocabulary and numbered; --labels keeps them.", err=True)
+            LOG.info(f"{count} {what} not in the vocabulary and numbered; --labels keeps them.")
     write_recording(together, out)
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")
 
@@ -61,7 +64,7 @@ def _model(folders: list[Path], out: Path) -> None:
     from gaitdisc.sensing.onnx_file import write_onnx
 
     if len(folders) != 1:
-        raise SchemaError("an .onnx file holds one model", f"{len(folders)} are named", "Name one folder.")
+        raise SchemaError("an .onnx file can contain one model", f"{len(folders)} are named", "Name one folder.")
     model = load_model(folders[0])
     write_onnx(model, out)
     what = model.reconstructor.sensing
@@ -80,9 +83,9 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     run = load_run(run_folder)
     if not run.cycles:
         raise SchemaError(
-            "tables of cycles need a run that pooled them",
-            f"{run_folder.name} has walks that models were fitted to",
-            "Its tables are in report/tables.",
+            "tables of cycles need a run with pooled cycles",
+            f"{run_folder.name} contains walks with fitted models",
+            "Their tables are in report/tables.",
         )
     tables = {
         "cycles": all_cycles(run.cycles),

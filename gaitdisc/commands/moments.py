@@ -10,15 +10,15 @@ import typer
 
 def moments(
     trial: Annotated[list[Path], typer.Argument(help="One .c3d, or .trc and .mot of one walk.")],
-    static: Annotated[Path, typer.Option("--static", help="Markers of the same person standing: .c3d or .trc.")],
+    static: Annotated[Path, typer.Option("--static", help="Static trial of the same person: .c3d or .trc.")],
     out: Annotated[Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto.")],
-    mass: Annotated[float | None, typer.Option(help="Body mass [kg], where the static C3D has none.")] = None,
-    sex: Annotated[str, typer.Option(help="f or m, for the segments' inertia; the mean of both by default.")] = "",
+    mass: Annotated[float | None, typer.Option(help="Body mass [kg], if the static C3D has none.")] = None,
+    sex: Annotated[str, typer.Option(help="f or m, for the segments' inertia; by default the mean of both.")] = "",
     marker_set: Annotated[
-        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; recognised by the labels by default.")
+        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; by default recognised by the labels.")
     ] = "",
     force_hz: Annotated[
-        float, typer.Option(help="Low-pass of the ground's force [Hz]; 6 filters it as the markers are.")
+        float, typer.Option(help="Low-pass of the ground force [Hz]; use 6 to filter it like the markers.")
     ] = 20.0,
 ) -> None:
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""

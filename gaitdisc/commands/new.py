@@ -13,18 +13,20 @@ from gaitdisc.own_files import claim_file
 
 def new(
     out: Annotated[
-        Path,
-        typer.Argument(metavar="STUDY", help="Folder of the new study; of a model, its mapping file (leg.toml)."),
+        Path, typer.Argument(metavar="STUDY", help="Folder of the new study; for a model, its mapping file (leg.toml).")
     ],
     recordings: Annotated[
-        Path, typer.Option("--from", help="Folder of recordings, or a model of MuJoCo or OpenSim; it is not changed.")
+        Path, typer.Option("--from", help="Folder of recordings, or a MuJoCo or OpenSim model; it is not changed.")
     ],
-    degrees: Annotated[bool, typer.Option("--degrees", help="Of a model: angles were recorded in degrees.")] = False,
+    degrees: Annotated[bool, typer.Option("--degrees", help="For a model: angles were recorded in degrees.")] = False,
     external_loads: Annotated[
-        Path | None, typer.Option(help="Of a walk in an .osim: its recorded ground forces (.xml, ExternalLoads).")
+        Path | None,
+        typer.Option(help="For a walk with an .osim model: its recorded ground forces (.xml, ExternalLoads)."),
     ] = None,
-    forces: Annotated[Path | None, typer.Option(help="Of such a walk: the actuators' forces (.sto).")] = None,
-    actuators: Annotated[Path | None, typer.Option(help="Reserves and residuals of these forces (.xml).")] = None,
+    forces: Annotated[Path | None, typer.Option(help="For such a walk: the forces of the actuators (.sto).")] = None,
+    actuators: Annotated[
+        Path | None, typer.Option(help="Reserve and residual actuators of these forces (.xml).")
+    ] = None,
 ) -> None:
     """Write a study file from the recordings found in a folder, or a model's mapping file."""
     from gaitdisc.engines.engine import is_model
@@ -46,15 +48,15 @@ def new(
     for note in notes:
         typer.echo(f"  {note}")
     people = counted(len(draft.participants), "participant")
-    typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {out}")
+    typer.echo(f"{file} written: {people}. Read it, then run: gaitdisc check {out}")
 
 
 def _claim_mapping(file: Path, model: Path) -> None:
     if file.suffix != ".toml":
         raise SchemaError(
-            "a model's mapping is a file that ends in .toml",
+            "the mapping of a model must be a file that ends in .toml",
             f"{file.name} does not",
-            f"Call it {model.with_suffix('.toml').name}: beside the model it is found by itself.",
+            f"Call it {model.with_suffix('.toml').name}: next to the model it is found automatically.",
         )
     claim_file(file)
 
@@ -66,9 +68,9 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
     _claim_mapping(file, model)
     mapping = write_mapping(read_model(model), file, degrees)
     columns = [name for name, _ in mapping.observations] + [one.name for one in mapping.inputs]
-    typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then: gaitdisc discover {model} MEASURED")
+    typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then run: gaitdisc discover {model} MEASURED")
     if model.suffix.lower() == ".osim":
-        typer.echo("Of a walk with recorded ground forces: --external-loads grf.xml, --forces, --actuators.")
+        typer.echo("For a walk with recorded ground forces add --external-loads grf.xml, --forces, --actuators.")
 
 
 def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | None, Path | None]) -> None:
@@ -82,7 +84,7 @@ def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | Non
     given = f"forces of {counted(len(engine.actuators), 'actuator')}" if tracked.forces else "no forces of muscles"
     typer.echo(
         f"{file} written: {engine.mass_kg:.1f} kg, {counted(len(engine.coordinates), 'free coordinate')}, {given}. "
-        f"Read it, then: gaitdisc discover {file} KINEMATICS.mot"
+        f"Read it, then run: gaitdisc discover {file} KINEMATICS.mot"
     )
     if not tracked.forces:
-        typer.echo("Without --forces (static optimisation, computed muscle control) only residuals can be said.")
+        typer.echo("Without --forces (static optimisation, computed muscle control) only residuals can be reported.")

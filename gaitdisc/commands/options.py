@@ -9,8 +9,8 @@ import typer
 
 StudyPlace = Annotated[Path, typer.Argument(help="The study file or its folder.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
-Jobs = Annotated[int, typer.Option("--jobs", "-j", min=1, help="Participants side by side.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Do not show progress.")]
+Jobs = Annotated[int, typer.Option("--jobs", "-j", min=1, help="Number of participants computed in parallel.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that this command did not write.")]
 Cluster = Annotated[str, typer.Option(help="Address of a Dask scheduler, tcp://host:8786.")]
 RunPlace = Annotated[Path | None, typer.Option("--out", help="Folder of the run; by default STUDY/run.")]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.options import SOME_REFUSED, Quiet
+from gaitdisc.errors import LOG
 
 if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
@@ -17,31 +18,35 @@ if TYPE_CHECKING:
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     study: Annotated[Path, typer.Argument(help="The study file or its folder.")],
     sensors: Annotated[
-        list[str] | None, typer.Option("--sensors", "-s", help="Channels that are read: a,b,c or repeated.")
+        list[str] | None, typer.Option("--sensors", "-s", help="Channels used as sensors: a,b,c or repeated.")
     ] = None,
     search: Annotated[
         int,
-        typer.Option(help="Search the best sets of up to so many sensors; without --sensors the smallest that does."),
+        typer.Option(
+            help="Search the best sets of up to this many sensors; without --sensors, use the smallest sufficient one."
+        ),
     ] = 0,
     split: Annotated[
         str, typer.Option(help='temporal, blocked, subject, condition (each by the others), or "random (leaks)".')
     ] = "temporal",
     condition: Annotated[
-        str, typer.Option(help="Walks of this condition alone; with --split condition those of the test part.")
+        str, typer.Option(help="Use walks of this condition only; with --split condition, those of the test part.")
     ] = "",
-    targets: Annotated[str, typer.Option(help="What is reconstructed: states, emg, forces or moments.")] = "states",
-    ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states so many seconds ahead.")] = 0.0,
+    targets: Annotated[str, typer.Option(help="Quantity to reconstruct: states, emg, forces or moments.")] = "states",
+    ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states this many seconds ahead.")] = 0.0,
     spacing: Annotated[
-        float, typer.Option(min=0.001, help="Time between two readings of a window, which reaches back one second [s].")
+        float, typer.Option(min=0.001, help="Time between two samples of a window, which extends back one second [s].")
     ] = 0.04,
-    kinds: Annotated[str, typer.Option(help='As in "delay ridge,masked shred"; by default five kinds of model.')] = "",
+    kinds: Annotated[
+        str, typer.Option(help='For example "delay ridge,masked shred"; by default five kinds of model.')
+    ] = "",
     device: Annotated[
-        str, typer.Option(help="That networks are fitted on: cpu, cuda, or auto, the GPU where there is one.")
+        str, typer.Option(help="Device for the networks: cpu, cuda, or auto, which uses a GPU if there is one.")
     ] = "auto",
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Fit models of all states from a few sensors, by SHRED and by what it has to beat; tested on unseen walking.
+    """Fit models of all states from a few sensors, by SHRED and simpler models, and test them on held-out walking.
 
     Each participant's recommended model is saved; `gaitdisc apply` reconstructs a recording with it.
     """
@@ -73,9 +78,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     found = search_study(loaded, search, settings) if search else None
     if found is not None and not names:
         names = str(found["names"].iloc[enough_sensors(found)]).split(", ")
-    done, people = reconstruct_study(
-        loaded, names, settings, lambda who, _: None if quiet else typer.echo(f"  {who}", err=True)
-    )
+    done, people = reconstruct_study(loaded, names, settings, lambda who, _: None if quiet else LOG.info(f"  {who}"))
     done = replace(done, search=found)
     done.save(folder)
     page = write_reconstruction_report(done, folder)
@@ -98,4 +101,4 @@ def _print_sentences(done: Reconstruction) -> None:
     Console().print(reconstruction_text(done))
     for refusal in done.refusals:
         who = " ".join(filter(None, (refusal.participant, refusal.condition)))
-        typer.echo(f"left out: {who}: {refusal.reason}", err=True)
+        LOG.info(f"left out: {who}: {refusal.reason}")

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def reference(
-    controls: Annotated[Path, typer.Argument(help="Study of the controls, or a folder of a run of it.")],
-    out: Annotated[Path, typer.Option("--out", help="Folder that reference.json is written to.")],
-    group: Annotated[str, typer.Option(help="Only this group of the study, such as control.")] = "",
+    controls: Annotated[Path, typer.Argument(help="Study of the controls, or the folder of its run.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for reference.json.")],
+    group: Annotated[str, typer.Option(help="Use only this group of the study, such as control.")] = "",
     jobs: Jobs = 1,
 ) -> None:
-    """Process controls as a study is processed, and save mean cycles of their legs for `--reference`."""
+    """Process controls like a study, and save the mean cycles of their legs for `--reference`."""
     from gaitdisc.clinic.like_controls import described, groups_of
     from gaitdisc.clinic.reference import FEWEST, reference_of
     from gaitdisc.own_files import claim_folder
@@ -42,7 +42,7 @@ def reference(
     path = save_reference(found, out)
     for word in found.legs:
         count = found.people(word)
-        few = f"; fewer than {FEWEST}: bands are drawn, nothing is said to stand out" if count < FEWEST else ""
+        few = f"; fewer than {FEWEST}: bands are drawn, but no deviation is reported" if count < FEWEST else ""
         typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
         for own in groups_of(found.of(word)):
             typer.echo(f"    group: {described(own)}")

@@ -21,18 +21,21 @@ from gaitdisc.errors import SchemaError
 
 def report(
     folder: Annotated[
-        Path, typer.Argument(help="Folder that run, modalities, sensitivity, discover, compare or reconstruct wrote.")
+        Path, typer.Argument(help="Folder of a result: run, modalities, sensitivity, discover, compare or reconstruct.")
     ],
-    person: Annotated[str, typer.Option(help="Of a clinic's run: only the page of this person.")] = "",
+    person: Annotated[str, typer.Option(help="In a clinic's run: write only the page of this person.")] = "",
     before: Annotated[str, typer.Option(help="With --after: a session or condition of the person.")] = "",
-    after: Annotated[str, typer.Option(help="What is drawn over it.")] = "",
-    pdf: Annotated[bool, typer.Option("--pdf", help="Pages of people as PDF too.")] = False,
+    after: Annotated[str, typer.Option(help="Session or condition that is compared with --before.")] = "",
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write pages of people as PDF as well.")] = False,
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
     language: Annotated[
-        str, typer.Option(help="CSV of words, kept by the run; one that is not there is written; `en` for English.")
+        str,
+        typer.Option(
+            help="CSV of words, kept by the run; a new file is written if it does not exist; `en` for English."
+        ),
     ] = "",
 ) -> None:
-    """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
+    """Draw the page of a saved result again, without fitting; for a run also those of modalities and sensitivity."""
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.saved_page import draw_saved
 
@@ -40,21 +43,19 @@ def report(
     if place.is_dir():
         claim_folder(place, "report.html", "report/report.html")
     if language and language != "en" and not Path(language).exists():
-        typer.echo(
-            f"words: {write_english(Path(language))}. Fill in the second column, then give the same command again."
-        )
+        typer.echo(f"words: {write_english(Path(language))}. Fill in the second column and run the command again.")
         return
     lacking = keep_words(language, place) if language else []
     if lacking:
-        typer.echo(f"English stays, {len(lacking)} words: {'; '.join(lacking)}")
+        typer.echo(f"{len(lacking)} words remain in English: {'; '.join(lacking)}")
     named = bool(person or before or after or reference or pdf)
     if named or (place / "cycles").is_dir():
         _people(place, named, person, (before, after), reference, pdf)
         return
     if (folder / "model.json").is_file():
         raise SchemaError(
-            "a page is drawn of a result",
-            f"{folder.name} holds a saved model, which has none",
+            "a page needs a result",
+            f"{folder.name} contains a saved model, which has no page",
             "Name the folder above its `models`, or use the model: gaitdisc apply MODEL RECORDING.",
         )
     for word, page in draw_saved(place).items():
@@ -70,20 +71,17 @@ def _people(
 
     run = load_run(run_folder)
     if named and not run.cycles:
-        raise SchemaError(
-            "pages of people need a run of pooled cycles", f"{run_folder} has none", "Run a study of short trials."
-        )
+        raise SchemaError("pages of people need a run with pooled cycles", f"{run_folder} has none", "Run one.")
     keep_reference(reference, run_folder)
-    if any(pair):
-        if not (person and all(pair)):
-            raise SchemaError(
-                "a comparison needs --person, --before and --after",
-                f"found person {person!r}, before {pair[0]!r}, after {pair[1]!r}",
-                "Name all three.",
-            )
-        _said(write_before_after(run, run_folder, person, pair))
-    elif person:
-        for page in write_person(run, run_folder, person, pdf):
+    if any(pair) and not (person and all(pair)):
+        raise SchemaError(
+            "a comparison needs --person, --before and --after",
+            f"they are person {person!r}, before {pair[0]!r}, after {pair[1]!r}",
+            "Name all three.",
+        )
+    if person:
+        where = (run, run_folder, person)
+        for page in write_before_after(*where, pair, pdf) if any(pair) else write_person(*where, pdf):
             _said(page)
     elif pdf:
         typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")

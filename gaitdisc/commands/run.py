@@ -15,13 +15,13 @@ from gaitdisc.commands.run_report import claimed, report_on
 def run(
     study: StudyPlace,
     out: RunPlace = None,
-    participant: Annotated[list[str] | None, typer.Option(help="Only this participant; may be repeated.")] = None,
+    participant: Annotated[list[str] | None, typer.Option(help="Use only this participant; may be repeated.")] = None,
     jobs: Jobs = 1,
     cluster: Cluster = "",
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Process, fit, test and report; what an earlier run has finished is kept."""
+    """Process, fit, test and report; finished parts of an earlier run are kept."""
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from gaitdisc.commands.clinic_pages import page_of_run
+from gaitdisc.commands.clinic_pages import page_of_run, say_new_recordings
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
+from gaitdisc.errors import LOG
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -40,6 +41,7 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
     started = time.perf_counter()
     done = worked(work, [person.id for person in study.participants], quiet)
     say_renewed(done.renewed)
+    say_new_recordings(study)
     page = page_of_run(done, folder)
     if done.responses:
         from rich.console import Console
@@ -49,7 +51,7 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
         Console().print(r2_text(done))
     for quantity in done.quantities:
         for length_s, reason in quantity.left_away.items():
-            typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
+            LOG.info(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}")
     if done.cycles:
         typer.echo(f"people: {folder / 'report' / 'index.html'}")
     end(done.refusals, len(done.reported), page, time.perf_counter() - started)
@@ -77,7 +79,7 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
 def say_renewed(renewed: Sequence[str]) -> None:
     """Say which files of an earlier run were not used."""
     for line in renewed:
-        typer.echo(f"not used, computed again: {line}", err=True)
+        LOG.info(f"not used, computed again: {line}")
 
 
 def worked(work: Callable[[StudyProgress], Result], people: list[str], quiet: bool) -> Result:
@@ -111,7 +113,7 @@ def stoppable_bar(quiet: bool) -> Iterator[Progress]:
         with Progress(*columns, console=screen, transient=True, disable=quiet or not screen.is_terminal) as bar:
             yield bar
     except KeyboardInterrupt:
-        typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
+        LOG.info("Stopped. Finished parts are kept; the same command continues from there.")
         raise typer.Exit(STOPPED) from None
 
 
@@ -121,7 +123,7 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
 
     for refusal in refusals:
         who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
-        typer.echo(f"refused: {who}: {refusal.reason}", err=True)
+        LOG.info(f"refused: {who}: {refusal.reason}")
     typer.echo(f"{counted(count, 'participant')} in {seconds:.0f} s. report: {page}")
     if refusals:
         raise typer.Exit(SOME_REFUSED if count else REFUSED)

@@ -9,7 +9,7 @@ import typer
 
 from gaitdisc.commands.options import REFUSED, STOPPED, Jobs, Overwrite, Quiet
 from gaitdisc.commands.run import run
-from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.errors import LOG, GaitdiscError, ReadError
 from gaitdisc.own_files import guarded
 
 if TYPE_CHECKING:
@@ -17,28 +17,28 @@ if TYPE_CHECKING:
 
 
 def watch(
-    study: Annotated[Path, typer.Argument(help="The study file or its folder; drafted where there is none.")],
+    study: Annotated[Path, typer.Argument(help="The study file or its folder; drafted if it does not exist.")],
     recordings: Annotated[Path, typer.Option("--from", help="Folder of recordings; it is not changed.")],
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
-    still: Annotated[float, typer.Option(min=0.1, help="A file counts after it stood still for so long [s].")] = 5.0,
+    still: Annotated[float, typer.Option(min=0.1, help="Time without a change before a file is used [s].")] = 5.0,
     jobs: Jobs = 1,
     quiet: Quiet = False,
     overwrite: Overwrite = False,
 ) -> None:
-    """Take up new trials as they are saved and run the study each time, until Ctrl-C; nothing is computed twice.
+    """Add new trials as they are saved, and run the study each time, until Ctrl-C; nothing is computed twice.
 
-    A file counts when its size and time have stood still. What cannot be read then may be half a file: it is named and
-    waited for. Whoever is in the study keeps the pseudonym; trials are only added. The exit code is the last run's.
+    A file is used when its size and time no longer change. An unreadable file may be incomplete: it is named and tried
+    again. Pseudonyms of the study are kept; trials are only added. The exit code is that of the last run.
     """
     from gaitdisc.batch.watched_folder import WatchedFolder
 
     if not recordings.is_dir():
-        raise ReadError("a folder of recordings is needed", f"{recordings} is none", "Make it, or name another.")
+        raise ReadError("the path must be a folder of recordings", f"{recordings} is not a folder", "Create it.")
     file = study if study.suffix == ".toml" else study / "study.toml"
     looked: Looked = {}
     said: set[str] = set()
     code = 0
-    typer.echo(f"Watching {recordings}; Ctrl-C ends it.", err=True)
+    LOG.info(f"Watching {recordings}; press Ctrl-C to end.")
     try:
         for files in WatchedFolder(recordings, file.parent / "run", still).changes():
             if not files:
@@ -56,10 +56,10 @@ def watch(
                     raise
                 code = ended.exit_code
             except GaitdiscError as error:
-                typer.echo(f"{error} [{error.code}]", err=True)
+                LOG.info(f"{error} [{error.code}]")
                 code = REFUSED
     except KeyboardInterrupt:
-        typer.echo("Stopped.", err=True)
+        LOG.info("Stopped.")
     raise typer.Exit(code)
 
 

@@ -52,7 +52,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     shared = _moving(shared, by_channel, walks, findings)
     if not shared:
         raise ChannelError(
-            "walks are compared in channels that both have, in one unit, and that move",
+            "walks can be compared only in channels that all have, in the same unit, and that vary",
             f"{' and '.join(_name(walk) for walk in walks[:2])} have {_counts(walks)} channels, none of that kind"
             + (f": {findings[0].what}" if findings else ""),
             "Map the labels of both files to the same names in a study's [channels], and state the units.",
@@ -62,8 +62,11 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
         parts = [by_channel[c.name][number] for c in shared]
         fewest, most = min(map(len, parts)), max(map(len, parts))
         if fewest < most:
-            what = f"{most - fewest} of {most} strides not used, which some of the {len(shared)} channels lack"
-            findings.append(Finding("note", "strides", _name(walk), what, "nothing but the number of strides"))
+            what = (
+                f"{most - fewest} of {most} strides are not used: in them at least one of the {len(shared)} "
+                "channels is missing"
+            )
+            findings.append(Finding("note", "strides", _name(walk), what, "the number of strides only"))
         curves.append(np.stack([part[:fewest] for part in parts], axis=2))
     return CommonCurves(tuple(shared), tuple(curves), tuple(findings))
 
@@ -76,10 +79,10 @@ def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[
             nearest = nearest_word(name, everywhere)
             lacking = [_name(walk) for walk, unit in zip(walks, units, strict=True) if name not in unit]
             raise ChannelError(
-                f"channel {name!r} is to be compared",
+                f"channel {name!r} must be in all walks to be compared",
                 f"{', '.join(lacking)} lack{'s' if len(lacking) == 1 else ''} it"
                 + (f"; the nearest that all have is {nearest!r}" if nearest else ""),
-                f"Choose among: {', '.join(everywhere) or 'none'}.",
+                f"Choose one of: {', '.join(everywhere) or 'none'}.",
             )
     _say_lacking(walks, units, findings)
     kept = []
@@ -89,7 +92,7 @@ def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[
         found = sorted({unit[channel.name] for unit in units})
         if len(found) > 1:
             what = f"given in {' and in '.join(map(repr, found))}"
-            findings.append(Finding("warning", "unit", _both(walks), what, "the comparison of it", channel.name))
+            findings.append(Finding("warning", "unit", _both(walks), what, "comparison of this channel", channel.name))
         else:
             kept.append(channel)
     return kept
@@ -100,16 +103,16 @@ def _say_lacking(walks: Sequence[WalkSummary], units: list[dict[str, str]], find
     for walk, unit in zip(walks, units, strict=True):
         absent = sorted(everything - set(unit))
         if absent:
-            what = f"no {list_names(absent)}, which the other has"
-            findings.append(Finding("note", "not compared", _name(walk), what, "the comparison of these"))
+            what = f"no {list_names(absent)}, although another walk has them"
+            findings.append(Finding("note", "not compared", _name(walk), what, "the comparison of these channels"))
 
 
 def _sound(shared: list[Channel], walks: Sequence[WalkSummary], findings: list[Finding]) -> list[Channel]:
     spoiled = {f.channel: f.kind for walk in walks for f in walk.findings if f.kind in SPOILED and f.severity != "note"}
     named = [f"{c.name} ({spoiled[c.name]})" for c in shared if c.name in spoiled]
     if named:
-        what = f"{', '.join(named)}: left out; name one with --channel to compare it nevertheless"
-        findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these"))
+        what = f"{', '.join(named)}: excluded; name one with --channel to compare it nevertheless"
+        findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these channels"))
     return [c for c in shared if c.name not in spoiled]
 
 
@@ -134,8 +137,8 @@ def _usable(
 ) -> bool:
     for part, walk in zip(parts, walks, strict=True):
         if len(part) <= LEAST_KEPT * len(walk.curves) and len(part) < len(walk.curves):
-            what = f"{len(walk.curves) - len(part)} of {len(walk.curves)} strides have gaps: left out"
-            findings.append(Finding("warning", "gaps", _name(walk), what, "the comparison of it", channel.name))
+            what = f"{len(walk.curves) - len(part)} of {len(walk.curves)} strides have gaps and are excluded"
+            findings.append(Finding("warning", "gaps", _name(walk), what, "the comparison of this walk", channel.name))
             return False
     return all(len(part) for part in parts)
 
@@ -156,9 +159,9 @@ def _moving(
             twins.append(channel.name)
         else:
             kept.append(channel)
-    for names, what in ((still, "do not move in any walk"), (twins, "repeat another channel, number by number")):
+    for names, what in ((still, "do not vary in any walk"), (twins, "repeat another channel exactly")):
         if names:
-            text = f"{', '.join(names)} {what}: left out"
+            text = f"{', '.join(names)} {what} and are excluded"
             findings.append(Finding("note", "not compared", _both(walks), text, "nothing"))
     return kept
 

@@ -13,14 +13,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.comparison.common_curves import CommonCurves, aligned, common_curves, common_shift
 from gaitdisc.errors import ComparisonError
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results.mismatch import (
-    CHANNEL_COLUMNS,
-    REGION_COLUMNS,
-    Alignment,
-    Exchange,
-    Mismatch,
-    Smallest,
-)
+from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignment, Exchange, Mismatch, Smallest
 from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.results.provenance import Provenance, made_now
 from gaitdisc.statistics.cluster_test import (
@@ -111,9 +104,9 @@ def compare_people(
     """
     if len(pairs) < FEWEST_IN_ONE:
         raise ComparisonError(
-            f"two conditions are compared over {FEWEST_IN_ONE} participants or more",
+            f"two conditions can be compared across at least {FEWEST_IN_ONE} participants",
             f"{len(pairs)} have both",
-            "Compare the strides of one of them: --participant.",
+            "Compare the strides of one participant with --participant.",
         )
     walks = [walk for pair in pairs for walk in pair]
     common = common_curves(walks, wanted)
@@ -174,9 +167,9 @@ def _of_strides(
     fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
     if len(second) < fewest:
         raise ComparisonError(
-            f"{names[1]} is what is compared with, and its strides give the spread: {fewest} or more are needed",
+            f"{names[1]} is the reference, whose strides give the spread: it must have at least {fewest}",
             f"it has {len(second)}, {names[0]} has {len(first)}",
-            "Record longer; a walk of a single stride, such as a periodic simulation, is named first.",
+            "Record longer. Name a walk of a single stride, such as a periodic simulation, first.",
         )
     if as_curve:
         correlation, shortest = stride_correlation(second), len(second)

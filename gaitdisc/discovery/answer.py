@@ -197,10 +197,7 @@ def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
 
 
 def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
-    """Say where the gap arises.
-
-    train: the gap before and after on the trials that were learned from
-    """
+    """Say where the gap arises; train: the gap before and after on the training trials."""
     if verdict.process_noise:
         return (Whereabouts(verdict.process_noise.place.kind, verdict.process_noise.place.name, float("nan")),)
     if verdict.starts:
@@ -265,8 +262,8 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
         if like:
             size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
             what = (
-                f"an error of {' or '.join(like)} in step with the {spoken(candidate.name)}, {size} (rms), "
-                "would explain it as well: inputs were taken as exact"
+                f"an error of {' or '.join(like)} in step with the {spoken(candidate.name)}, {size} (rms), would "
+                "explain it as well, because inputs were assumed to be exact"
             )
             found.append(Finding("note", "exact inputs", case.measured.source, what, "the name, if an input errs so"))
     return tuple(found)

@@ -7,6 +7,7 @@ Source: Miller 2002, Subset Selection in Regression (forward selection with repl
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,10 +46,24 @@ class Beam:
         """The set of least cost."""
         return min(self.known.values(), key=self.cost)
 
+    def fit(self, sets: Iterable[tuple[Part, ...]]) -> list[CrossValidated]:
+        """Fit sets, so that they are weighed as well."""
+        fitted = [
+            cross_validated(self.scale, self.as_read.shooting, self.search.base, parts, self.as_read.model)
+            for parts in sets
+        ]
+        fitted = [one for one in fitted if self.search.sensible(one.model)]
+        self.known.update((one.model.explanations, one) for one in fitted)
+        return fitted
+
     def select_forward(self, begin: CrossValidated) -> CrossValidated:
-        """Return the best set that is found from one by adding explanations and exchanging them."""
+        """Return the best set found by adding explanations to one, or to a far-off number, and exchanging them."""
         self.known.setdefault(self.as_read.model.explanations, self.as_read)
+        far = self.fit(one.parts for one in self.search.far_off(self.as_read.scored))
         self.known[begin.model.explanations] = begin
+        if begin is not self.as_read:
+            for one in far:
+                self._extended([one])
         most = min(MOST, max(1, len(begin.errors) // 3))
         beam = [begin]
         for _ in range(len(begin.model.explanations), most):
@@ -67,8 +82,9 @@ class Beam:
         return self.best
 
     def _extended(self, beam: list[CrossValidated]) -> list[CrossValidated]:
-        """Fit the most promising sets of one explanation more."""
-        found: dict[Explanations, CrossValidated] = {}
+        """Fit the most promising sets of one explanation more; those that are known already stand beside them."""
+        size = len(beam[0].model.explanations) + 1
+        found = {key: one for key, one in self.known.items() if len(key) == size and np.isfinite(one.gap)}
         for now in beam:
             for score in self._promising(now, FIRST if len(beam) == 1 else NEXT):
                 longer = self._with(now, score)
@@ -138,14 +154,13 @@ class Beam:
         return now, small
 
     def plainest(self, now: CrossValidated) -> CrossValidated:
-        """Return the cheapest set that closes nearly as much and that left-out pieces do not distinguish from a set."""
-        closed = self.as_read.gap - now.gap
+        """Return the cheapest set that left-out pieces do not distinguish from a set."""
         equal = [
             one
             for one in self.known.values()
             if 0 < len(one.model.explanations) <= len(now.model.explanations)
             and one.model.penalty < now.model.penalty - 1e-9
-            and self.as_read.gap - one.gap > CRITERIA.as_much * closed
+            and one.gap < self.as_read.gap
             and errs_more(one, now) >= ALPHA
         ]
         return min(equal, key=lambda one: (round(one.model.penalty, 3), one.gap)) if equal else now

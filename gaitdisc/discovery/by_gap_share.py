@@ -77,9 +77,7 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     if scale.agrees(as_read.model.fit) or not as_read.gap:
         return None
     beam = Beam(search, scale, as_read)
-    for parts in also:
-        one = cross_validated(scale, as_read.shooting, search.base, parts, as_read.model)
-        beam.known[one.model.explanations] = one
+    beam.fit(also)
     best = beam.select_forward(as_read)
     longer = on_longer_runs(case, scale, best) if best.model.explanations else None
     if longer:

@@ -93,8 +93,9 @@ class Case:
         """Return the segments, ready to be fitted, under noise of unit size."""
         channels = self.measured.observed.shape[2]
         noise = white_noise(np.ones(channels))
-        given = self.measured, segments, noise, self.substeps, self.guess.states
-        return Shooting(*given, record_filter=self.record_filter)
+        return Shooting(
+            self.measured, segments, noise, self.substeps, self.guess.states, record_filter=self.record_filter
+        )
 
     @property
     def longest(self) -> int:
@@ -208,6 +209,15 @@ def _count_substeps(case: Case) -> int:
     alike = partial(np.allclose, rtol=0.0, atol=CRITERIA.model_error, equal_nan=True)
     enough = [count for count in TRIED_SUBSTEPS if alike(ends[count], ends[2 * count])]
     return enough[0] if enough else TRIED_SUBSTEPS[0]  # what moves faster than that is sampled too slowly
+
+
+def hangs_on_step(case: Case, now: ScoredModel) -> bool:
+    """Whether a model's runs move by more than a simulation may err where the integration step is halved."""
+    fit, spread = now.model.fit, np.nanstd(case.measured.observed, axis=(0, 1))
+    finer = replace(now.shooting, substeps=2 * now.shooting.substeps)
+    _, seen = finer.run(now.model.machine, fit.starts[None], fit.values[None])
+    moved = (finer.seen - fit.residual - seen[0]) / np.where(spread > 0, spread, 1.0)
+    return not np.sqrt(np.nanmean(moved**2)) < CRITERIA.model_error
 
 
 def _less_idle(case: Case) -> Case:

@@ -84,9 +84,7 @@ class Request:
     def read(cls, catalogue: Path | None, effects: tuple[str, ...] = (), alpha: float = ALPHA) -> Request:
         """Read a catalogue, if there is one, and note the effects and the rate of false finds."""
         if not 0 < alpha < 1:
-            raise SchemaError(
-                "the rate of false finds, alpha, lies between 0 and 1", f"found {alpha:g}", "Give .05, say."
-            )
+            raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use .05, for example.")
         return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha)
 
 
@@ -139,7 +137,7 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
         raise
     except (OSError, ValueError) as error:
         raise SchemaError(
-            "a catalogue is a TOML file of [[shape]] entries", f"{path.name}: {error}", "Mend the file."
+            "a catalogue must be a TOML file of [[shape]] entries", f"{path.name}: {error}", "Correct the file."
         ) from error
     return _shapes(content, path.name)
 
@@ -148,7 +146,7 @@ def _shapes(content: dict[str, Any], file: str) -> tuple[Shape, ...]:
     entries = content.get("shape")
     if not isinstance(entries, list) or not entries or set(content) != {"shape"}:
         raise SchemaError(
-            "a catalogue holds [[shape]] entries and nothing else",
+            "a catalogue must contain only [[shape]] entries",
             f"{file} holds {', '.join(sorted(content)) or 'nothing'}",
             'Begin each effect with a line "[[shape]]".',
         )
@@ -157,25 +155,23 @@ def _shapes(content: dict[str, Any], file: str) -> tuple[Shape, ...]:
 
 def _shape(entry: Any, where: str) -> Shape:
     if not isinstance(entry, dict):
-        raise SchemaError("a shape is a table", f"{where} is not one", 'Begin it with a line "[[shape]]".')
+        raise SchemaError("a shape must be a table", f"{where} is not one", 'Begin it with a line "[[shape]]".')
     for key in entry:
         if key not in _ENTRIES:
             near = get_close_matches(key, _ENTRIES, 1)
             hint = f"Did you mean {near[0]}?" if near else "Remove it."
-            raise SchemaError(f"a shape has the entries {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
+            raise SchemaError(f"entries of a shape must be among {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
     name, pieces, constants = entry.get("name"), entry.get("pieces"), entry.get("constants", {})
     states = entry.get("states", {})
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise SchemaError(
-            "a shape's name is lower-case words joined by _", f"{where} has {name!r}", 'Write name = "my_effect".'
+            "a shape's name must be lower-case words joined by _", f"{where} has {name!r}", 'Write name = "my_effect".'
         )
     if not isinstance(pieces, list) or not pieces or not all(isinstance(piece, str) for piece in pieces):
-        raise SchemaError(
-            "a shape's pieces are a list of expressions", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].'
-        )
+        raise SchemaError("the pieces of a shape must be a list", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].')
     if not isinstance(states, dict) or not all(_is_name(key) and isinstance(states[key], str) for key in states):
         raise SchemaError(
-            "a shape's states are names, and the time derivative of each as an expression",
+            "a shape's states must be names, each with its time derivative as an expression",
             f"{where} has {states!r}",
             'Write states = { z = "v - z/tau" }.',
         )
@@ -183,17 +179,17 @@ def _shape(entry: Any, where: str) -> Shape:
         _check_piece(piece, (*ROLES, *SIGNALS, *states, *(constants if isinstance(constants, dict) else ())), where)
     if not isinstance(constants, dict) or not all(grid in GRIDS for grid in constants.values()):
         raise SchemaError(
-            f"a constant's search begins on one of {', '.join(GRIDS)}",
+            f"the search grid of a constant must be one of {', '.join(GRIDS)}",
             f"{where} has {constants!r}",
             "Choose one of these.",
         )
     if entry.get("needs", "") not in NEEDS:
-        raise SchemaError('a shape needs "angle" or nothing', f"{where} has {entry['needs']!r}", "Remove the line.")
+        raise SchemaError('a shape may need only "angle"', f"{where} has {entry['needs']!r}", "Remove the line.")
     names = entry.get("names", {})
     numbers = ["factor", *(f"factor_{number}" for number in range(1, len(pieces))), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
         raise SchemaError(
-            f"the names of a shape's numbers are for {', '.join(numbers)}",
+            f"the names of a shape's numbers must be for {', '.join(numbers)}",
             f"{where} has {names!r}",
             'Write names = { factor = "stiffness" }.',
         )
@@ -206,12 +202,12 @@ def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
         written = set(names_in(parsed(piece)))
     except SimulationError as error:
         found = f"{where}, piece {piece[:60]!r}: {error.found}"
-        raise SchemaError("a shape's pieces are expressions as in a simulation file", found, error.remedy) from error
+        raise SchemaError("pieces must be expressions as in a simulation file", found, error.remedy) from error
     for name in sorted(written - set(known)):
         raise SchemaError(
-            f"a shape is written in {', '.join(known)}",
+            f"a shape must be written in {', '.join(known)}",
             f"{where}, piece {piece[:60]!r} has {name!r}",
-            f'If {name} is a number to be found, give it a start: constants = {{ {name} = "quantiles of x" }}.',
+            f'If {name} is a fitted constant, give it a search grid: constants = {{ {name} = "quantiles of x" }}.',
         )
 
 

@@ -38,7 +38,6 @@ class Criteria:
     flexible: float = 0.08  # of what imitates anything: a delay, a product, a period, a state of its own
     drives: float = 0.05  # more, for a friction that drives
     matters: float = 0.05  # of the gap, the least that is named
-    as_much: float = 0.8  # of what the best closes, for a plainer one to stand in its place
     half: float = 0.5  # of an error: what names together, or one name more on whole runs, must take
     each_number: float = 0.004  # of the gap, price of a number of a fitted shape
     reading: float = 0.95  # of what a fitted shape closes, for an expression to stand in its place

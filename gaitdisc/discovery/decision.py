@@ -14,14 +14,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
-from gaitdisc.discovery.held_out import (
-    Proof,
-    free_run_error,
-    free_runs,
-    is_uninformative,
-    proof_of,
-    strays,
-)
+from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, proof_of, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
@@ -261,33 +254,28 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     as_read, named: the simulation as read and with what the search selected
     """
     pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
-    among = len(case.search.candidates)
+    scale, base, among = scale_of(case), case.search.base, len(case.search.candidates)
     span = as_read.shooting.segments.span
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     others = [one for one in others if one.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
-        before, now = compared([as_read, one], case.search.base)
+        before, now = compared([as_read, one], base)
         beside = rank_process_noise(now.shooting, now.model, case.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
         proof = held_out_proof(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
         stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
-        if one.model.parts and likelier > CRITERIA.margin and stays and left_out_errors_fall(case, before, now):
-            borne.append((likelier, now, proof))
+        if one.model.parts and likelier > CRITERIA.margin and stays:
+            pair = [cross_validated(scale, now.shooting, base, each.model.parts, now.model) for each in (before, now)]
+            if pair[0].errors.sum() > pair[1].errors.sum():  # of pieces left out of the fit
+                borne.append((likelier, now, proof))
     if not borne:
         return None
     likelier, now, proof = max(borne, key=lambda one: one[0])
     if not proof.bears_out:  # what is held out hardly shows it: all data together
         proof = replace(proof, test=replace(proof.test, p=float(np.exp(-likelier / 2))))
     return Verdict(now.word, now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
-
-
-def left_out_errors_fall(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
-    """Whether pieces of what was learned from err less with what was found when they are left out of the fit."""
-    scale, base = scale_of(case), case.search.base
-    before, after = (cross_validated(scale, now.shooting, base, one.model.parts, now.model) for one in (as_read, now))
-    return float(before.errors.sum()) > float(after.errors.sum())
 
 
 def says_more(case: Case, shape: ScoredModel, named: ScoredModel) -> bool:

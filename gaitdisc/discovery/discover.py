@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from difflib import get_close_matches
 from functools import partial
 
 import numpy as np
 
-from gaitdisc.discovery.answer import answer
+from gaitdisc.discovery.answer import answer, augmented_of
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
-from gaitdisc.discovery.case import FEWEST_SAMPLES, Case, set_up_case, split_in_time
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.scored_model import ScoredModel, scored
-from gaitdisc.discovery.search import TURNS, Search, is_certain
-from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives
+from gaitdisc.discovery.search import Search, is_certain
+from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives, without_small
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.uncertain_inputs import weigh_input_errors
@@ -50,25 +51,28 @@ def discover(
     """
     measured = without_spikes(measured)
     begun = partial(
-        set_up_case,
-        simulation,
-        shapes=request.shapes,
-        progress=progress,
-        possible=possible,
-        alpha=request.alpha,
+        set_up_case, simulation, shapes=request.shapes, progress=progress, possible=possible, alpha=request.alpha
     )
-    case = begun(measured)
-    refuse_unknown(case.search, request.effects)
-    agreeing = agreeing_trials(case, measured)
-    if agreeing is not measured:
-        measured, case = agreeing, begun(agreeing)
-    progress("fitting the simulation as it was read")
-    as_read = case.as_read()
-    if request.effects:
+    whole = begun(measured)
+    refuse_unknown(whole.search, request.effects)
+
+    def explained(some: Measured) -> tuple[Case, ScoredModel, Verdict]:
+        progress("fitting the simulation as it was read")
+        case = whole if some is measured else begun(some)
+        as_read = case.as_read()
+        if not request.effects:
+            return weigh_explanations(case, as_read, some, begun)
         progress(f"fitting {' and '.join(request.effects)}")
-        verdict = fit_given(case, as_read, request.effects)
-    else:
-        case, as_read, verdict = weigh_explanations(case, as_read, measured, begun)
+        return case, as_read, fit_given(case, as_read, request.effects)
+
+    suspected = agreeing_trials(whole, measured)
+    case, as_read, verdict = explained(suspected)
+    if suspected is not measured:  # a trial is odd where what explains the others says so too
+        explanation = augmented_of(whole.search.base, verdict.found.model.parts)
+        kept = agreeing_trials(replace(whole, search=replace(whole.search, base=explanation)), measured)
+        if kept.trials != suspected.trials:
+            progress("what was found explains a trial that had been left out: it is searched too")
+            case, as_read, verdict = explained(kept)
     progress("showing it on what was held out")
     return answer(case, as_read, verdict, refitted)
 
@@ -84,6 +88,11 @@ def weigh_explanations(
     progress = case.search.progress
     progress(f"weighing {len(case.search.candidates)} explanations")
     verdict = decide(case, as_read)
+    while hangs_on_step(case, verdict.found) and case.substeps < TRIED_SUBSTEPS[-1]:
+        progress("what was found depends on the integration step: searching once more with half the step")
+        case = replace(case, substeps=2 * case.substeps)
+        as_read = case.as_read()
+        verdict = decide(case, as_read)
     if not leaves_noise(case, verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
@@ -104,7 +113,7 @@ def weigh_explanations(
     verdict = read_instead(case, as_read, read_shape(case, as_read, verdict))
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)
     case, verdict = weigh_input_errors(case, verdict)
-    return case, as_read, verdict
+    return case, as_read, without_small(case, as_read, verdict)
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
@@ -142,17 +151,7 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
     for given in effects:
         castings = tuple(one for one in search.open_beside(now.model) if one.label == given)
         begun = search.scorer(now.shooting, now.model).scores(castings)
-        tried = [
-            fit_model(
-                now.shooting,
-                search.base,
-                (*now.model.parts, Part(one.candidate, one.values)),
-                now.model.fit.starts,
-                TURNS,
-                like=now.model,
-            )
-            for one in begun
-        ]
+        tried = [search.with_part(now, Part(one.candidate, one.values)) for one in begun]
         tried = [one for one in tried if np.isfinite(one.fit.misfit)]
         if not tried:
             raise SchemaError(

@@ -86,8 +86,8 @@ def _together(cutoffs: dict[int, float]) -> dict[int, float]:
 
 
 def _finding(measured: Measured, channel: int, cutoff: float) -> Finding:
-    what = f"taken as low-passed at {cutoff:.3g} Hz without lag (order 2, forwards and back), as its spectrum falls"
-    spoils = "what rests on a filter that was not there: say lowpass in the simulation file where you know it"
+    what = f"assumed to be low-passed at {cutoff:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
+    spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
     return Finding("note", "low-pass", measured.source, what, spoils, measured.channels[channel])
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.observation_map import RANK, ObservationMap
-from gaitdisc.discovery.own_states import driven_by_others
+from gaitdisc.discovery.own_states import driven_by_others, run_twice
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.signals.derivatives import savgol_filter
 from gaitdisc.simulation.drive import Drive, Rows
@@ -78,14 +78,10 @@ def _following(
     """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
     machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden).tolist())))
     driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
-    along, trials = replace(drive, inputs=driving), np.arange(len(states))
-    starts, runs = states[:, 0, hidden], []
-    for _ in range(2):
-        run, _ = machine.run(along, Rows(trials, 0 * trials, starts), states.shape[1] - 1)
-        runs.append(run)
-        starts = run[trials, drive.samples - 1]
+    trials = np.arange(len(states))
+    runs = run_twice(machine, replace(drive, inputs=driving), Rows(trials, 0 * trials, states[:, 0, hidden]))
     apart = np.abs(runs[0] - runs[1])
-    if not np.isfinite(starts).all() or (apart[trials, drive.samples - 1] > FORGOTTEN * apart.max(axis=1)).any():
+    if not (apart[trials, drive.samples - 1] <= FORGOTTEN * apart.max(axis=1)).all():
         return states
     out = states.copy()
     said = [state.initial is not None for state, open_ in zip(simulation.states, hidden, strict=True) if open_]

@@ -116,12 +116,15 @@ def grows_along_runs(case: Case, now: ScoredModel) -> bool:
 
     What a sensor's noise leaves, also one that remembers, is as large in a long run as in a short one, but for the
     doubt about the start; what is missing in the dynamics adds up. A simulation is granted a hundredth of the spread.
-    Where a small change of the start grows, free runs say nothing.
+    What leaves half of the variance beyond the noise describes nothing, however long the runs. Where a small change of
+    the start grows, free runs say nothing.
     """
     if not case.spans_a_period(now):
         return False
-    error, doubt = free_runs(case, now)
-    return error > CRITERIA.grown**2 * (max(scale_of(case).relative(now.model.fit), CRITERIA.model_error) ** 2 + doubt)
+    (error, doubt), scale = free_runs(case, now), scale_of(case)
+    short = max(scale.relative(now.model.fit), CRITERIA.model_error) ** 2
+    noise = float(np.mean((case.noise_floor(now.noise.size) / scale.spread) ** 2))
+    return error > min(CRITERIA.grown**2 * (short + doubt), CRITERIA.half + noise + doubt)
 
 
 def is_uninformative(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
@@ -150,8 +153,8 @@ def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Ca
 def noted(before: Case, now: Case) -> Case:
     """Return a case with a finding that says what is held out in place of what."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
-    what = f"with and without what was found, trial {blind} runs alike; trial {instead} is held out in its place"
-    finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data were to be held out")
+    what = f"trial {blind} runs alike with and without the identified effect; trial {instead} is held out instead"
+    finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data should have been held out")
     return replace(now, measured=replace(now.measured, findings=(*now.measured.findings, finding)))
 
 

@@ -34,9 +34,13 @@ class Idle:
         return tuple(
             Finding(severity, "no influence", source, f"{said} no effect on what is measured", spoils)
             for severity, said, spoils in (
-                ("warning", _said(kind, self.places), "a search there: nothing can be found where it would not show"),
-                ("note", _said("parameter", self.parameters), "nothing; these data cannot say what it is"),
-                ("note", _said("state", self.states), "nothing; these data cannot say where it starts"),
+                (
+                    "warning",
+                    _said(kind, self.places),
+                    "a search there: an effect that does not show cannot be identified",
+                ),
+                ("note", _said("parameter", self.parameters), "nothing; these data cannot determine its value"),
+                ("note", _said("state", self.states), "nothing; these data cannot determine its initial value"),
             )
             if said
         )
@@ -86,18 +90,17 @@ def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -
     """Refuse a simulation of which a measured channel never changes, or in which nothing missing would show."""
     for name in idle.constant:
         raise SimulationError(
-            "a measured channel depends on a state or an input",
-            f"{name!r} is {dict(simulation.observations)[name]!r}, the same in every sample of {simulation.title!r}",
-            "Correct its expression, or take the channel out.",
+            "a measured channel must depend on a state or an input",
+            f"{name!r} is {dict(simulation.observations)[name]!r}, which is constant in {simulation.title!r}",
+            "Correct its expression, or remove the channel.",
             ("observations", name),
         )
     if places and len(idle.places) == len(places):
         kinds = "ports" if simulation.ports else "equations"
         raise SimulationError(
-            "an effect can be found where it changes what is measured",
-            f"no effect on any of {', '.join(name for name, _ in simulation.observations)} comes of "
-            f"{_listed(idle.places)}",
-            "Check what each is multiplied by, or measure a channel that it moves.",
+            "an effect can be identified only where it changes a measured channel",
+            f"{_listed(idle.places)} affects none of {', '.join((name for name, _ in simulation.observations))}",
+            "Check its factors, or measure a channel that it affects.",
             (kinds, idle.places[0]),
         )
 
@@ -112,7 +115,7 @@ def nearly_off(effects: tuple[FoundEffect, ...], source: str) -> tuple[Finding, 
     if len(gains) < 2:
         return ()
     what = " and ".join(f"{name!r} ({gain:.2g} times)" for name, gain in gains.items()) + " are nearly switched off"
-    spoils = "the answer, if the simulation follows a recorded motion: let signals of one recording enter as one input"
+    spoils = "the answer, if the simulation follows a recorded motion; combine signals of one recording into one input"
     return (Finding("warning", "inputs switched off", source, what, spoils),)
 
 

@@ -26,12 +26,12 @@ def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...
             nearest = nearest_word(name, observations)
             hint = f", the nearest is {nearest!r}" if nearest else ""
             raise ChannelError(
-                f"every measured channel is an observation of {simulation.title!r}: {', '.join(observations)}",
+                f"every measured channel must be an observation of {simulation.title!r}: {', '.join(observations)}",
                 f"{where} has {name!r}{hint}",
-                f"Add {name!r} to the observations, or leave the channel out.",
+                f"Add {name!r} to the observations, or remove the channel.",
             )
         if measured.channels.count(name) > 1:
-            raise ChannelError("each channel has a name of its own", f"{where} has {name!r} twice", "Rename one.")
+            raise ChannelError("each channel must have its own name", f"{where} has {name!r} twice", "Rename one.")
     _check_trials(measured, where)
     _check_inputs(simulation, measured, where)
     _check_observed(measured, where)
@@ -52,13 +52,13 @@ def _check_trials(measured: Measured, where: str) -> None:
     names = measured.trials
     doubled = next((name for name in names if names.count(name) > 1), None)
     if doubled is not None:
-        raise ChannelError("each trial has a name of its own", f"{where} has trial {doubled!r} twice", "Rename one.")
+        raise ChannelError("each trial must have its own name", f"{where} has trial {doubled!r} twice", "Rename one.")
     short = int(np.argmin(measured.samples))
     if measured.samples[short] < FEWEST:
         raise SamplingError(
-            f"a trial has {FEWEST} samples or more",
+            f"a trial must have at least {FEWEST} samples",
             f"{where}, trial {names[short]!r} has {measured.samples[short]}",
-            "Leave it out, or record longer.",
+            "Remove it, or record longer.",
         )
 
 
@@ -67,7 +67,7 @@ def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> Non
     given = measured.drive.inputs
     if given.shape[2] != len(names):
         raise ShapeError(
-            f"{simulation.title!r} is driven by {len(names)} inputs: {', '.join(names) or 'none'}",
+            f"{simulation.title!r} needs {len(names)} inputs: {', '.join(names) or 'none'}",
             f"{where} has {given.shape[2]}",
             "Give one column for each, in this order.",
         )
@@ -75,9 +75,9 @@ def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> Non
         sample, column = _first(~np.isfinite(given[trial, :samples]))
         if sample >= 0:
             raise ShapeError(
-                "an input has a value in every sample",
+                "an input must have a value in every sample",
                 f"{where}, trial {name!r}, {names[column]!r}: {given[trial, sample, column]} in sample {sample + 1}",
-                "Fill the gap, or cut the trial there.",
+                "Fill the gap, or split the trial there.",
             )
 
 
@@ -86,18 +86,18 @@ def _check_observed(measured: Measured, where: str) -> None:
     trial, column = _first(~seen.any(axis=1))
     if trial >= 0:
         raise ShapeError(
-            "an observed channel has values in every trial",
+            "an observed channel must have values in every trial",
             f"{where}, trial {measured.trials[trial]!r} has none of {measured.channels[column]!r}",
-            "Leave the trial or the channel out.",
+            "Remove the trial or the channel.",
         )
     values = np.where(seen, measured.observed, np.nan)
     low, high = np.nanmin(values, axis=(0, 1)), np.nanmax(values, axis=(0, 1))
     for name, least, most in zip(measured.channels, low, high, strict=True):
         if least == most:
             raise ShapeError(
-                f"an observed channel varies: {name!r}",
+                f"an observed channel must vary: {name!r}",
                 f"{where} has {least:g} in every sample",
-                "Take the channel out of the observations, or correct it.",
+                "Remove the channel from the observations, or correct it.",
             )
 
 
@@ -107,10 +107,10 @@ def _check_filters(simulation: Simulation, measured: Measured, where: str) -> No
         cutoff = simulation.sensor(name).lowpass
         if cutoff is not None and cutoff >= measured.rate / 2:
             raise SamplingError(
-                f"the low-pass of an observation lies below half the rate, {measured.rate / 2:g} Hz",
-                f"{file}, [observations.{name}] has lowpass = {cutoff:g} where {where} has {measured.rate:g} samples a "
-                "second",
-                "Correct lowpass [Hz], or leave it out.",
+                f"the low-pass of an observation must lie below half the rate, {measured.rate / 2:g} Hz",
+                f"{file}, [observations.{name}] has lowpass = {cutoff:g}, but {where} has {measured.rate:g} samples "
+                "per second",
+                "Correct lowpass [Hz], or remove it.",
             )
 
 

@@ -1,8 +1,8 @@
 """Odd trials: one whose sign is turned, or that is shifted in time, against its inputs and its other channels.
 
-The simulation as read is run from each trial, its start free every period. However wrong it is, a record with its sign
-turned or its time shifted goes with it worse still. A trial that goes with it much better so (shifted, about as well as
-the others do), while the others go worse, was recorded otherwise than they were.
+The simulation, as read and then with what was found, is run from each trial, its start free every period. However wrong
+it is, a record with its sign turned or its time shifted goes with it worse still. A trial that goes with it much better
+so (shifted, about as well as the others do), while the others go worse, was recorded otherwise than they were.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.forward_selection import leaves
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
-from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
@@ -75,10 +74,10 @@ def agreeing_trials(case: Case, measured: Measured) -> Measured:
             "warning",
             KIND,
             source,
-            f"trial {measured.trials[one.trial]!r} looks as if {one.change}: undone, the error of the simulation as "
-            f"given falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations; in the other trials the "
-            f"same makes it rise from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
-            "this trial, which was left out: correct it, or take it away",
+            f"trial {measured.trials[one.trial]!r} looks as if {one.change}: with this correction the error of the "
+            f"simulation falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations; in the other "
+            f"trials the same correction raises it from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
+            "this trial, which was left out; correct or remove it",
             one.channel,
         )
         for one in odd
@@ -113,7 +112,7 @@ def _either(found: list[Odd]) -> Odd:
     moved = sorted((one for one in alike if not one.change.startswith(SIGN)), key=lambda one: one.errors[1])
     turned = [one for one in alike if one.change.startswith(SIGN)]
     names = " or of ".join(one.change.removeprefix(SIGN) for one in turned)
-    words = ([f"{SIGN}{names} were turned"] if turned else []) + [one.change for one in moved[:1]]
+    words = ([f"{SIGN}{names} were reversed"] if turned else []) + [one.change for one in moved[:1]]
     return replace([*turned, *moved][0], change=", or ".join(words))
 
 
@@ -176,7 +175,7 @@ def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]
         promising = [place for place in _lowest(np.array(left)) if left[place] < PROMISING * now]
         likely |= {shifts[place] for place in promising[:SHIFTS_TRIED]}
     for shift in sorted(likely):
-        words = f"its channels came {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
+        words = f"its channels are {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
         yield Change(f"{words} for its inputs", "", shifted(measured, shift))
 
 
@@ -236,26 +235,21 @@ def without_trial_apart(case: Case) -> Measured:
     trial, other = np.argsort(promised)[:2].tolist()
     least = _left_without(case, trial, spread)
     wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
-    if _as_read_left(as_read, other, spread) < wanted:  # what a search leaves of the same trials is no more
+    others = as_read.shooting.segments.trial != other
+    if np.sqrt(np.nanmean((model.fit.residual[others] / spread) ** 2)) < wanted:  # a search leaves no more of these
         return measured
     next_least = _left_without(case, other, spread)
     if next_least < wanted:
         return measured
     what = (
-        f"trial {measured.trials[trial]!r} goes with no explanation of the others: without it the best one leaves "
-        f"{least:.2g} standard deviations, without trial {measured.trials[other]!r}, the next best to leave out, "
-        f"{next_least:.2g}"
+        f"trial {measured.trials[trial]!r} does not fit any explanation of the others: without it the residual of the "
+        f"best one is {least:.2g} standard deviations; without trial {measured.trials[other]!r}, the next candidate, "
+        f"it is {next_least:.2g}"
     )
     source = measured.source or case.search.base.title
-    spoils = "this trial, which was left out: look at its gain, its offset and whether a channel stood still"
+    spoils = "this trial, which was left out; check its gain, its offset and whether a channel was constant"
     kept = measured.selected([one for one in range(count) if one != trial])
     return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
-
-
-def _as_read_left(as_read: ScoredModel, trial: int, spread: NDArray[np.float64]) -> float:
-    """Root mean square that the simulation as read leaves of all other trials [standard deviations]."""
-    others = as_read.shooting.segments.trial != trial
-    return float(np.sqrt(np.nanmean((as_read.model.fit.residual[others] / spread) ** 2)))
 
 
 def _left_without(case: Case, trial: int, spread: NDArray[np.float64]) -> float:

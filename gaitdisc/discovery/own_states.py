@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.simulation.compiled_simulation import Compiled
+from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.running import compile_simulation
@@ -46,16 +46,26 @@ def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.floa
     machine = compile_simulation(
         driven_by_others(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
     )
-    trials, versions, steps = len(drive.samples), len(values), int(drive.samples.max()) - 1
-    begin = np.zeros(trials * versions, np.int64)
+    trials, versions = len(drive.samples), len(values)
     trial = np.tile(np.arange(trials), versions)
-    many = np.repeat(values, trials, axis=0)
     starts = np.tile([state.initial or 0.0 for state in machine.simulation.states], (len(trial), 1))
-    before, _ = machine.run(along, Rows(trial, begin, starts, many), steps, substeps=shooting.substeps)
-    starts = np.nan_to_num(before[np.arange(len(trial)), drive.samples[trial] - 1], nan=0.0, posinf=0.0, neginf=0.0)
-    runs, _ = machine.run(along, Rows(trial, begin, starts, many), steps, substeps=shooting.substeps)
-    runs = np.nan_to_num(runs, nan=0.0, posinf=0.0, neginf=0.0)  # begun as the trial ends: it has forgotten its start
-    return runs.reshape(versions, trials, steps + 1, -1)
+    rows = Rows(trial, 0 * trial, starts, np.repeat(values, trials, axis=0))
+    runs = np.nan_to_num(run_twice(machine, along, rows, shooting.substeps)[1], nan=0.0, posinf=0.0, neginf=0.0)
+    return runs.reshape(versions, trials, runs.shape[1], -1)
+
+
+def run_twice(
+    machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBSTEPS
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Run over whole trials, and once more from where each ended: by then it has forgotten its start.
+
+    returns: both runs (row, sample, state)
+    """
+    steps = int(drive.samples.max()) - 1
+    first, _ = machine.run(drive, rows, steps, substeps=substeps)
+    ends = first[np.arange(len(rows.trial)), drive.samples[rows.trial] - 1]
+    again = replace(rows, starts=np.nan_to_num(ends, nan=0.0, posinf=0.0, neginf=0.0))
+    return first, machine.run(drive, again, steps, substeps=substeps)[0]
 
 
 def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation:

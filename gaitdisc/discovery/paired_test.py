@@ -58,14 +58,28 @@ def paired_test(before: NDArray[np.float64], after: NDArray[np.float64], floor: 
     known = np.isfinite(before).sum(axis=(0, 1))
     first, second = (np.nan_to_num(one / floor) for one in (before, after))
     fall, change = float((first**2 - second**2).sum()), first - second
-    covariance, together = (_lagged_products(one) for one in (second / np.sqrt(np.maximum(known, 1)), change))
-    covariance *= _lag_weights(covariance, int(known.max()))
-    spread = np.sqrt(max(float((covariance * together).sum()), 0.0))
+    covariance = _autocovariance(second, known)
+    spread = np.sqrt(max(float((covariance * _lagged_products(change)).sum()), 0.0))
     if not spread > 0:
         return PairedTest(1.0, 0, fall)
     independent = float((known / (covariance**2 / covariance[0] ** 2).sum(axis=0)).sum())
     p = float(student.sf(float((first * change).sum()) / spread, max(independent - 1, 1.0)))
     return PairedTest(p, max(int(independent), 1), fall)
+
+
+def sum_error(change: NDArray[np.float64], left: NDArray[np.float64]) -> float:
+    """Standard deviation that noise with the autocovariance of what is left gives to the sum of its products.
+
+    change, left (run, sample, channel): what is multiplied with the noise, and what is left; NaN where not measured
+    """
+    covariance = _autocovariance(np.nan_to_num(left), np.isfinite(left).sum(axis=(0, 1)))
+    return float(np.sqrt(max(float((covariance * _lagged_products(change)).sum()), 0.0)))
+
+
+def _autocovariance(left: NDArray[np.float64], known: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Return the autocovariance of what is left (lag, channel), weighed down with the lag."""
+    covariance = _lagged_products(left / np.sqrt(np.maximum(known, 1)))
+    return covariance * _lag_weights(covariance, int(known.max()))
 
 
 def _lagged_products(record: NDArray[np.float64]) -> NDArray[np.float64]:

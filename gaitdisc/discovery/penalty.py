@@ -33,14 +33,7 @@ FLEXIBLE = (
     "delayed_feedback",
     "product_coupling",
 )
-LOSSES = (
-    "viscous_damping",
-    "coulomb_friction",
-    "quadratic_drag",
-    "contact_damper",
-    "hysteresis",
-    "series_elasticity",
-)
+LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
 
 
 def penalty_of(candidate: Candidate, values: Mapping[str, float]) -> float:

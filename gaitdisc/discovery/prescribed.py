@@ -34,7 +34,7 @@ SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each n
 
 
 @dataclass(frozen=True, eq=False)
-class LeftMoment:
+class ResidualMoment:
     """What is left at one joint, at samples that hold all that the record's low-pass passes."""
 
     port: str
@@ -76,7 +76,7 @@ class Named:
 class JointFinding:
     """What one joint shows."""
 
-    joint: LeftMoment
+    joint: ResidualMoment
     noise: Noise
     named: Named | None
     rivals: tuple[Named, ...]  # best first
@@ -90,7 +90,7 @@ class JointFinding:
         return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
 
 
-def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
+def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
     open_ones = len(candidates) * joints
     floor = CRITERIA.model_error * float(np.std(joint.demanded))
@@ -105,49 +105,33 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: 
             break
         noise = noise_of(rest[None, :, None], used=2, least=floor)
     near = [one for one in ordered if one.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
-    proven = [_proven(joint, noise, one) for one in near]
-    ordered = [*_simple_first(proven, candidates), *ordered[len(near) :]]
+    proven = sorted((_proven(joint, noise, one) for one in near), key=lambda one: -one.held_out)
+    alike = [one for one in proven if one.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
+    order = [one.identity for one in candidates]  # of two with one penalty the first in the catalogue is the simpler
+    alike.sort(
+        key=lambda one: (penalty_of(one.part.candidate, one.part.values), order.index(one.part.candidate.identity))
+    )
+    ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
     first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
     return JointFinding(joint, noise, first, tuple(ordered), open_ones)
 
 
 def _weighed(
-    joint: LeftMoment, noise: Noise, candidates: tuple[Candidate, ...], open_ones: int, refined: bool
+    joint: ResidualMoment, noise: Noise, candidates: tuple[Candidate, ...], open_ones: int, refined: bool
 ) -> list[Named]:
     """Fit candidates to all of the record, the best first."""
     fitted = [_fitted(joint, noise, each, open_ones, refined) for each in candidates]
     return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
 
 
-def _simple_first(proven: list[Named], candidates: tuple[Candidate, ...]) -> list[Named]:
-    """Put first what predicts held-out time best, or a plainer statement that does so hardly worse.
-
-    candidates: of two with one penalty the one that stands first in the catalogue is the simpler
-    """
-    ordered = sorted(proven, key=lambda one: -one.held_out)
-    alike = [one for one in ordered if one.held_out > ordered[0].held_out - CRITERIA.tie]
-    order = [one.identity for one in candidates]
-    alike.sort(
-        key=lambda one: (
-            penalty_of(one.part.candidate, one.part.values),
-            order.index(one.part.candidate.identity),
-        )
-    )
-    return [*alike, *ordered[len(alike) :]]
-
-
-def borne_out(joint: LeftMoment, one: Named) -> bool:
+def borne_out(joint: ResidualMoment, one: Named) -> bool:
     """Whether an explanation is of a size that matters, and closes enough on held-out time."""
-    left = float(np.sum((joint.left - one.predicted) ** 2))
-    return not _too_small(one) and left < (1 - CLOSED) * float(np.sum(joint.left**2))
+    left, candidate = float(np.sum((joint.left - one.predicted) ** 2)), one.part.candidate
+    matters = not candidate.bounds or candidate.beyond_bounds(one.part.values["value"]) > 0
+    return matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
 
 
-def _too_small(one: Named) -> bool:
-    candidate = one.part.candidate
-    return bool(candidate.bounds) and candidate.beyond_bounds(one.part.values["value"]) <= 0
-
-
-def _fitted(joint: LeftMoment, noise: Noise, candidate: Candidate, open_ones: int, refined: bool) -> Named | None:
+def _fitted(joint: ResidualMoment, noise: Noise, candidate: Candidate, open_ones: int, refined: bool) -> Named | None:
     """Numbers of a candidate on all of the record, None where it is nowhere in it."""
     every = np.arange(len(joint.time))
     values = _numbers(joint, noise, candidate, every, refined)
@@ -166,7 +150,7 @@ def _fitted(joint: LeftMoment, noise: Noise, candidate: Candidate, open_ones: in
     return Named(part, covariance, explained, np.zeros(len(every)), gained, 0.0, PairedTest(1.0, 0, 0.0))
 
 
-def _proven(joint: LeftMoment, noise: Noise, one: Named) -> Named:
+def _proven(joint: ResidualMoment, noise: Noise, one: Named) -> Named:
     """Predict each block of the time with numbers of the rest."""
     predicted = np.zeros(len(joint.time))
     for held, learned in joint.blocks:
@@ -180,7 +164,7 @@ def _proven(joint: LeftMoment, noise: Noise, one: Named) -> Named:
 
 
 def _numbers(
-    joint: LeftMoment, noise: Noise, candidate: Candidate, some: NDArray[np.intp], refined: bool = True
+    joint: ResidualMoment, noise: Noise, candidate: Candidate, some: NDArray[np.intp], refined: bool = True
 ) -> dict[str, float] | None:
     """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
     from scipy.optimize import minimize
@@ -198,14 +182,20 @@ def _numbers(
         factors = np.asarray(np.linalg.lstsq(white, y, rcond=None)[0], np.float64)
         return float(((y - white @ factors) ** 2).sum()), factors
 
-    starts = _starts(joint, candidate)
+    span = float(joint.time[-1] - joint.time[0])
+    rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
+    starts = cells(dict(candidate.constants or {}), joint.along, rhythm)
+    if candidate.place.endswith("_delay"):
+        starts = [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
     scores = [fit(one)[0] for one in starts]
     best = starts[int(np.argmin(scores))]
     if not np.isfinite(min(scores)):
         return None
     if best and refined:
         names = list(best)
-        width = np.array([max(_spacing(starts, name), FLAT) for name in names])
+        grids = [np.unique([one[name] for one in starts]) for name in names]
+        steps = [np.median(np.diff(each)) if len(each) > 1 else 0.1 * abs(each[0]) for each in grids]
+        width = np.maximum(steps, FLAT)
         at = np.array([best[name] for name in names])
         simplex = np.vstack([at, *(at + step * np.eye(len(names))[k] for k, step in enumerate(width))])
         found = minimize(
@@ -222,21 +212,7 @@ def _numbers(
     return dict(zip(candidate.slots, [*map(float, factors), *best.values()], strict=True))
 
 
-def _starts(joint: LeftMoment, candidate: Candidate) -> list[dict[str, float]]:
-    """Where the search for the constants of a candidate begins."""
-    if candidate.place.endswith("_delay"):
-        return [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
-    span = float(joint.time[-1] - joint.time[0])
-    rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
-    return cells(dict(candidate.constants or {}), joint.along, rhythm)
-
-
-def _spacing(starts: list[dict[str, float]], name: str) -> float:
-    each = np.unique([one[name] for one in starts])
-    return float(np.median(np.diff(each))) if len(each) > 1 else 0.1 * abs(float(each[0]))
-
-
-def _explained(joint: LeftMoment, candidate: Candidate, values: Mapping[str, float]) -> Values:
+def _explained(joint: ResidualMoment, candidate: Candidate, values: Mapping[str, float]) -> Values:
     if candidate.verdict == "wrong_parameter":
         if candidate.place.endswith("_delay"):
             return joint.columns(candidate, values)[:, 0]
@@ -256,7 +232,7 @@ def _price(count: int, samples: int, open_ones: int) -> float:
     return count * float(np.log(samples)) + 2 * float(np.log(max(open_ones, 1)))
 
 
-def _slope(joint: LeftMoment, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
+def _slope(joint: ResidualMoment, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
     step = 1e-3 * max(abs(values[slot]), 1e-2)
     sides = [_explained(joint, candidate, {**values, slot: values[slot] + sign * step}) for sign in (1, -1)]
     return (sides[0] - sides[1]) / (2 * step)

@@ -115,8 +115,3 @@ def run_both_ways(values: NDArray[np.float64], channel: int, coefficients: NDArr
                 long[:] = long[::-1].copy()
             for sample in range(samples):
                 values[run, sample, channel, column] = long[padding + sample]
-
-
-def no_filter(channels: int, rate_hz: float) -> RecordFilter:
-    """Channels that went through no filter."""
-    return RecordFilter((None,) * channels, rate_hz)

@@ -223,11 +223,7 @@ class Scorer:
         return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
 
     def _seen_over(
-        self,
-        machine: Compiled,
-        states: NDArray[np.float64],
-        values: NDArray[np.float64],
-        over: NDArray[np.float64],
+        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64], over: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """What is seen to change though no state does (version, segment, sample, channel)."""
         seen = self.shooting.observed(machine, states, values)

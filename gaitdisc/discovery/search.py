@@ -22,11 +22,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 REFITTED = 18
 MOST_COMPARED = 5
-LIMITS = {
-    "frequencies": (0.0, np.inf),
-    "phases": (-np.inf, np.inf),
-    "phase widths": (0.0, 1.0),
-}
+LIMITS = {"frequencies": (0.0, np.inf), "phases": (-np.inf, np.inf), "phase widths": (0.0, 1.0)}
 VANISHING = ("half widths of x", "delays")  # constants at whose zero a shape is a simpler one
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 TURNS = 15
@@ -62,19 +58,8 @@ class Search:
         penalty = float(np.log(model.fit.white.size))
         scores = sorted(scorer.scores(open_ones), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
         worth = [one for one in scores if one.gain > penalty * len(one.candidate.slots)][:REFITTED]
-        tried = [
-            fit_model(
-                shooting,
-                self.base,
-                (*model.parts, Part(one.candidate, one.values)),
-                model.fit.starts,
-                TURNS,
-                NEARLY,
-                model,
-            )
-            for one in self._reported(worth)
-        ]
-        far = [] if model.parts else self._far_off(now)
+        tried = [self.with_part(now, Part(one.candidate, one.values)) for one in self._reported(worth)]
+        far = [] if model.parts else self.far_off(now)
         tried = [*(one for one in tried if self.sensible(one) and is_certain(one, -1)), *far]
         tried = sorted(best_of_each(tried), key=lambda one: one.bic)[:most]
         if not tried:
@@ -82,24 +67,18 @@ class Search:
         before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)], self.base)
         return [before, *(replace(one, gained=before.bic - one.bic) for one in more)]
 
-    def _far_off(self, now: ScoredModel) -> list[CandidateModel]:
+    def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> CandidateModel:
+        """Fit a model with one explanation more to the same runs."""
+        parts = (*now.model.parts, part)
+        return fit_model(now.shooting, self.base, parts, now.model.fit.starts, turns, NEARLY, now.model)
+
+    def far_off(self, now: ScoredModel) -> list[CandidateModel]:
         """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
         found = []
         for one in self.open_beside(now.model):
             if one.verdict != "wrong_parameter" or one.bounds or not one.value:
                 continue
-            begun = [
-                fit_model(
-                    now.shooting,
-                    self.base,
-                    (Part(one, {"value": one.value * factor}),),
-                    now.model.fit.starts,
-                    FEW_TURNS,
-                    NEARLY,
-                    now.model,
-                )
-                for factor in DECADES
-            ]
+            begun = [self.with_part(now, Part(one, {"value": one.value * factor}), FEW_TURNS) for factor in DECADES]
             best = min(begun, key=lambda each: each.fit.misfit if np.isfinite(each.fit.misfit) else np.inf)
             if best.fit.misfit < now.model.fit.misfit:
                 found.append(fit_model(now.shooting, self.base, best.parts, best.fit.starts, TURNS, NEARLY, now.model))
@@ -112,7 +91,7 @@ class Search:
             now = time.perf_counter()
             if done and now - last >= EVERY:
                 left = (now - began) / done * (len(worth) - done)
-                self.progress(f"{done} of {len(worth)} explanations fitted, {left:.0f} s left of this round")
+                self.progress(f"{done} of {len(worth)} explanations fitted, {left:.0f} s remain in this round")
                 last = now
             yield one
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from gaitdisc.discovery.beam import errs_more
 from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
@@ -14,7 +16,7 @@ from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import free_run_error, grows_along_runs, proof_of, strays
+from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, proof_of, strays
 from gaitdisc.discovery.ranking import ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
@@ -153,14 +155,29 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
         return verdict
     tried = [one for one in rivals if len(one.model.parts) == len(named.model.parts)]
     left = [(free_run_error(case, one), one) for one in (named, *tried[:MOST_NEAR])]
-    least = min(error for error, _ in left)
-    if least > CRITERIA.half * min(free_run_error(case, one) for one in (found, whole)):
+    least, before = min(error for error, _ in left), min(free_run_error(case, one) for one in (found, whole))
+    closed = (np.sqrt(before) - np.sqrt(least)) / np.sqrt(free_run_error(case, as_read))
+    if least > CRITERIA.half * before or closed < CRITERIA.matters:
         return verdict
     more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
     beside, proof = held_out_proof(case, whole, more, as_read), held_out_proof(case, as_read, more)
     if not beside.bears_out or not proof.bears_out:
         return verdict
     return replace(verdict, word=more.word, found=more, rivals=(found, *tried, *verdict.rivals), proof=proof)
+
+
+def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
+    """Return a verdict that names nothing where what is named closes too little of the gap, and mere noise is not left.
+
+    The gap is that of unseen data above the sensors' noise.
+    """
+    found, proof = verdict.found, verdict.proof
+    if not found.model.parts or not proof or leaves_noise(case, found):
+        return verdict
+    size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
+    if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:
+        return verdict
+    return Verdict("no_gap", as_read, (found, *verdict.rivals), proof=proof)
 
 
 def relatives_of(case: Case, now: ScoredModel, number: int) -> list[Candidate]:

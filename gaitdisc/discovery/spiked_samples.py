@@ -125,9 +125,9 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
             f"({value:.4g} between {_beside(measured, marks, trial, channel, first)})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
-    more = f"; {len(said) - LISTED} more trials alike" if len(said) > LISTED else ""
-    what = "leaps of one to three samples and back: " + "; ".join(said[:LISTED]) + more
-    spoils = "these samples alone, which were left out as empty cells are"
+    more = f"; the same in {len(said) - LISTED} more trials" if len(said) > LISTED else ""
+    what = "spikes of one to three samples: " + "; ".join(said[:LISTED]) + more
+    spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]
     return Finding("warning", KIND, measured.source, what, spoils, name, tuple(spans) if len(said) == 1 else ())
 

@@ -83,10 +83,10 @@ def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
         return case, verdict
     now, proof = beyond_errors(case, best)
     named, kept = (Counter(part.candidate.label for part in one.model.parts) for one in (best.now, now))
-    dropped = ["random pushes"] * bool(verdict.process_noise)
+    dropped = ["process noise"] * bool(verdict.process_noise)
     dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (named - kept).elements()]
     if dropped:
-        what = f"the errors that the simulation states of {listed(erring)} explain {listed(dropped)} as well"
+        what = f"the stated errors of {listed(erring)} explain {listed(dropped)} as well"
         finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
         measured = replace(case.measured, findings=(*case.measured.findings, finding))
         case = replace(case, measured=measured)

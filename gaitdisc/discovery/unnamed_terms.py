@@ -11,7 +11,7 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 NAME = "unnamed"
-MEANS = "an effect that has no name here"
+MEANS = "an effect that is not in the catalogue"
 
 
 def unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:

@@ -26,11 +26,11 @@ FEW = 12  # independent samples of held-out data
 SMALL = 0.05  # of the squared error
 UNIT_SLACK = 0.05
 OTHER_UNITS = (  # gains of a sensor that another convention makes
-    (math.pi / 180, ", as radians do that are taken for degrees"),
-    (180 / math.pi, ", as degrees do that are taken for radians"),
-    (-1.0, ", as the other sign does"),
-    (1e3, ", as thousandths of its unit do"),
-    (1e-3, ", as thousands of its unit do"),
+    (math.pi / 180, ", as if radians were read as degrees"),
+    (180 / math.pi, ", as if degrees were read as radians"),
+    (-1.0, ", as if its sign were reversed"),
+    (1e3, ", as if its unit were a thousandth"),
+    (1e-3, ", as if its unit were a thousandfold"),
 )
 DIRECTIONS = re.compile(
     r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
@@ -55,11 +55,15 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
         where = at_place(effects[0].kind, effects[0].place)
         push = estimate_text(effects[0].estimates["strength"])
         alone = discovery.held_out is not None and discovery.held_out.of.endswith("quarter")
-        repeats = "one trial cannot show whether they repeat" if alone else "no effect that repeats was found"
-        return f"Random pushes of {push} (standard deviation) act {where}; {repeats}."
+        repeats = (
+            "one trial cannot show whether a deterministic effect is missing"
+            if alone
+            else "no deterministic effect is missing"
+        )
+        return f"Process noise of {push} (standard deviation) acts {where}; {repeats}."
     if discovery.verdict == "wrong_initial_condition":
         starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
-        return f"Only the start is wrong: the trials begin with {starts}; the dynamics agree to within the noise."
+        return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within noise."
     if discovery.verdict == "unnamed":
         return f"{_unnamed(effects[0], base, discovery.where)}."
     said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
@@ -75,42 +79,42 @@ def _given(discovery: Discovery) -> str:
     if not discovery.given:
         return ""
     size = discovery.held_out
-    bear = "bear it out" if discovery.given == "proven" else "do not bear it out"
+    bear = "support it" if discovery.given == "proven" else "do not support it"
     worth = f"p = {_chance(size.p)} over {size.pieces} independent samples"
-    said = f"It was given, not searched: the held-out data {bear} ({worth})."
+    said = f"The effect was given, not searched: the held-out data {bear} ({worth})."
     idle = [f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in discovery.effects if one.small]
-    return f"{said} They do without {' and without '.join(idle)} beside the others." if idle else said
+    return f"{said} They do not need {' or '.join(idle)} in addition to the others." if idle else said
 
 
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
     stated = next((one.what for one in discovery.findings if one.kind == "stated errors"), "")
     if stated and discovery.verdict == "no_gap":
-        return f"Nothing is named: {stated}."
+        return f"No effect is named: {stated}."
     first = discovery.rivals[0] if discovery.rivals else None
     if first is None or not first.bic >= CRITERIA.support:
         if may_be_left(discovery.held_out.before, discovery.held_out):
-            return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+            return "Simulation and data agree within the noise: these data show no missing effect."
         if discovery.verdict == "no_gap":
             return (
-                "Nothing is missing that these data could show: what is left is more than the sensors' white noise, "
-                "and does not grow along a run."
+                "These data show no missing effect: the residual exceeds the sensors' white noise, but does not grow "
+                "along a run."
             )
         return (
-            "Nothing is named: simulation and data differ by more than the sensors' noise, and nothing weighed here "
-            "explains it beyond chance."
+            "No effect is named: simulation and data differ by more than the sensors' noise, and no tested "
+            "explanation is significant."
         )
     pieces = discovery.held_out.pieces
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} independent samples)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
-            f"Nothing is named: several things are missing at a time; {for_what} would explain the most, but less than "
-            "half of the held-out error. Trials in which fewer things act would decide."
+            f"No effect is named, because several effects act at a time: {for_what} would explain most, but less than "
+            "half of the held-out error. Trials in which fewer effects act can distinguish them."
         )
     return (
-        f"Nothing is named: the data that were learned from speak for {for_what}, and those held out do not bear it "
-        f"out{tested}. More trials of varied movement would decide."
+        f"No effect is named: the training data indicate {for_what}, but the held-out data do not support it{tested}. "
+        "More trials of varied movement can decide."
     )
 
 
@@ -128,7 +132,7 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
         unit, factor = shown_unit(estimate.unit)
         given = with_unit(f"{factor * base.values()[effect.place]:.6g}", unit)
         outside = outside_text(effect, estimate)
-        said = f"the parameter {effect.place} is {estimate_text(estimate)} where the file says {given}"
+        said = f"the parameter {effect.place} is {estimate_text(estimate)}, but {given} in the file"
         return f"{said}, {outside}" if outside else said
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
@@ -141,15 +145,15 @@ def _signal(name: str, estimate: Estimate) -> str:
         return f"acts {estimate_text(estimate)} times as strongly as recorded"
     if name == "sensor_gain":
         like = next((words for factor, words in OTHER_UNITS if abs(estimate.value / factor - 1) < UNIT_SLACK), "")
-        return f"reads {estimate_text(estimate)} times what it should{like}"
+        return f"reads {estimate_text(estimate)} times the true value{like}"
     low = estimate.value < 0
     size = estimate_text(Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate)
     if name == "sensor_lag":
-        return f"is seen late by {size}"
+        return f"lags by {size}"
     if name == "input_lag":
         return f"acts through a first-order lag of {size}"
     if name == "input_delay":
-        return f"acts earlier than recorded, by {size}" if low else f"acts late by {size}"
+        return f"acts earlier than recorded, by {size}" if low else f"acts later than recorded, by {size}"
     return f"{'reads' if name == 'sensor_offset' else 'drifts'} {'low' if low else 'high'} by {size}"
 
 
@@ -196,15 +200,15 @@ def _unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ..
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
     acts = f" ({stride})" if stride else ""
-    missing = f"Something is missing {at_place(effect.kind, effect.place)} that no effect of the catalogue explains"
+    missing = f"An effect is missing {at_place(effect.kind, effect.place)} that is not in the catalogue"
     if effect.reads_as_effect:
         return (
-            f"Something is missing {at_place(effect.kind, effect.place)}{acts}; a shape was fitted, and it reads as "
+            f"An effect is missing {at_place(effect.kind, effect.place)}{acts}; the fitted shape is "
             f"{effect.reads_as}, {spoken(effect.reads_as_effect)} of the catalogue"
         )
     if effect.reads_as:
-        return f"{missing}{acts}; a fitted shape{over} reads as {effect.reads_as}"
-    return f"{missing}{acts}; a fitted shape{over} stands in for it"
+        return f"{missing}{acts}; a fitted shape{over} is approximately {effect.reads_as}"
+    return f"{missing}{acts}; a fitted shape{over} replaces it"
 
 
 def _tied(discovery: Discovery) -> str:
@@ -213,7 +217,7 @@ def _tied(discovery: Discovery) -> str:
         return ""
     names = " or ".join(f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in tied)
     apart = would_distinguish(discovery.effects[0].name, tied[0].name)
-    return f"These data cannot distinguish it from {names}; what would: {apart}."
+    return f"These data cannot distinguish it from {names}. To distinguish them, record {apart}."
 
 
 def _shown(discovery: Discovery) -> str:
@@ -255,7 +259,7 @@ def _moved(discovery: Discovery) -> str:
     for one in clear:
         unit, factor = shown_unit(one.found.unit)
         said.append(f"{one.parameter} from {with_unit(f'{factor * one.given:.6g}', unit)} to {brief_text(one.found)}")
-    return f"Within their bounds moved: {', '.join(said)}."
+    return f"Changed within their bounds: {', '.join(said)}."
 
 
 def _goes(size: tuple[float, float, float], channel_unit: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.expression import RESERVED
 from gaitdisc.simulation.parts import Input, Parameter, Term
 
@@ -30,7 +31,7 @@ class Coordinate:
     unit: str  # rad or m
     called: str  # its name in the model's file
     low: float = -np.inf  # range that the model gives it [unit]; infinite where it gives none
-    high: float = np.inf  # range that the model gives it [unit]; infinite where it gives none
+    high: float = np.inf
 
     @property
     def speed(self) -> str:
@@ -53,16 +54,38 @@ class Motion:
     """Where a model is evaluated."""
 
     q: NDArray[np.float64]  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
-    v: NDArray[np.float64]  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
-    # (point, control), what acts through each control: its activation where it has one, else the control
-    u: NDArray[np.float64]
-    z: NDArray[np.float64] | None = (
-        None  # (point, fibre) [m], lengths of the muscles' fibres; in equilibrium where absent
-    )
+    v: NDArray[np.float64]
+    u: NDArray[np.float64]  # (point, control), what acts through each: its activation where it has one, else itself
+    z: NDArray[np.float64] | None = None  # (point, fibre) [m], lengths of fibres; in equilibrium where absent
+    own: NDArray[np.float64] | None = None  # (point, state), of pushes; 0 where absent
 
     def at(self, points: NDArray[np.intp]) -> Motion:
         """Return some of its points."""
         return Motion(self.q[points], self.v[points], self.u[points], None if self.z is None else self.z[points])
+
+    @staticmethod
+    def joined(motions: Sequence[Motion]) -> Motion:
+        """Points of several motions as those of one."""
+        fields = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
+        return Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in fields))
+
+
+@dataclass(frozen=True)
+class Pushes:
+    """Forces that act at each step of a run beside those of the model's own file, and the states that they bring."""
+
+    machine: Compiled  # of the coordinates, the speeds, whose rates are the forces, and the states of the pushes
+    count: int  # coordinates
+
+    def at(self, x: NDArray[np.float64], u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Forces (point, coordinate) and rates of their states at all states (point, state) and controls."""
+        rates = self.machine.rates(np.zeros(len(x)), x, u)
+        return rates[:, self.count : 2 * self.count], rates[:, 2 * self.count :]
+
+    def begun(self, start: Motion) -> NDArray[np.float64]:
+        """All states (point, state) where runs begin."""
+        own = np.zeros((len(start.q), len(self.machine.states) - 2 * self.count)) if start.own is None else start.own
+        return np.hstack([start.q, start.v, own])
 
 
 @dataclass(frozen=True)
@@ -84,6 +107,7 @@ class Engine(Protocol):
     parameters: tuple[Parameter, ...]  # all that may be changed by name
     offered: tuple[str, ...]  # those that a new mapping lists
     fibres: bool  # whether muscles have states besides their activation
+    pushes: Pushes | None  # what acts in its runs besides
 
     def accelerations(
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None

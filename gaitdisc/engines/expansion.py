@@ -45,14 +45,9 @@ def expanded(
     states (trial, sample, state): smoothed: coordinates, then speeds
     values: parameters around which to expand; the simulation's own where absent
     """
-    own = simulation.values() | dict(values or {})
-    drive, count = measured.drive, len(engine.coordinates)
-    motions = []
-    for trial, samples in enumerate(drive.samples):
-        along = states[trial, :samples]
-        motions.append(engine.along(along[:, :count], along[:, count:], drive.inputs[trial, :samples], drive.rate))
-    parts = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
-    at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in parts))
+    own, drive = simulation.values() | dict(values or {}), measured.drive
+    motions = recorded_motion(engine, measured, states)
+    at = Motion.joined(motions)
     paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
     begun = np.cumsum(drive.samples) - drive.samples
@@ -76,6 +71,16 @@ def expanded(
     for name, expression in simulation.definitions:
         linear = linear.with_input(name.removeprefix(REPLACED), expression)
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
+
+
+def recorded_motion(engine: Engine, measured: Measured, states: NDArray[np.float64]) -> list[Motion]:
+    """Motion of each trial with what the engine computes along it.
+
+    states (trial, sample, state): smoothed
+    """
+    n, drive = len(engine.coordinates), measured.drive
+    trials = zip(states, drive.inputs, drive.samples, strict=True)
+    return [engine.along(x[:samples, :n], x[:samples, n:], u[:samples], drive.rate) for x, u, samples in trials]
 
 
 class _Columns:
@@ -221,11 +226,7 @@ def _slowed(damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
 
 
 def _expand_parameters(
-    columns: _Columns,
-    simulation: Simulation,
-    along: _Along,
-    here: NDArray[np.float64],
-    values: Mapping[str, float],
+    columns: _Columns, simulation: Simulation, along: _Along, here: NDArray[np.float64], values: Mapping[str, float]
 ) -> None:
     """What each parameter changes, to first order in it; without muscles also how that changes with the coordinates.
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, new_name, refuse_absent
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, new_name, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_value
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
@@ -48,6 +48,7 @@ class MujocoModel:
 
     called = "MuJoCo"
     fibres = False
+    pushes: Pushes | None = None
 
     def __init__(self, path: Path | str) -> None:
         try:
@@ -61,9 +62,31 @@ class MujocoModel:
         # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened
         self._model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self._data: Any = self._mujoco.MjData(self._model)
-        self._refuse_other_joints()
+        model, known = self._model, (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+        for number in range(model.njnt):
+            if model.jnt_type[number] not in known:
+                raise SchemaError(
+                    "each joint is a hinge or a slide, which has one coordinate and one speed",
+                    f"{self.path.name}: joint {self._called('joint', number) or number + 1!r} is a ball or free joint",
+                    "Write it as hinges and slides one after the other, or weld the body to the world.",
+                )
+        bound = np.flatnonzero(model.eq_active0)
+        if bound.size:
+            name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
+            raise SchemaError(
+                "every coordinate of the model is free",
+                f"{self.path.name}: the equality constraint {name!r} makes one depend on others",
+                'Switch it off (active="false"), or take the dependent joint out of the model.',
+            )
+        if not model.njnt:
+            raise SchemaError("a model has one joint or more", f"{self.path.name} has none", "Give a body a joint.")
         self._names: dict[tuple[str, int], str] = {}
-        self.coordinates = tuple(self._coordinate(number) for number in range(self._model.njnt))
+        ranges = np.where(model.jnt_limited[:, None], model.jnt_range, (-np.inf, np.inf)).tolist()
+        turns = model.jnt_type == known[0]
+        self.coordinates = tuple(
+            Coordinate(self._name("joint", k), "rad" if turns[k] else "m", self._called("joint", k), *ranges[k])
+            for k in range(model.njnt)
+        )
         self.controls = tuple(Input(name, "1", "actuator") for name in self._control_names())
         self._places = self._places_of_parameters()
         self.parameters = tuple(
@@ -78,10 +101,7 @@ class MujocoModel:
     def accelerations(
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
-        """Accelerations (point, coordinate), with other values of some parameters.
-
-        forces (point, coordinate): generalised forces besides
-        """
+        """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
         model, data, forward = self._model, self._data, self._mujoco.mj_forward
         kept = self._changed(values)
         found = np.empty_like(at.q)
@@ -98,7 +118,10 @@ class MujocoModel:
             found[point] = data.qacc
             self.contacts = max(self.contacts, data.ncon)
         data.qfrc_applied[:] = 0.0
-        self._restored(kept)
+        for array, index, before in reversed(kept):
+            array[index] = before
+        if kept:
+            self._mujoco.mj_setConst(model, data)
         return found
 
     def as_force(self, parameter: str) -> tuple[int, str] | None:
@@ -121,11 +144,7 @@ class MujocoModel:
     def along(
         self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
     ) -> Motion:
-        """Return a prescribed motion with what acts through each control.
-
-        The activation of an actuator that has one is integrated by MuJoCo from its control; it begins in equilibrium
-        with the first one.
-        """
+        """Return a prescribed motion with activations, integrated from equilibrium with the first controls."""
         found = np.array(controls, float)
         if not self._stateful.any():
             return Motion(q, v, found)
@@ -149,11 +168,7 @@ class MujocoModel:
 
     @_heard
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-        """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator.
-
-        start: where each run begins
-        controls (run, sample, control): recorded controls, linear between samples
-        """
+        """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator; controls are linear in between."""
         model, data, steps = self._model, self._data, self._steps(rate)
         own, kept = self._stateful, model.opt.timestep
         model.opt.timestep = 1.0 / (rate * steps)
@@ -163,10 +178,15 @@ class MujocoModel:
             data.qpos[:], data.qvel[:] = start.q[run], start.v[run]
             data.act[model.actuator_actadr[own]] = start.u[run, own]
             found[run, 0] = *start.q[run], *start.v[run]
+            pushed = None if self.pushes is None else self.pushes.begun(start)[[run]]
             for sample in range(len(driven) - 1):
                 change = (driven[sample + 1] - driven[sample]) / steps
                 for step in range(steps):
                     data.ctrl[:] = driven[sample] + step * change
+                    if self.pushes is not None and pushed is not None:
+                        pushed[0, : 2 * model.nv] = *data.qpos, *data.qvel
+                        data.qfrc_applied[:], rates = self.pushes.at(pushed, data.ctrl[None])
+                        pushed[:, 2 * model.nv :] += model.opt.timestep * rates
                     self._mujoco.mj_step(model, data)
                 found[run, sample + 1] = *data.qpos, *data.qvel
         model.opt.timestep = kept
@@ -222,36 +242,6 @@ class MujocoModel:
         found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
         return found or ""
 
-    def _refuse_other_joints(self) -> None:
-        model, mujoco = self._model, self._mujoco
-        known = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-        for number in range(model.njnt):
-            if model.jnt_type[number] not in known:
-                raise SchemaError(
-                    "each joint is a hinge or a slide, which has one coordinate and one speed",
-                    f"{self.path.name}: joint {self._called('joint', number) or number + 1!r} is a ball or free joint",
-                    "Write it as hinges and slides one after the other, or weld the body to the world.",
-                )
-        bound = np.flatnonzero(model.eq_active0)
-        if bound.size:
-            name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
-            raise SchemaError(
-                "every coordinate of the model is free",
-                f"{self.path.name}: the equality constraint {name!r} makes one depend on others",
-                'Switch it off (active="false"), or take the dependent joint out of the model.',
-            )
-        if not model.njnt:
-            raise SchemaError("a model has one joint or more", f"{self.path.name} has none", "Give a body a joint.")
-
-    def _coordinate(self, number: int) -> Coordinate:
-        model = self._model
-        turns = model.jnt_type[number] == int(self._mujoco.mjtJoint.mjJNT_HINGE)
-        limits = model.jnt_range[number] if model.jnt_limited[number] else (-np.inf, np.inf)
-        called = self._called("joint", number)
-        return Coordinate(
-            self._name("joint", number), "rad" if turns else "m", called, float(limits[0]), float(limits[1])
-        )
-
     def _places_of_parameters(self) -> dict[str, _Place]:
         """Every number that may be changed by name."""
         model = self._model
@@ -298,9 +288,3 @@ class MujocoModel:
         if kept:
             self._mujoco.mj_setConst(self._model, self._data)
         return kept
-
-    def _restored(self, kept: list[tuple[Any, Any, Any]]) -> None:
-        for array, index, before in reversed(kept):
-            array[index] = before
-        if kept:
-            self._mujoco.mj_setConst(self._model, self._data)

@@ -22,7 +22,12 @@ def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> 
     element: tag and name of the element in the file
     """
     if name == "gravity":
-        return _with_gravity(text, value)
+        tags = [one for one in _tags(text) if one[0] == "option"]
+        given = _attribute(text, tags[0], "gravity") if tags else None
+        vector = np.array([float(each) for each in given.split()]) if given else np.array([0.0, 0.0, -9.81])
+        words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
+        end = f'  <option gravity="{words}"/>\n'
+        return _with_attribute(text, tags[0], "gravity", words) if tags else _before_end(text, end)
     word = name.rpartition("_")[2]
     tags = [one for one in _tags(text) if _is(text, one, element)]
     if len(tags) != 1:
@@ -61,16 +66,6 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
     elif name == "one_sided_spring":
         found = _with_tendon(text, effect, joint)
     return found
-
-
-def _with_gravity(text: str, value: float) -> str:
-    tags = [one for one in _tags(text) if one[0] == "option"]
-    given = _attribute(text, tags[0], "gravity") if tags else None
-    vector = np.array([float(word) for word in given.split()]) if given else np.array([0.0, 0.0, -9.81])
-    words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
-    if tags:
-        return _with_attribute(text, tags[0], "gravity", words)
-    return _before_end(text, f'  <option gravity="{words}"/>\n')
 
 
 def _with_mass(text: str, body: _Tag, value: float) -> str | None:

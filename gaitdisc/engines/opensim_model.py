@@ -10,6 +10,7 @@ import sys
 import weakref
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
@@ -17,12 +18,11 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, new_name, refuse_absent
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, new_name, refuse_absent
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.expression import Name, Number, Tree, parsed
 from gaitdisc.simulation.parts import Input, Parameter, Term
 
-WORKER = Path(__file__).with_name("opensim_worker.py")
 ALLOWED = ("sin", "cos", "tan", "tanh", "exp", "sqrt", "min", "max")
 BINARY = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "^"}
 
@@ -31,13 +31,31 @@ class OpensimModel:
     """A model of OpenSim, with muscles or without."""
 
     called = "OpenSim"
-    worker = WORKER
+    worker = Path(__file__).with_name("opensim_worker.py")
+    pushes: Pushes | None = None
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
         self._process: subprocess.Popen[bytes] | None = None
         described = self._query("described")
-        self._refuse_what_has_no_place(described)
+        if described["others"]:
+            raise SchemaError(
+                "each actuator is a muscle, or acts on a coordinate without a state of its own",
+                f"{self.path.name}: {described['others'][0]!r} has states and is no muscle",
+                "Drive the model by muscles or by coordinate actuators.",
+            )
+        if described["dependent"]:
+            raise SchemaError(
+                "every unlocked coordinate of the model is free",
+                f"{self.path.name}: {described['dependent'][0]!r} depends on another by no coupler",
+                "Write it as a CoordinateCouplerConstraint, take it out, or lock the coordinate.",
+            )
+        if not described["coordinates"]:
+            raise SchemaError(
+                "a model has one free coordinate or more",
+                f"{self.path.name}: all are locked ({', '.join(described['locked']) or 'there is none'})",
+                "Unlock those that were measured.",
+            )
         taken: set[str] = set()
         found = [
             Coordinate(new_name(name, "coordinate", taken), "rad" if turns else "m", name, low, high)
@@ -92,8 +110,24 @@ class OpensimModel:
         return Motion(q, v, known.u, known.z + after - before)
 
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-        """Coordinates, then speeds (run, sample, state), by OpenSim's Manager (adaptive steps)."""
-        return self._query("run", start.q, start.v, start.u, start.z, controls, rate)
+        """Coordinates, then speeds (run, sample, state), by OpenSim's Manager; with pushes by Runge-Kutta, order 4."""
+        if self.pushes is None:
+            return self._query("run", start.q, start.v, start.u, start.z, controls, rate)
+        pushes, n, h = self.pushes, len(self.coordinates), 1 / rate
+
+        def rates(x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+            forces, own = pushes.at(x, u)
+            at = Motion(x[:, :n], x[:, n : 2 * n], u)
+            return np.hstack([at.v, self.accelerations(at, {}, forces), own])
+
+        found = [pushes.begun(start)]
+        for before, after in pairwise(np.swapaxes(controls, 0, 1)):
+            x, between = found[-1], (before + after) / 2
+            one = rates(x, before)
+            two = rates(x + h / 2 * one, between)
+            three = rates(x + h / 2 * two, between)
+            found.append(x + h / 6 * (one + 2 * two + 2 * three + rates(x + h * three, after)))
+        return np.stack(found, axis=1)[:, :, : 2 * n]
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
@@ -107,10 +141,19 @@ class OpensimModel:
     def _query(self, question: str, *arguments: Any) -> Any:
         """What the process answers; it is started with the model at the first question, and anew after it died."""
         if self._process is None or self._process.poll() is not None:
-            self._started()
-        assert self._process is not None
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", str(self.worker), str(self.path)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                env=os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
+            )
+            weakref.finalize(self, _ended, self._process)
+        assert self._process.stdin is not None and self._process.stdout is not None
         try:
-            return self._conversed(question, *arguments)
+            pickle.dump((question, arguments), self._process.stdin)
+            self._process.stdin.flush()
+            word, answer = pickle.load(self._process.stdout)
         except (EOFError, BrokenPipeError, pickle.UnpicklingError):
             code = self._process.wait()
             raise ReadError(
@@ -118,22 +161,6 @@ class OpensimModel:
                 f"{self.path.name}: its process ended with exit code {code}",
                 "Open the model in OpenSim itself: a model that it cannot simulate there is not simulated here.",
             ) from None
-
-    def _started(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", str(self.worker), str(self.path)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env=os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
-        )
-        weakref.finalize(self, _ended, self._process)
-
-    def _conversed(self, question: str, *arguments: Any) -> Any:
-        assert self._process is not None and self._process.stdin is not None and self._process.stdout is not None
-        pickle.dump((question, arguments), self._process.stdin)
-        self._process.stdin.flush()
-        word, answer = pickle.load(self._process.stdout)
         if word == "absent":
             raise refuse_absent("opensim", ImportError(answer))
         if word == "refused":
@@ -143,26 +170,6 @@ class OpensimModel:
                 "Mend what it names, or open the model in OpenSim and save it in its present version.",
             )
         return answer
-
-    def _refuse_what_has_no_place(self, described: Mapping[str, Any]) -> None:
-        if described["others"]:
-            raise SchemaError(
-                "each actuator is a muscle, or acts on a coordinate without a state of its own",
-                f"{self.path.name}: {described['others'][0]!r} has states and is no muscle",
-                "Drive the model by muscles or by coordinate actuators.",
-            )
-        if described["dependent"]:
-            raise SchemaError(
-                "every unlocked coordinate of the model is free",
-                f"{self.path.name}: {described['dependent'][0]!r} depends on another by no coupler",
-                "Write it as a CoordinateCouplerConstraint, take it out, or lock the coordinate.",
-            )
-        if not described["coordinates"]:
-            raise SchemaError(
-                "a model has one free coordinate or more",
-                f"{self.path.name}: all are locked ({', '.join(described['locked']) or 'there is none'})",
-                "Unlock those that were measured.",
-            )
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:

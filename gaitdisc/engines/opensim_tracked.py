@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,6 @@ from gaitdisc.errors import SchemaError
 Values = NDArray[np.float64]
 TRANSLATIONAL = 2
 STEP = 1e-5  # of a coordinate, for the slope of a coupler
-FORWARD = 0.0025  # [s], longest step of a short forward run: no fibre is stiff where forces are given
 
 
 class OpensimTracked(OpensimModel):
@@ -68,16 +66,11 @@ class OpensimTracked(OpensimModel):
         """Generalised force of each actuator's unit force (sample, actuator, coordinate)."""
         return self._query("arms", time, q, list(names))
 
-    def forward(self, time: Values, start: tuple[Values, Values], moments: Values) -> Values:
-        """Coordinates (sample, coordinate) of a run under recorded loads and generalised forces of muscles."""
-        return self._query("forward", time, *start, moments)
-
     def other(self, path: Path) -> OpensimTracked:
         """Another model under the same loads."""
         loads, actuators = self.given
-        return OpensimTracked(
-            path, (Path(loads[0]), Path(loads[1])) if loads else None, Path(actuators) if actuators else None
-        )
+        both = (Path(loads[0]), Path(loads[1])) if loads else None
+        return OpensimTracked(path, both, Path(actuators) if actuators else None)
 
 
 class _Tracked:
@@ -96,7 +89,12 @@ class _Tracked:
         model.finalizeConnections()
         every = model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
-        self.coupled = _led_by_one(model, osim)
+        led = ((name, *one) for name, one in couplers(model, osim).items())  # by one other, or by several
+        self.coupled = {
+            name: (leading[0], lambda x, law=law, by=by: by * law.calcValue(osim.Vector(1, float(x))))
+            for name, leading, law, by in led
+            if len(leading) == 1
+        }
         self.names = [name for name in names if not every.get(name).getDefaultLocked() and name not in self.coupled]
         self.actuators = [one.getName() for one in model.getActuators()]
         add_ports(model, osim, self.names)
@@ -116,17 +114,11 @@ class _Tracked:
             one.setOverrideActuation(self.state, 0.0)
             if osim.PathActuator.safeDownCast(one) is not None:
                 one.setAppliesForce(self.state, False)  # pulls come in as moments: no path is followed for nothing
-        self.place = self._places()
-
-    def _places(self) -> dict[str, int]:
-        """Where the engine keeps the speed of each coordinate: its order is not the files'."""
-        found = {}
-        for name, one in self.free.items():
-            self._speeds({})
-            one.setSpeedValue(self.state, 1.0)
-            found[name] = int(np.argmax(np.abs(self.state.getU().to_numpy())))
+        self.place: dict[str, int] = {}  # where the engine keeps each speed: its order is not the files'
+        for name in self.free:
+            self._speeds({name: 1.0})
+            self.place[name] = int(np.argmax(np.abs(self.state.getU().to_numpy())))
         self._speeds({})
-        return found
 
     def _speeds(self, speeds: Mapping[str, float]) -> None:
         for name, one in self.free.items():
@@ -228,51 +220,16 @@ class _Tracked:
 
     def accelerations(self, q: Any, v: Any, forces: Any) -> Any:
         found = np.empty_like(q)
-        for k in range(len(q)):
-            found[k] = self._moved(0.0, q[k], v[k], forces[k])
-        return found
-
-    def _moved(self, time: float, q: Any, v: Any, force: Any) -> Any:
-        self.state.setTime(time)
-        self.placed(q, v)
-        for one, value in zip(self.by_hand, force, strict=True):
-            one.setOverrideActuation(self.state, float(value))
-        self.model.realizeAcceleration(self.state)
-        found = np.array([self.free[name].getAccelerationValue(self.state) for name in self.names])
+        self.state.setTime(0.0)
+        for k, force in enumerate(forces):
+            self.placed(q[k], v[k])
+            for one, value in zip(self.by_hand, force, strict=True):
+                one.setOverrideActuation(self.state, float(value))
+            self.model.realizeAcceleration(self.state)
+            found[k] = [self.free[name].getAccelerationValue(self.state) for name in self.names]
         for one in self.by_hand:
             one.setOverrideActuation(self.state, 0.0)
         return found
-
-    def forward(self, time: Any, q: Any, v: Any, moments: Any) -> Any:
-        """Runge-Kutta of the coordinates under moments that are linear between samples."""
-        found, n = [np.array(q)], len(q)
-
-        def rates(t: float, y: Any) -> Any:
-            force = np.array([np.interp(t, time, column) for column in moments.T])
-            return np.concatenate([y[n:], self._moved(t, y[:n], y[n:], force)])
-
-        y = np.concatenate([q, v])
-        for t0, t1 in pairwise(time):
-            steps = max(int(np.ceil((t1 - t0) / FORWARD)), 1)
-            h = (t1 - t0) / steps
-            for k in range(steps):
-                t = t0 + k * h
-                one = rates(t, y)
-                two = rates(t + h / 2, y + h / 2 * one)
-                three = rates(t + h / 2, y + h / 2 * two)
-                y = y + h / 6 * (one + 2 * two + 2 * three + rates(t + h, y + h * three))
-            found.append(y[:n].copy())
-        return np.array(found)
-
-
-def _led_by_one(model: Any, osim: Any) -> dict[str, tuple[str, Any]]:
-    """Coordinates that follow one other by a function: that other, and the function."""
-
-    def law(function: Any, scale: float) -> Any:
-        return lambda x: scale * function.calcValue(osim.Vector(1, float(x)))
-
-    every = couplers(model, osim).items()
-    return {name: (leading[0], law(function, scale)) for name, (leading, function, scale) in every if len(leading) == 1}
 
 
 if __name__ == "__main__":

@@ -2,71 +2,107 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Engine, Motion
-from gaitdisc.results.discovery import Runs
+from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.expansion import recorded_motion
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-MOST_RUNS = 6
-TURNS = 4
+MOST_RUNS, FEWER = 24, 6  # fewer where muscles have fibres
+PERIODS = 2.0  # of a run: over 4 s with limits or contacts 2 of 4 perfect models had a start that is not the best
+SHARES = (0.125, 0.35, 1.0)  # of a run, to which its start is fitted one after the other
+TURNS = 6
 NUDGE = 1e-4
+MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
+WINDOWS = 10  # in a period: what is missing bends a run more slowly
+CHANCE = 0.05  # of runs of a perfect model that are not taken for mere noise, and searched
+Start = NDArray[np.float64]  # (state,): coordinates, speeds, lags, states of pushes
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A model of an engine, the controls that drive it and the lags in these."""
+
+    engine: Engine
+    mapping: Simulation
+    controls: NDArray[np.float64]  # (trial, sample, control)
+    lags: Mapping[int, float] = field(default_factory=dict)  # control: time constant [s] of the lag in these
+
+
+@dataclass(frozen=True)
+class Stretches:
+    """Parts of trials, equally long."""
+
+    trial: NDArray[np.intp]  # (run,), and the first sample of each
+    first: NDArray[np.intp]
+    length: int
+    period: float  # of the motion [samples]
 
 
 @dataclass(frozen=True)
 class OwnRuns:
-    """What runs by the engine itself leave of the record."""
+    """What runs by the engine itself leave of the record: measured minus run, without and with what was found."""
 
-    errors: Mapping[str, tuple[float, float, str]]  # for each channel: root mean square before and after, and its unit
+    before: NDArray[np.float64]  # (run, sample, channel) [the channel's unit], NaN where nothing was measured
+    after: NDArray[np.float64]
+    at: Stretches
     engine: str  # its name
-    share: float  # of the error before, over all channels by their spread, that is left after
+    units: Mapping[str, str]  # of the channels
+    floor: NDArray[np.float64]  # (channel,), standard deviation of the noise
+    states: int  # numbers that each run's start was fitted with
+
+    def among(self, some: NDArray[np.bool_]) -> OwnRuns:
+        """Return some of them (run,)."""
+        at = replace(self.at, trial=self.at.trial[some], first=self.at.first[some])
+        return replace(self, before=self.before[some], after=self.after[some], at=at)
+
+    @property
+    def leave_mere_noise(self) -> bool:
+        """Whether runs of the model as read leave white noise of the sensors' size.
+
+        Means of windows vary no more than the spread within them says (F test): what is missing bends whole windows.
+        """
+        from scipy.stats import f as variance_ratio
+
+        size = max(round(self.at.period / WINDOWS), 3)
+        count = self.at.length // size
+        parts = (self.before / self.floor)[:, : count * size].reshape(len(self.before), count, size, -1)
+        means = parts.mean(axis=2)
+        known = np.isfinite(means)
+        if not known.any() or np.isinf(self.before).any():
+            return False
+        inner, free = known.sum() * (size - 1), max(known.sum() - self.states * len(self.before), 1)
+        within = ((parts - means[:, :, None]) ** 2).sum(axis=2)[known].sum() / inner
+        between = size * (means[known] ** 2).sum() / free
+        return bool(within < MERE_NOISE and variance_ratio.sf(between / within, free, inner) > CHANCE)
 
     @property
     def said(self) -> str:
         """One sentence."""
-        errors = "; ".join(
-            f"{name} by {before:.3g} {unit} before and {after:.3g} after"
-            for name, (before, after, unit) in self.errors.items()
-        )
-        return f"run by {self.engine} itself over the held-out runs, the model misses {errors}"
+        sizes = zip(self.units.items(), *map(root_mean_square, (self.before, self.after)), strict=True)
+        found = "; ".join(f"{name} by {old:.3g} {unit} before and {new:.3g} after" for (name, unit), old, new in sizes)
+        return f"run by {self.engine} itself over {len(self.before)} runs of all trials, the model misses {found}"
 
 
-@dataclass(frozen=True)
-class _Stretch:
-    """Some samples of a trial."""
-
-    trial: int
-    first: int
-    end: int
+def root_mean_square(left: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Size (channel,) of what is left."""
+    return np.sqrt(np.nanmean(left**2, axis=(0, 1)))
 
 
-def own_runs(
-    engines: tuple[Engine, Engine],
-    mappings: tuple[Simulation, Simulation],
-    measured: Measured,
-    runs: Runs,
-    states: NDArray[np.float64],
-) -> OwnRuns:
-    """Run two models over the held-out runs, each from the start that suits it best.
-
-    engines, mappings: the model as read, and with what was found
-    runs: Held-out runs, which say where
-    states (trial, sample, state): smoothed: where the search for each start begins
-    """
-    stretches = _stretches(measured, runs)
-    both = zip(engines, mappings, strict=True)
-    left = [_left(engine, mapping, measured, stretches, states) for engine, mapping in both]
-    units = [mappings[0].sensor(name).unit for name in measured.channels]
-    rows = zip(*(each.tolist() for each in left), units, strict=True)
-    before, after = (np.linalg.norm(each / np.nanstd(measured.observed, axis=(0, 1))) for each in left)
-    share = float(after / before) if before else 1.0
-    return OwnRuns(dict(zip(measured.channels, rows, strict=True)), engines[0].called, share)
+def stretches_of(measured: Measured, period: float, most: int) -> Stretches:
+    """Runs of two periods, spread over every trial."""
+    length, samples = int(min(max(round(PERIODS * period), 16), measured.samples.min())), measured.samples
+    counts = -(-samples // length)  # all of each trial, where these are not too many
+    every = [(k, at) for k, n in enumerate(counts) for at in np.linspace(0, samples[k] - length, n).astype(int)]
+    some = np.unique(np.linspace(0, len(every) - 1, most).round().astype(int))
+    trial, first = np.array(every)[some].T
+    return Stretches(trial, first, length, period)
 
 
 def trial_called(measured: Measured, name: str) -> int:
@@ -76,67 +112,65 @@ def trial_called(measured: Measured, name: str) -> int:
     return measured.trials.index(name) if name in measured.trials else int(name.rsplit(maxsplit=1)[-1]) - 1
 
 
-def recorded_motion(
-    engine: Engine, measured: Measured, states: NDArray[np.float64], trials: Iterable[int]
-) -> dict[int, Motion]:
-    """Motion of some trials with what the engine computes along it.
-
-    states (trial, sample, state): smoothed
-    """
-    n, found = len(engine.coordinates), {}
-    for trial in trials:
-        along, driven = (each[trial, : measured.samples[trial]] for each in (states, measured.drive.inputs))
-        found[trial] = engine.along(along[:, :n], along[:, n:], driven, measured.rate)
-    return found
-
-
-def _stretches(measured: Measured, runs: Runs) -> list[_Stretch]:
-    found = []
-    for run in np.unique(np.linspace(0, len(runs.trial) - 1, MOST_RUNS).round().astype(int)):
-        trial = trial_called(measured, runs.names[runs.trial[run]])
-        first, last = (round((time - measured.drive.time0[trial]) * measured.rate) for time in runs.time[run, [0, -1]])
-        found.append(_Stretch(trial, first, min(last + 1, int(measured.samples[trial]))))
-    return found
-
-
-def _left(
-    engine: Engine, mapping: Simulation, measured: Measured, stretches: list[_Stretch], states: NDArray[np.float64]
+def left_by(
+    model: Driven, measured: Measured, at: Stretches, states: NDArray[np.float64], near: dict[int, Start] | None = None
 ) -> NDArray[np.float64]:
-    """Root mean square of what is left in each channel, starts found by Gauss-Newton."""
-    n = len(engine.coordinates)
-    recorded = recorded_motion(engine, measured, states, {one.trial for one in stretches})
+    """Measured minus run (run, sample, channel), starts and hidden states found by Gauss-Newton.
+
+    states (trial, sample, state): smoothed: where the search for each start begins
+    near: run -> the start of a model that is hardly another, where it begins then; these are put in
+    """
+    engine, n, lags = model.engine, len(model.engine.coordinates), model.lags
+    recorded = recorded_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
     size = np.nanstd(measured.observed, axis=(0, 1))
-    total, count = 0.0, 0
-    for one in stretches:
-        controls = measured.drive.inputs[one.trial, one.first : one.end]
-        seen = measured.observed[one.trial, one.first : one.end]
-        there = np.isfinite(seen)
+    found = np.full((len(at.trial), at.length, len(size)), np.nan)
+    for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
 
-        def residual(starts: NDArray[np.float64], one: _Stretch = one, controls=controls, seen=seen, there=there):
-            known = recorded[one.trial].at(np.full(len(starts), one.first))
-            driven = np.repeat(controls[None], len(starts), axis=0)
-            run = engine.run(engine.near(known, starts[:, :n], starts[:, n:]), driven, measured.rate)
-            t = measured.time(one.trial)[one.first : one.end]
-            points = [Points(t, x, controls, rate=measured.rate) for x in run]
-            return np.where(there, seen - np.stack([observed(mapping, measured.channels, one) for one in points]), 0.0)
+        def left_from(starts: NDArray[np.float64], samples: int, trial: int = trial, first: int = first):
+            some = slice(first, first + samples)
+            driven = np.repeat(model.controls[None, trial, some], len(starts), axis=0)
+            for hidden, (control, seconds) in zip(starts.T[2 * n :], lags.items(), strict=False):
+                driven[:, :, control] += hidden[:, None] * np.exp(-np.arange(samples) / (measured.rate * seconds))
+            known = engine.near(recorded[trial].at(np.full(len(starts), first)), starts[:, :n], starts[:, n : 2 * n])
+            run = engine.run(replace(known, own=starts[:, 2 * n + len(lags) :]), driven, measured.rate)
+            time, seen = measured.time(trial)[some], measured.observed[trial, some]
+            points = [Points(time, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
+            return (seen - np.stack([observed(model.mapping, measured.channels, one) for one in points])) / size
 
-        start = states[one.trial, one.first].copy()
-        left = residual(start[None])[0]
-        for _ in range(TURNS):
-            nudged = residual(start + NUDGE * np.eye(2 * n))
-            slopes = ((nudged - left) / NUDGE / size).reshape(2 * n, -1)
-            if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
+        own = len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0
+        known, left = near.get(row) if near else None, found[row]
+        start = np.append(states[trial, first], np.zeros(len(lags) + own)) if known is None else known
+        for share in SHARES if known is None else SHARES[-1:]:
+            samples = max(int(share * at.length), min(16, at.length))
+            start, left = _started(lambda starts, samples=samples: left_from(starts, samples), start)
+        found[row] = left * size
+        if near is not None:
+            near[row] = start
+    return found
+
+
+def _started(
+    left_from: Callable[[NDArray[np.float64]], NDArray[np.float64]], start: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Start that suits a run best, and what it leaves."""
+    left = left_from(start[None])[0]
+    there = np.isfinite(left)
+    for _ in range(TURNS):
+        slopes = ((left_from(start + NUDGE * np.eye(len(start))) - left) / NUDGE)[:, there]
+        if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
+            break
+        move = np.linalg.lstsq(slopes.T, -left[there], rcond=1e-9)[0]
+        for step in (1.0, 0.3):
+            tried = left_from((start + step * move)[None])[0]
+            gain = (left[there] ** 2).sum() - (tried[there] ** 2).sum()
+            if gain > 0:
                 break
-            move = np.linalg.lstsq(slopes.T, -(left / size).ravel(), rcond=1e-9)[0]
-            tried = residual((start + move)[None])[0]
-            gain = ((left / size) ** 2).sum() - ((tried / size) ** 2).sum()
-            if not gain > 0:
-                break
-            start, left = start + move, tried
-            if gain < 1e-4 * ((left / size) ** 2).sum():
-                break
-        total, count = total + (left**2).sum(axis=0), count + there.sum(axis=0)
-    return np.sqrt(np.asarray(total) / count)
+        if not gain > 0:
+            break
+        start, left = start + step * move, tried
+        if gain < 1e-4 * (left[there] ** 2).sum():
+            break
+    return start, left
 
 
 def observed(mapping: Simulation, channels: Sequence[str], points: Points) -> NDArray[np.float64]:

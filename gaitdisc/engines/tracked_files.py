@@ -38,6 +38,7 @@ class TrackedMotion:
     actuators: tuple[str, ...]  # columns of the forces' file
     forces: Values  # (sample, actuator) [N, N m]
     differentiated: bool  # whether rates come from the angles
+    span: tuple[float, float] = (-np.inf, np.inf)  # of the file of angles [s]
 
     @property
     def rate_hz(self) -> float:
@@ -101,10 +102,8 @@ def _table(path: Path) -> tuple[list[str], Values]:
     raw = read_raw(path)
     lines = raw.lines()
     header = parsed_header(lines, raw.name)
-    cells = parsed_cells(
-        lines[header.body_line - 1 :], header.labels, header.body_line, Form(raw.name, header.separator)
-    )
-    return list(header.labels), cells.values
+    body, form = lines[header.body_line - 1 :], Form(raw.name, header.separator)
+    return list(header.labels), parsed_cells(body, header.labels, header.body_line, form).values
 
 
 def tracked_motion(
@@ -121,10 +120,28 @@ def tracked_motion(
             "Run OpenSim's inverse kinematics on the markers first, with this model, and give its .mot.",
         )
     time, q = _coordinates(kinematics, coordinates, "")
-    _refuse_degrees(kinematics, coordinates, q)
-    rates = [_coordinates(one, coordinates, word) for one, word in _rates(tracked)]
+    for k, one in enumerate(coordinates):
+        largest, limit = float(np.nanmax(np.abs(q[:, k]))), MOST_RAD if one.unit == "rad" else MOST_M
+        if largest > limit:
+            raise SchemaError(
+                f"coordinate {one.called!r} stays within {limit:.3g} {one.unit}",
+                f"{kinematics.name} makes it {largest:.4g} {one.unit}: these may be "
+                f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
+                "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Write metres.",
+            )
+    turning = [k for k, one in enumerate(coordinates) if one.unit == "rad"]
+    moved = np.ptp(q[:, turning], axis=0) if turning else np.ones(1)
+    if moved.max() < np.radians(2.0):
+        raise SchemaError(
+            "a walk turns some joint by more than 2 deg",
+            f"{kinematics.name}: the most that turns is {np.degrees(moved.max()):.2g} deg, as radians would that are "
+            "said to be degrees",
+            "Write inDegrees=no in the header of the file.",
+        )
+    named = [(one, word) for one, word in ((tracked.speeds, "/speed"), (tracked.accelerations, "/accel")) if one]
+    rates = [_coordinates(one, coordinates, word) for one, word in named if len(named) == 2]
     names, forces = actuator_forces(tracked, known)
-    spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(_rates(tracked), rates, strict=True)}}
+    spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(named, rates, strict=False)}}
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
         spans[tracked.forces] = forces[:, 0]
@@ -137,13 +154,8 @@ def tracked_motion(
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
     kept = np.flatnonzero(inside)
     kept = np.arange(kept[0], kept[-1] + 1)
-    return TrackedMotion(time[kept], q[kept], v[kept], a[kept], names, pulls[kept], not rates)
-
-
-def _rates(tracked: Tracked) -> list[tuple[Path, str]]:
-    if tracked.speeds is None or tracked.accelerations is None:
-        return []
-    return [(tracked.speeds, "/speed"), (tracked.accelerations, "/accel")]
+    ends = float(time[0]), float(time[-1])
+    return TrackedMotion(time[kept], q[kept], v[kept], a[kept], names, pulls[kept], not rates, ends)
 
 
 def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:
@@ -155,7 +167,14 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
         for k, channel in enumerate(stream.channels):
             name, unit = channel.name.removesuffix(word), channel.unit
             if name in turning and not unit.startswith("deg"):  # a name that only this model has
-                unit = "deg" if _in_degrees(path) else "rad"
+                degrees = parsed_header(read_raw(path).lines(), path.name).degrees
+                if degrees is None:
+                    raise UnitError(
+                        f"{path.name} says whether its angles are degrees",
+                        "its header does not",
+                        "Write inDegrees=yes or inDegrees=no there, before endheader.",
+                    )
+                unit = "deg" if degrees else "rad"
             columns[name] = stream.values[:, k] * (np.pi / 180 if unit.startswith("deg") else 1.0)
     for one in coordinates:
         if one.called not in columns:
@@ -170,38 +189,6 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
     return streams[0].time, np.column_stack([columns[one.called] for one in coordinates])
 
 
-def _in_degrees(path: Path) -> bool:
-    degrees = parsed_header(read_raw(path).lines(), path.name).degrees
-    if degrees is None:
-        raise UnitError(
-            f"{path.name} says whether its angles are degrees",
-            "its header does not",
-            "Write inDegrees=yes or inDegrees=no there, before endheader.",
-        )
-    return degrees
-
-
-def _refuse_degrees(path: Path, coordinates: tuple[Coordinate, ...], q: Values) -> None:
-    for k, one in enumerate(coordinates):
-        largest, limit = float(np.nanmax(np.abs(q[:, k]))), MOST_RAD if one.unit == "rad" else MOST_M
-        if largest > limit:
-            raise SchemaError(
-                f"coordinate {one.called!r} stays within {limit:.3g} {one.unit}",
-                f"{path.name} makes it {largest:.4g} {one.unit}: these may be "
-                f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
-                "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Write metres.",
-            )
-    turning = [k for k, one in enumerate(coordinates) if one.unit == "rad"]
-    moved = np.ptp(q[:, turning], axis=0) if turning else np.ones(1)
-    if moved.max() < np.radians(2.0):
-        raise SchemaError(
-            "a walk turns some joint by more than 2 deg",
-            f"{path.name}: the most that turns is {np.degrees(moved.max()):.2g} deg, as radians would that are said to "
-            "be degrees",
-            "Write inDegrees=no in the header of the file.",
-        )
-
-
 def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
     """Return the actuators of a forces' file, and its numbers with time first; what the loads give is passed over."""
     path = tracked.forces
@@ -209,7 +196,17 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
         return (), np.zeros((0, 1))
     labels, values = _table(path)
     names = [label.rpartition("/")[2] for label in labels]
-    again = _other_forces(tracked)
+    recorded = [
+        f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
+        for one in xml_of(tracked.loads[0]).iter("ExternalForce")
+    ]
+    passive = [
+        one.get("name", "")
+        for forces in xml_of(tracked.model).iter("ForceSet")
+        for one in forces.findall("objects/*")
+        if one.tag.endswith(PASSIVE)
+    ]
+    again = tuple(name for name in (*recorded, *passive) if name)  # the model or the loads' file gives these anyway
     kept = [0, *(k for k, name in enumerate(names) if k and not name.startswith(again))]
     for name in (names[k] for k in kept[1:]):
         if name not in known:
@@ -231,26 +228,9 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     if not np.isfinite(values).all():
         row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "every force has a number",
-            f"{path.name}: {names[kept[column]]!r} has none in row {row + 1}",
-            "Fill it in.",
+            "every force has a number", f"{path.name}: {names[kept[column]]!r} has none in row {row + 1}", "Fill it in."
         )
     return tuple(names[k] for k in kept[1:]), values
-
-
-def _other_forces(tracked: Tracked) -> tuple[str, ...]:
-    """How columns begin of forces that the model or the loads' file gives anyway."""
-    recorded = [
-        f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
-        for one in xml_of(tracked.loads[0]).iter("ExternalForce")
-    ]
-    passive = [
-        one.get("name", "")
-        for forces in xml_of(tracked.model).iter("ForceSet")
-        for one in forces.findall("objects/*")
-        if one.tag.endswith(PASSIVE)
-    ]
-    return tuple(name for name in (*recorded, *passive) if name)
 
 
 def _shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArray[np.bool_]:

@@ -6,7 +6,6 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -36,10 +35,15 @@ class Tracked:
     end_s: float = np.inf
 
     @property
+    def named(self) -> dict[str, Path]:
+        """What the table names, by the words there."""
+        some = (self.loads[0], self.forces, self.actuators, self.speeds, self.accelerations)
+        return {name: one for name, one in zip(FILES, some, strict=True) if one is not None}
+
+    @property
     def files(self) -> tuple[Path, ...]:
         """All that is read beside the model."""
-        some = (*self.loads, self.forces, self.actuators, self.speeds, self.accelerations)
-        return tuple(one for one in some if one is not None)
+        return self.loads[1], *self.named.values()
 
 
 def read_tracked(path: Path | str) -> Tracked | None:
@@ -55,10 +59,6 @@ def read_tracked(path: Path | str) -> Tracked | None:
         table = parsed_toml(text)
     except (OSError, ValueError) as error:
         raise ReadError("a mapping is a TOML file", f"{file.name}: {error}", "Correct it there.") from None
-    return _tracked(table, file)
-
-
-def _tracked(table: dict[str, Any], file: Path) -> Tracked:
     given = table["tracked"]
     unknown = [name for name in table if name not in ("title", "model", "tracked")]
     unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
@@ -137,9 +137,8 @@ def write_tracked_mapping(tracked: Tracked, file: Path) -> None:
     def beside(path: Path) -> str:
         return quoted(Path(os.path.relpath(path.resolve(), file.resolve().parent)).as_posix())
 
-    paths = (tracked.loads[0], tracked.forces, tracked.actuators, tracked.speeds, tracked.accelerations)
     lines = [f"model = {beside(tracked.model)}", "", "[tracked]"]
-    lines += [f"{name} = {beside(path)}" for name, path in zip(FILES, paths, strict=True) if path is not None]
+    lines += [f"{name} = {beside(path)}" for name, path in tracked.named.items()]
     lines.append(f"lowpass_hz = {tracked.lowpass_hz!r}")
     numbers = {"noise_deg": tracked.noise_deg, "start_s": tracked.start_s, "end_s": tracked.end_s}
     lines += [f"{name} = {value!r}" for name, value in numbers.items() if value is not None and np.isfinite(value)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 import weakref
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -12,11 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Engine, Motion, read_model
+from gaitdisc.engines.engine import ByHand, Engine, Motion, Pushes, read_model
 from gaitdisc.engines.mapping import REPLACED, read_mapping
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 STATES = 50
@@ -31,16 +34,20 @@ class WrittenModel:
     engine: Engine  # that reads it
     text: str  # the user's own, with insertions; the same where nothing has a native form
     notes: tuple[str, ...]  # what was written in, with its deviation, and what was not
-    absent: tuple[str, ...]  # what stands in the mapping alone
+    absent: tuple[str, ...]  # what the engine does not run
 
 
 def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
-    """Write effects and changed parameters into a model's text, as far as they have a form there."""
+    """Write effects and changed parameters into a model's text, as far as they have a form there.
+
+    What has none acts as a force at each step of the engine's runs.
+    """
     text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
     absent: list[str] = []
-    forces: tuple[Term, ...] = ()
+    forces, by_hand = (), ()
     values: dict[str, float] = {}
     before = {one.name: one.value for one in engine.parameters}
+    own = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
     changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = []
     for name, value in augmented.values().items():
         if abs(value - before[name]) > SAME * abs(before[name]):
@@ -58,17 +65,28 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
                 said = "has no form in the model's own file"
             elif np.isfinite(deviation):
                 said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
-            notes.append(f"{what} {said}: it stands in augmented.toml alone")
-            absent.append(what)
+            used = {name for one in more_forces for name in names(parsed(one.term))}
+            notes.append(f"{what} {said}: it stands in {'discovery.json' if used & own else 'augmented.toml'} alone")
+            if more_forces and not engine.fibres and "t" not in used and "delay(" not in more_forces[0].term:
+                by_hand = (*by_hand, *more_forces)
+            else:  # a force at each step of a run knows neither the time nor what was before
+                absent.append(what)
             continue
         text, current, forces, values = tried, read, *wanted[1:]
-        notes.append(
-            f"{what} is written into the model; its accelerations agree with the expression to {deviation:.1g}"
-        )
+        said = "is written into the model; its accelerations agree with the expression to"
+        notes.append(f"{what} {said} {deviation:.1g}")
     for name, expression in augmented.definitions:
         control = name.removeprefix(REPLACED)
         notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
-        absent.append(f"{control} as {expression}")
+    if by_hand:
+        n, current = len(engine.coordinates), copy(engine) if current is engine else current
+        acting = [
+            " + ".join(f"({one.term})" for one in by_hand if one.place == each.port) for each in engine.coordinates
+        ]
+        rates = zip(augmented.states, [*["0"] * n, *(one or "0" for one in acting)], strict=False)
+        lines = (*((state.name, rate) for state, rate in rates), *augmented.equations[2 * n :])
+        parts = augmented.states, augmented.inputs, augmented.parameters
+        current.pushes = Pushes(compile_simulation(Simulation("pushes", *parts, equations=lines)), n)
     return WrittenModel(current, text, tuple(notes), tuple(absent))
 
 
@@ -76,10 +94,11 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     """Mapping of a model, and the engine of the model with all that the mapping says: other numbers, and effects."""
     mapping, engine = read_mapping(path)
     written = written_model(engine, mapping)
-    if written.absent:
+    absent = (*written.absent, *(f"{name} = {text}" for name, text in mapping.definitions))
+    if absent:
         raise SchemaError(
             f"{engine.called} runs what stands in the model's own file",
-            f"{Path(path).name} has besides: {'; '.join(written.absent)}",
+            f"{Path(path).name} has besides: {'; '.join(absent)}",
             "Take it out of the mapping, or write it into the model by hand.",
         )
     return mapping, written.engine
@@ -92,7 +111,7 @@ def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str]
     count = len(engine.coordinates)
 
     def at(coordinate: float, speed: float) -> float:
-        x = np.zeros((1, 2 * count))
+        x = np.zeros((1, len(augmented.states)))
         x[0, number], x[0, count + number] = coordinate, speed
         return float(_by_hand(augmented, term, x)[0])
 
@@ -118,10 +137,10 @@ def _compared(
     q = rng.uniform(low, high, (STATES, n))
     v = rng.uniform(AT_SPEED, 4.0, (STATES, n)) * rng.choice([-1, 1], (STATES, n))
     at = Motion(q, v, rng.uniform(0, 1, (STATES, len(engine.controls))))
-    push = np.zeros((STATES, n))
+    push, x = np.zeros((STATES, n)), np.hstack([q, v, np.zeros((STATES, len(augmented.states) - 2 * n))])
     for term in forces:
         column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
-        push[:, column] += _by_hand(augmented, term, np.concatenate([q, v], axis=1))
+        push[:, column] += _by_hand(augmented, term, x)
     try:
         read = loaded_beside(engine.path, text, getattr(engine, "other", read_model))
     except GaitdiscError:

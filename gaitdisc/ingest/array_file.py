@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import list_names, nearest_word
+from gaitdisc.channel import hint_nearest, list_names
 from gaitdisc.errors import GaitdiscError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.cells import even_time
 from gaitdisc.ingest.columns import (
@@ -41,7 +41,7 @@ _UNPACKED = (
     64 * MEBIBYTE,
     100,
 )  # bytes, and times the file: measured values deflate up to 12 times, a bomb 1,000 times
-_REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for how a path is written."
+_REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for the form of a path."
 ENDINGS = (".mat", ".npz")
 
 
@@ -74,29 +74,27 @@ class ArrayFile:
         top = max((n for n in self.names if steps == n or steps.startswith((f"{n}.", f"{n}{{", f"{n}("))), key=len,
                   default="")  # fmt: skip
         if not top:
-            near = nearest_word(re.split(r"[.({]", steps)[0], self.names)
-            hint = f", the nearest is {near!r}" if near else ""
+            hint = hint_nearest(re.split(r"[.({]", steps)[0], self.names)
             raise self._refused(
                 whole, f"it has {list_names(self.names, _SHOWN)}{hint}", "Correct the path in [channels]."
             )
         rest = steps[len(top) :]
         if "".join(found[0] for found in _STEP.finditer(rest)) != rest:
-            raise self._refused(whole, f"{rest!r} is no path", _REMEDY)
+            raise self._refused(whole, f"{rest!r} is not a path", _REMEDY)
         node = self.opened(top)
         for field, cell, place in _STEP.findall(rest):
             node = self._field(node, field, whole, part) if field else self._element(node, int(cell or place), whole)
         return self._column(self._checked(self._chosen(node, whole, part), whole), columns, whole)
 
     def _refused(self, path: str, found: str, remedy: str) -> ReadError:
-        return ReadError(f"{self.raw.name}: a variable of numbers is needed at {path!r}", found, remedy)
+        return ReadError(f"{self.raw.name}: {path!r} must name a variable of numbers", found, remedy)
 
     def _field(self, node: Any, field: str, path: str, part: str) -> Any:
         node = self._chosen(node, path, part)
         if not isinstance(node, Mapping):
-            raise self._refused(path, f"{field!r} follows {_what(node)}, which is no struct", _REMEDY)
+            raise self._refused(path, f"{field!r} follows {_what(node)}, which is not a struct", _REMEDY)
         if field not in node:
-            near = nearest_word(field, node)
-            hint = f", the nearest is {near!r}" if near else ""
+            hint = hint_nearest(field, node)
             raise self._refused(
                 path, f"the struct has {list_names(tuple(node), _SHOWN)}{hint}", "Correct the path in [channels]."
             )
@@ -108,7 +106,9 @@ class ArrayFile:
         if not isinstance(node, Cells):
             raise self._refused(path, f"element {number} follows {_what(node)}", _REMEDY)
         if not 1 <= number <= len(node.held):
-            raise self._refused(path, f"it has {len(node.held)} elements and no element {number}", "They count from 1.")
+            raise self._refused(
+                path, f"it has {len(node.held)} elements and no element {number}", "Elements are counted from 1."
+            )
         return node.held[number - 1]
 
     def _chosen(self, node: Any, path: str, part: str) -> Any:
@@ -119,16 +119,16 @@ class ArrayFile:
             return self._element(node, int(part), path)
         if len(node.held) == 1:
             return node.held[0]
-        remedy = f'Write part = "1" to "{len(node.held)}" beside the trial\'s files, or path{{1}}.'
+        remedy = f'Write part = "1" to "{len(node.held)}" next to the trial\'s files, or path{{1}}.'
         raise self._refused(path, f"it holds {len(node.held)} elements", remedy)
 
     def _checked(self, node: Any, path: str) -> NDArray[np.float64]:
         if not isinstance(node, np.ndarray):
-            raise self._refused(path, f"it is {_what(node)}", "Name another variable, or save it as plain numbers.")
+            raise self._refused(path, f"it is {_what(node)}", "Name another variable, or save it as a numeric array.")
         values = np.array(node, float)
         if not values.size or np.isinf(values).any():
-            found = "it is empty" if not values.size else f"{int(np.isinf(values).sum())} numbers in it are infinite"
-            raise self._refused(path, found, "Save it again, with NaN where nothing was measured.")
+            found = "it is empty" if not values.size else f"it contains {int(np.isinf(values).sum())} infinite numbers"
+            raise self._refused(path, found, "Save it again, with NaN for missing values.")
         return values
 
     def _column(self, values: NDArray[np.float64], columns: re.Match[str] | None, path: str) -> NDArray[np.float64]:
@@ -138,7 +138,7 @@ class ArrayFile:
         fits = len(wanted) == values.ndim and wanted.count(":") == 1
         fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(wanted, values.shape, strict=True))
         if not fits:
-            remedy = "Columns count from 1, and one ':' stands for time: (:,2)."
+            remedy = "Columns are counted from 1, and one ':' stands for time: (:,2)."
             raise self._refused(path, f"it is {_shape(values)}", remedy)
         return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
 
@@ -168,14 +168,14 @@ def _in_process(raw: RawFile, path: Path, process: ReaderProcess) -> ArrayFile:
         said = answer.get("said", "").replace(str(path), path.name)
         if "allow_pickle" in said:
             raise ReadError(
-                f"{raw.name}: {name!r} is to be an array of numbers",
-                "it holds Python objects, which are never unpickled, since that may run any program",
-                "Save it as plain arrays: numpy.savez without objects.",
+                f"{raw.name}: {name!r} must be an array of numbers",
+                "it contains Python objects, which are never unpickled, because unpickling can run any program",
+                "Save it as numeric arrays: numpy.savez without objects.",
             )
         if said:
-            needed = f"{raw.name} is to be read as {'an .npz' if path.suffix.lower() == '.npz' else 'a .mat'} file"
-            found = f"it cannot be: its reader says: {' '.join(said.split())[:160].rstrip('.')}"
-            raise ReadError(needed, found, "Save it again; it may be cut short, or no such file.")
+            needed = f"{raw.name} cannot be read as {'an .npz' if path.suffix.lower() == '.npz' else 'a .mat'} file"
+            found = f"the reader reports: {' '.join(said.split())[:160].rstrip('.')}"
+            raise ReadError(needed, found, "Save it again. It may be incomplete or of another type.")
         return answer, arrays
 
     claims = answered("")[0]["claims"]
@@ -184,7 +184,7 @@ def _in_process(raw: RawFile, path: Path, process: ReaderProcess) -> ArrayFile:
     def opened(name: str) -> Any:
         if claims[name] > most:
             raise ReadError(
-                f"{raw.name}: a variable of at most {size_in_words(most)} is unpacked from a file of its size",
+                f"{raw.name}: a variable in a file of this size may unpack to at most {size_in_words(most)}",
                 f"{name!r} claims {size_in_words(claims[name])}",
                 "Save it again in parts, or without compression.",
             )
@@ -248,14 +248,20 @@ def _hdf5_node(file: Any, name: str, path: Path) -> Any:
         raise
     except Exception as error:  # its errors have no common ancestor
         said = " ".join(str(error).split())[:160] or type(error).__name__
-        raise ReadError(f"{path.name} is to be read as a .mat file", f"{name!r}: {said}", "Save it again.") from error
+        raise ReadError(f"{path.name} must be a .mat file", f"{name!r}: {said}", "Save it again.") from error
     marks = attributes(file, name, path, ("MATLAB_class", "MATLAB_empty"))
     kind = marks.get("MATLAB_class", b"")
     word = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
     if marks.get("MATLAB_empty"):
         return np.empty(0)
     if word in ("char", "function_handle", "string") or getattr(held.dtype, "names", None):
-        return "text" if word == "char" else "complex numbers, which no recording has" if held.dtype.names else word
+        return (
+            "text"
+            if word == "char"
+            else "complex numbers, which a recording cannot contain"
+            if held.dtype.names
+            else word
+        )
     return data_set(file, name, path).T
 
 
@@ -302,8 +308,8 @@ def read_arrays(
     wanted = {label: said for label, said in (channels or {}).items() if said_clock(said)}
     if not wanted:
         raise ReadError(
-            f"{file.raw.name} needs the study's [channels] to say which variable is which channel, its unit and rate",
-            f"none says so; {file.overview()}",
+            f"the study's [channels] must state the channel, unit and rate of each variable of {file.raw.name}",
+            f"none is mapped; {file.overview()}",
             'Write for example "knee(:,1)" = "knee_angle_r [deg] @ 100 Hz"; see docs/sessions.md.',
         )
     bases: list[tuple[NDArray[np.float64], list[NDArray[np.float64]], list[Column]]] = []
@@ -337,10 +343,10 @@ def _joined(file: ArrayFile, trials: list[Trial]) -> Trial:
             if key in streams:
                 other = streams[key]
                 raise SamplingError(
-                    f"{file.raw.name}: all {key} must share one time base",
+                    f"{file.raw.name}: all {key} must have one time base",
                     f"{other.names[0]} has {len(other.time)} samples at {other.rate_hz:g} Hz, {recording.names[0]} "
                     f"{len(recording.time)} at {recording.rate_hz:g} Hz",
-                    "Correct the rates in [channels], or leave one out.",
+                    "Correct the rates in [channels], or remove one channel.",
                 )
             streams[key] = recording
         findings += trial.findings
@@ -356,15 +362,15 @@ def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Co
     name, unit = split_unit(said)
     if flat.ndim == 2 and flat.shape[1] in (3, 4) and named_channel(name).quantity == "signal":  # 4: with a residual
         if unit is None:
-            needed = f"{file.raw.name}: the marker {name!r} of {label!r} needs a unit"
+            needed = f"{file.raw.name}: the marker {name!r} of {label!r} must have a unit"
             raise UnitError(needed, "the study states none", f'Write "{label}" = "{name} [mm] @ 100 Hz".')
         return [column_in_unit(label, named_channel(f"{name}.{axis}"), unit, file.raw.name) for axis in "xyz"], flat[
             :, :3
         ]
     raise ReadError(
-        f"{file.raw.name}: {label!r} needs one column for {name!r}, or three for a marker",
-        f"it is {' x '.join(map(str, values.shape))}",
-        f"Name one column, from 1: {label}(:,1).",
+        f"{file.raw.name}: {label!r} must have one column for {name!r}, or three for a marker",
+        f"its shape is {' x '.join(map(str, values.shape))}",
+        f"Name one column, counted from 1: {label}(:,1).",
     )
 
 
@@ -379,7 +385,7 @@ def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> N
         if found.ndim == 1 and found.size > 1:
             if found.size != samples:
                 raise SamplingError(
-                    f"{file.raw.name}: {label!r} needs a time for each of its samples",
+                    f"{file.raw.name}: {label!r} must have a time for each of its samples",
                     f"it has {samples} samples, {text!r} has {found.size} times",
                     "Name other times, or another column.",
                 ) from None
@@ -387,7 +393,7 @@ def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> N
         rate_hz = float(found.ravel()[0])
     if not 0.01 < rate_hz < 1e6 or samples < 2:
         raise SamplingError(
-            f"{file.raw.name}: {label!r} needs a rate between 0.01 Hz and 1 MHz, and two samples or more",
+            f"{file.raw.name}: {label!r} must have a rate between 0.01 Hz and 1 MHz, and at least two samples",
             f"{clock!r} gives {rate_hz:g} Hz, and there are {samples} samples",
             "Correct the rate in [channels].",
         )

@@ -25,20 +25,23 @@ from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 
 ANALOG_STREAMS = ("emg", "forces", "signals")
 _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
-_REMEDY = "Export the trial again, or set it in the software that wrote it; numbers without their scale are no measure."
+_REMEDY = (
+    "Export the trial again, or set the value in the software that wrote it. Without their scale the numbers have no "
+    "unit."
+)
 
 
 class C3DReader:
     """Reads C3D, `.mat` and `.npz` files one after the other in one isolated process.
 
-    The process is started at the first file, started anew when a file kills it and after 100 files, and ends with the
-    `with` block. The reader may be used again after that. Threads that share a reader take turns.
+    The process starts with the first file, restarts after a crash and after 100 files, and ends with the `with` block.
+    The reader may be used again after that. Threads that share a reader take turns.
 
     >>> with C3DReader() as reader:
     ...     reader.read("missing.c3d")
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ReadError: a C3D file is needed; missing.c3d is not there. Check the path.
+    gaitdisc.errors.MissingFileError: the path must lead to a C3D file; missing.c3d does not exist. Check the path.
     """
 
     def __init__(self) -> None:
@@ -60,11 +63,11 @@ class C3DReader:
         """Trial of one C3D file.
 
         Streams: `markers` [m] as `<marker>.x`; `segments`, the poses of the group ROTATION (see `file_segments`);
-        `kinematics` [deg], the model's angles under the names of the vocabulary where it knows them, `<label>.x`
-        otherwise; `moments`, the model's, internal, [N m/kg, N/kg, W/kg] where the file holds them per body mass and
-        [N m, N, W] otherwise; `emg` [V]; `forces` [N, N m, m], ground on foot (see `force_plates`); `signals`, every
-        other analog channel. The first frame is at 0 s. Nothing passes that names a person: neither label prefixes nor
-        the groups SUBJECTS, TRIAL, MANUFACTURER.
+        `kinematics` [deg], the model's angles under names of the vocabulary, otherwise as `<label>.x`; `moments`, the
+        model's, internal, [N m/kg, N/kg, W/kg] if the file gives them per body mass, otherwise [N m, N, W]; `emg` [V];
+        `forces` [N, N m, m], ground on foot (see `force_plates`); `signals`, every other analog channel. The first
+        frame is at 0 s. Everything that names a person is removed: label prefixes and the groups SUBJECTS, TRIAL,
+        MANUFACTURER.
 
         Parameters
         ----------
@@ -82,11 +85,13 @@ class C3DReader:
         path = Path(path)
         try:
             return self._trial(path, channels)
+        except ReadError:
+            raise
         except OSError as error:
             raise ReadError(
-                "a C3D file is needed that stays while it is read",
-                f"{path.name}: the system says: {error.strerror}",
-                "Check that the disk is there and the file is not being replaced, and try again.",
+                "a C3D file must not change while it is read",
+                f"{path.name}: the operating system reports: {error.strerror}",
+                "Check that the disk is connected and that no program replaces the file, and try again.",
             ) from error
 
     def _trial(self, path: Path, channels: Mapping[str, str] | None) -> Trial:
@@ -133,15 +138,15 @@ class C3DReader:
             said[reader] = " ".join(answer["said"].replace(str(path), path.name).split())[:200].rstrip(".")
         else:
             raise ReadError(
-                f"{header.file} promises {layout.frames} frames, {layout.points} points and "
-                f"{layout.channels} analog channels, and a reader that finds them",
+                f"{header.file} states {layout.frames} frames, {layout.points} points and {layout.channels} analog "
+                "channels, which no reader finds",
                 "; ".join(f"{reader}: {words}" for reader, words in said.items()),
                 "Export the trial again, or repair it in the software that wrote it.",
             )
         if not said:
             return answer["reader"], arrays, []
-        what = f"read by {answer['reader']}, as ezc3d could not: {said['ezc3d']}"
-        spoils = "nothing; the counts are those of the header"
+        what = f"read by {answer['reader']}, because ezc3d failed: {said['ezc3d']}"
+        spoils = "nothing; the counts agree with the header"
         return answer["reader"], arrays, [Finding("note", "second reader", header.file, what, spoils)]
 
 
@@ -151,7 +156,7 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
     >>> read_c3d("missing.c3d")
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ReadError: a C3D file is needed; missing.c3d is not there. Check the path.
+    gaitdisc.errors.MissingFileError: the path must lead to a C3D file; missing.c3d does not exist. Check the path.
     """
     with C3DReader() as reader:
         return reader.read(path, channels)
@@ -167,11 +172,7 @@ def _streams(
 ) -> tuple[Streams, tuple[Surface, ...], list[Finding]]:
     unscaled, seen = unscaled_channels(parameters, layout.channels, file)
     raw[:, sorted(unscaled)] = np.nan
-    findings = [
-        *seen,
-        *_made_finite(points, "coordinates of points", file),
-        *_made_finite(raw, "analog values", file),
-    ]
+    findings = [*seen, *_made_finite(points, "coordinates of points", file), *_made_finite(raw, "analog values", file)]
     streams, unit, doubts = point_streams(points, parameters, labels, file)
     plates, described = force_plates(parameters, layout.channels, unit, file, unscaled)
     forces, columns, of_plates = plate_streams(raw, plates, parameters, unit, file)
@@ -199,7 +200,7 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
     rates = [rate for rate in (stated, header.rate_hz, of_analog) if rate is not None and 0.01 < rate < 1e6]
     if not rates:
         raise SamplingError(
-            "a trial needs a rate",
+            "a trial must have a rate",
             f"{header.file} gives POINT:RATE {stated} Hz, header {header.rate_hz:g} Hz, ANALOG:RATE {analog} Hz",
             "Set POINT:RATE in the file.",
         )
@@ -207,16 +208,14 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
     findings = []
     if stated is not None and abs(header.rate_hz - rate) > 1e-3 * rate:
         what = f"POINT:RATE is {stated:g} Hz, the header says {header.rate_hz:g} Hz; read at {rate:g} Hz"
-        findings.append(Finding("warning", "contradictory rate", header.file, what, "every time if this is wrong"))
+        findings.append(Finding("warning", "contradictory rate", header.file, what, "all times if this is wrong"))
     if analog is not None and of_analog is not None and abs(of_analog - rate) > 1e-9 * rate:
         what = (
-            f"ANALOG:RATE {analog:g} Hz is {analog / rate:.6g} times POINT:RATE {rate:g} Hz, the file holds "
-            f"{layout.samples_per_frame} samples a frame; read at {layout.samples_per_frame * rate:g} Hz"
+            f"ANALOG:RATE {analog:g} Hz is {analog / rate:.6g} times POINT:RATE {rate:g} Hz; the file has "
+            f"{layout.samples_per_frame} samples per frame; read at {layout.samples_per_frame * rate:g} Hz"
         )
         severity = "note" if abs(of_analog - rate) < 1e-3 * rate else "warning"
-        findings.append(
-            Finding(severity, "analog rate", header.file, what, "times of analog channels if this is wrong")
-        )
+        findings.append(Finding(severity, "analog rate", header.file, what, "times of analog channels, if wrong"))
     return rate, findings
 
 
@@ -227,7 +226,7 @@ def _made_finite(values: NDArray[np.float64], what: str, file: str) -> list[Find
     values[infinite] = np.nan
     return [
         Finding(
-            "warning", "infinite values", file, f"{int(infinite.sum())} {what} are infinite; taken as missing", what
+            "warning", "infinite values", file, f"{int(infinite.sum())} {what} are infinite; treated as missing", what
         )
     ]
 
@@ -293,7 +292,7 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
     said = {
         "frames": frames,
         "points": points,
-        "analog channels and samples a frame": analog,
+        "analog channels and samples per frame": analog,
         "first block of the data": blocks,
     }
     filling = [layout for layout in layouts if layout.fills(header.size)]
@@ -302,22 +301,22 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
         _refuse_truncated(layout, header)
     if layout.data_block != header.data_block:
         raise ReadError(
-            "a C3D file needs a header that says where the data begin",
-            f"{header.file} says block {header.data_block}, POINT:DATA_START and the length of the file say "
+            "the header of a C3D file must say where the data begin",
+            f"{header.file} says block {header.data_block}; POINT:DATA_START and the length of the file say "
             f"{layout.data_block}",
-            "Export the trial again; this copy is damaged.",
+            "Export the trial again. This copy is damaged.",
         )
     if layout.frames < 1 or layout.frame_bytes < 1 or layout.data_block <= header.parameter_block:
         raise ReadError(
-            "a trial needs at least one frame of points or analog channels",
-            f"{header.file} names {layout.frames} frames, {layout.points} points, {layout.channels} analog channels",
+            "a trial must have at least one frame of points or analog channels",
+            f"{header.file} has {layout.frames} frames, {layout.points} points, {layout.channels} analog channels",
             "Export the trial again with markers or analog channels.",
         )
     if layout.frames == _SATURATED and header.size - layout.end >= layout.frame_bytes + BLOCK:
         room = layout.frames + (header.size - layout.end) // layout.frame_bytes
         raise ReadError(
-            "a C3D file of more than 65535 frames names their number in TRIAL:ACTUAL_END_FIELD",
-            f"{header.file} has room for {room}, says 65535",
+            "a C3D file of more than 65535 frames must state their number in TRIAL:ACTUAL_END_FIELD",
+            f"{header.file} has room for {room} but states 65535",
             "Export the trial in parts, or with software that writes the group TRIAL.",
         )
     rotations = parameters.count("ROTATION", "USED")  # their block follows the frames
@@ -359,9 +358,9 @@ def _word_bytes(header: C3DHeader, parameters: C3DParameters) -> int:
     same = (scale < 0) == (header.scale < 0) and (scale < 0 or abs(scale - header.scale) <= 1e-3 * abs(scale))
     if not same:
         raise ReadError(
-            "header and POINT:SCALE of a C3D file need the same scale (negative where points are floats)",
+            "the header and POINT:SCALE of a C3D file must state the same scale (negative for floating-point points)",
             f"{header.file} has {header.scale:g} and {scale:g}",
-            "Export the trial again; with the wrong one every length would be wrong.",
+            "Export the trial again. With the wrong scale all lengths are wrong.",
         )
     return 4 if scale < 0 else 2
 
@@ -373,10 +372,10 @@ def _distinct(*values):
 def _refuse_truncated(layout: C3DLayout, header: C3DHeader) -> None:
     whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
     raise ReadError(
-        f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels "
-        f"needs {layout.end} bytes",
+        f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels must "
+        f"have {layout.end} bytes",
         f"{header.file} has {header.size} and ends within frame {whole + 1}: it is truncated",
-        "Copy it again from where it was recorded; do not use the part.",
+        "Copy it again from the recording computer. Do not use this incomplete copy.",
     )
 
 
@@ -384,10 +383,10 @@ def _contradictions(said: dict[str, tuple], layout: C3DLayout, header: C3DHeader
     taken = {
         "frames": layout.frames,
         "points": layout.points,
-        "analog channels and samples a frame": (layout.channels, layout.samples_per_frame),
+        "analog channels and samples per frame": (layout.channels, layout.samples_per_frame),
         "first block of the data": layout.data_block,
     }
-    how = "which fill the file to its last block" if layout.fills(header.size) else "which the file is long enough for"
+    how = "which fills the file to its last block" if layout.fills(header.size) else "for which the file is long enough"
     return [
         Finding(
             "warning",
@@ -410,8 +409,8 @@ def _leftover(layout: C3DLayout, header: C3DHeader) -> list[Finding]:
             "warning",
             "bytes left over",
             header.file,
-            f"{rest} bytes follow the last of {layout.frames} frames, room for {rest // layout.frame_bytes} more",
-            "nothing if they are not frames; compare the trial's length with your notes",
+            f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more",
+            "nothing unless they are frames; compare the trial's length with your notes",
         )
     ]
 
@@ -426,7 +425,7 @@ def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
     for name, scale in stated:
         if not np.isfinite(scale) or scale == 0:
             found = f"{name} of {header.file} is {scale:g}"
-            raise ReadError("a C3D file needs finite scales other than 0", found, _REMEDY)
+            raise ReadError("the scales of a C3D file must be finite and not 0", found, _REMEDY)
 
 
 def unscaled_channels(parameters: C3DParameters, channels: int, file: str) -> tuple[frozenset[int], list[Finding]]:
@@ -439,6 +438,6 @@ def unscaled_channels(parameters: C3DParameters, channels: int, file: str) -> tu
                 bad.setdefault(place, f"ANALOG:{name} of channel #{place + 1} {labels[place]} is {number:g}")
     if not bad:
         return frozenset(), []
-    several = f", and {len(bad) - 4} channels more" if len(bad) > 4 else ""
-    what = f"{'; '.join(list(bad.values())[:4])}{several}; taken as missing"
+    several = f", and {len(bad) - 4} more channels" if len(bad) > 4 else ""
+    what = f"{'; '.join(list(bad.values())[:4])}{several}; treated as missing"
     return frozenset(bad), [Finding("warning", "scale", file, what, "these channels; export the trial again")]

@@ -139,7 +139,7 @@ def _mapped_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, st
         return channel, channel.unit
     if unit is None:
         raise UnitError(
-            f"analog channel #{one.number} is mapped to {name!r} and needs a unit",
+            f"analog channel #{one.number} is mapped to {name!r} and must have a unit",
             f"{file} says {(stated if stated is not None else one.unit)!r}",
             f"Write the unit in the study's [channels]: '{name} [{channel.unit}]'.",
         )
@@ -147,7 +147,7 @@ def _mapped_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, st
         channel = replace(channel, unit=inner_unit(unit))
     if inner_unit(unit) != channel.unit:
         raise UnitError(
-            f"analog channel #{one.number} is mapped to {channel.name!r}, which is measured in {channel.unit}",
+            f"analog channel #{one.number} is mapped to {channel.name!r}, whose unit is {channel.unit}",
             f"{file} gives it in {unit}",
             "Map another channel, or write the true unit in the study's [channels]: 'name [unit]'.",
         )
@@ -158,27 +158,21 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
     findings = []
     unknown = [one for one in (*emg, *others) if parsed_unit(one.unit) is None]
     if unknown:
-        what = f"{len(unknown)} analog channels have no known unit ({_listed(unknown)}); kept as they are"
+        what = f"{len(unknown)} analog channels have no known unit ({_listed(unknown)}); their numbers are unchanged"
         findings.append(Finding("note", "unit", file, what, "amplitudes of these channels; correct ANALOG:UNITS"))
     muscles = [one.muscle.name for one in emg if one.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
     if doubled:
-        what = f"several channels mean {', '.join(doubled)}; they are numbered"
-        findings.append(
-            Finding("warning", "equal muscles", file, what, "this muscle; name it in the study's [channels]")
-        )
+        what = f"several channels are called {', '.join(doubled)}; they are numbered"
+        findings.append(Finding("warning", "equal muscles", file, what, "this muscle; name it in [channels]"))
     nameless = [one for one in emg if one.muscle is None]
     if nameless:
-        what = f"{len(nameless)} EMG channels name no known muscle ({_listed(nameless)})"
-        findings.append(
-            Finding("note", "nameless EMG", file, what, "nothing; name them in the study's [channels] as '#<n>'")
-        )
+        what = f"{len(nameless)} EMG channels do not name a known muscle ({_listed(nameless)})"
+        findings.append(Finding("note", "nameless EMG", file, what, "nothing; name them in [channels] as '#<n>'"))
     voltages = [one for one in others if (parsed_unit(one.unit) or "") in ("V", "mV", "uV")]
     if voltages:
-        what = f"{len(voltages)} voltages are not known as EMG and stay signals ({_listed(voltages)})"
-        findings.append(
-            Finding("note", "voltages", file, what, "nothing unless they are EMG; then map them in [channels]")
-        )
+        what = f"{len(voltages)} voltages are not recognised as EMG and remain signals ({_listed(voltages)})"
+        findings.append(Finding("note", "voltages", file, what, "nothing unless they are EMG; map them in [channels]"))
     return findings
 
 

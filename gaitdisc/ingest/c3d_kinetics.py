@@ -37,11 +37,7 @@ OF_THE_BODY = {
     "inter_asis_m": ("INTERASISDISTANCE", "ASISDISTANCE"),
     "marker_diameter_m": ("MARKERDIAMETER",),
 }
-OF_A_SIDE = {
-    "leg_length_m": ("LEGLENGTH",),
-    "knee_width_m": ("KNEEWIDTH",),
-    "ankle_width_m": ("ANKLEWIDTH",),
-}
+OF_A_SIDE = {"leg_length_m": ("LEGLENGTH",), "knee_width_m": ("KNEEWIDTH",), "ankle_width_m": ("ANKLEWIDTH",)}
 FACTORS = (1e-3, 1.0, 1e-2)  # mm, as Nexus writes; m; cm: the first that makes it a length of a person
 
 
@@ -98,18 +94,18 @@ def _in_true_unit(
         count = len(wrong)
         mass = f", {shown.mass_kg:.1f} kg" if shown.mass_kg else ""
         what = (
-            f"{shown.words}; so {count} forces, moments and powers are per kg of body mass{mass}, though the unit that "
-            "the file states is not; given in N/kg, N m/kg and W/kg"
+            f"{shown.words}; {count} forces, moments and powers are therefore per kg of body mass{mass}, contrary to "
+            "the unit in the file; given in N/kg, N m/kg and W/kg"
         )
         spoils = "" if shown.certain else "joint moments and powers if this is wrong; state the unit in the file"
         findings.append(Finding("note" if shown.certain else "warning", "per body mass", file, what, spoils))
         channels = tuple(replace(c, unit=_PER_KG.get(c.unit, c.unit)) for c in channels)
     elif wrong and (reaction.per_kg, joints.per_kg) in ((True, False), (False, True)):
-        what = f"{reaction.words}, but {joints.words} N m; units are left as the file states them"
+        what = f"{reaction.words}, but {joints.words} N m; the units are those of the file"
         findings.append(Finding("warning", "per body mass", file, what, "forces, moments and powers; correct the file"))
     if shown.mass_kg and mass_kg and abs(shown.mass_kg / mass_kg - 1) > AGREES:
-        what = f"the plates show {shown.mass_kg:.1f} kg of body mass, the file states {mass_kg:.1f} kg"
-        findings.append(Finding("warning", "body mass", file, what, "what is multiplied by body mass; correct it"))
+        what = f"the plates show a body mass of {shown.mass_kg:.1f} kg, the file states {mass_kg:.1f} kg"
+        findings.append(Finding("warning", "body mass", file, what, "everything that depends on body mass; correct it"))
     of_weight = [c.name for c in channels if _NORMALISED.fullmatch(c.name) and c.unit != "%"]
     if of_weight:
         channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)
@@ -135,7 +131,7 @@ def _by_plates(
             if high - low > 2 * STEADY * ratio:
                 continue
             at = int(np.argmax(np.where(both, plate, 0)))
-            words = f"plate {place} carries {plate[at]:.0f} N where {side}GroundReactionForce is {foot[at]:.4g}"
+            words = f"plate {place} carries {plate[at]:.0f} N when {side}GroundReactionForce is {foot[at]:.4g}"
             if abs(ratio - 1) <= AGREES:
                 return Evidence(False, words, True)
             if LIGHTEST_KG <= ratio <= HEAVIEST_KG:
@@ -152,9 +148,9 @@ def _by_size(
     most = float(np.quantile(sizes, 0.995)) if sizes.size else 0.0
     if most == 0:
         return Evidence(None)
-    words = f"no {'reaction force' if quantity == 'force' else 'joint moment of a leg'} is beyond {most:.3g}"
+    words = f"no {'reaction force' if quantity == 'force' else 'joint moment of a leg'} exceeds {most:.3g}"
     if most > PER_KG_AT_MOST[quantity]:
-        return Evidence(False, words.replace("no ", "a ").replace("is beyond", "reaches"))
+        return Evidence(False, words.replace("no ", "a ").replace("exceeds", "reaches"))
     return Evidence(True, words)
 
 
@@ -164,15 +160,15 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
     if not joints:
         return kinetics, []
     sense, words = _push_off(values, channels)
-    how = "joint moments are internal (of the muscles) here, positive towards the positive angle"
+    how = "joint moments are internal (of the muscles), positive towards the positive angle"
     if sense < 0:
-        what = f"{words}: plantarflexion is negative already; {how}"
+        what = f"{words}: plantarflexion is already negative; {how}"
         return kinetics, [Finding("note", "moment sign", file, what, "")]
     signs = np.ones(len(channels))
     signs[joints] = -1.0
-    why = words + ": positive is plantarflexion" if sense else f"{words}; taken as Plug-in Gait counts them"
-    what = f"{why}; {len(joints)} joint moments turned around, {how}"
-    spoils = "" if sense else "the sign of joint moments if the file is of another model"
+    why = words + ": positive is plantarflexion" if sense else f"{words}; interpreted as in Plug-in Gait"
+    what = f"{why}; the sign of {len(joints)} joint moments is reversed, {how}"
+    spoils = "" if sense else "the sign of joint moments if the file comes from another model"
     return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]
 
 
@@ -185,7 +181,7 @@ def _push_off(values: NDArray[np.float64], channels: tuple[Channel, ...]) -> tup
         return 0, "no ankle moment shows the sign"
     unit = channels[ankles[0]].unit
     low, high = np.quantile(moments, [0.005, 0.995])
-    words = f"ankle moments go from {low:.2f} to {high:.2f} {unit}"
+    words = f"ankle moments range from {low:.2f} to {high:.2f} {unit}"
     up, down = moments[moments > 0].sum(), -moments[moments < 0].sum()
     if high > PUSH_OFF[unit] and up > ONE_SIDED * down:
         return 1, words

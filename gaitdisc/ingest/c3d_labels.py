@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from gaitdisc.channel import folded_label, nearest_word
+from gaitdisc.channel import folded_label, hint_nearest
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.recording import Finding
@@ -108,10 +108,9 @@ class LabelMap:
         found = []
         for key in self._names:
             if not self._used[key]:
-                nearest = nearest_word(key, labels)
-                hint = f", the nearest is {nearest!r}" if nearest else ""
-                what = f"the study maps {key!r} to {self._names[key]!r}; the file has no such label{hint}"
-                found.append(Finding("warning", "label not found", file, what, "whatever needs this channel"))
+                hint = hint_nearest(key, labels)
+                what = f"the study maps {key!r} to {self._names[key]!r}; the file does not have this label{hint}"
+                found.append(Finding("warning", "label not found", file, what, "everything that needs this channel"))
         return found
 
     def _use(self, key: str) -> None:
@@ -119,8 +118,8 @@ class LabelMap:
         if self._used[key] > 1:
             raise ChannelError(
                 f"{key!r} of the study's [channels] must mean one channel",
-                f"{self._used[key]} channels of the file go by it",
-                "Use '#<number>' instead, the place of the channel among the analog channels, counted from 1.",
+                f"{self._used[key]} channels of the file have this label",
+                "Use '#<number>' instead, the number of the analog channel counted from 1.",
             )
 
 
@@ -167,11 +166,11 @@ def file_events(
     on_file = seconds - lost
     if not np.any(_within(on_file, end, margin)) and np.all(_within(seconds, end, margin)):
         on_file = seconds
-        what = f"event times run on the clock of the cropped file, which begins with frame {first_frame}"
-        findings.append(Finding("warning", "event clock", file, what, "the file's events if this is wrong"))
+        what = f"event times refer to the cropped file, which begins with frame {first_frame}"
+        findings.append(Finding("warning", "event clock", file, what, "the events of the file if this is wrong"))
     inside = _within(on_file, end, margin)
     if not np.all(inside):
-        what = f"{int(np.sum(~inside))} of {count} events lie outside of the {frames} frames kept and are left out"
+        what = f"{int(np.sum(~inside))} of {count} events lie outside the {frames} frames of the file and are ignored"
         findings.append(Finding("note", "events outside", file, what, ""))
     contexts = (*parameters.texts("EVENT", "CONTEXTS"), *[""] * count)
     people = named_people(parameters)

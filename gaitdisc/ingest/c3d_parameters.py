@@ -11,16 +11,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ReadError
+from gaitdisc.errors import MissingFileError, ReadError
 from gaitdisc.regular_file import check_regular
 
 BLOCK = 512  # bytes; a C3D file counts in blocks from 1
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
 _MAGIC = (
-    (b"PK\x03\x04", "a ZIP archive", "Unpack it and give the .c3d file inside."),
-    (b"\x89PNG", "a PNG picture", "Give the .c3d file."),
-    (b"%PDF", "a PDF document", "Give the .c3d file."),
-    (b"\x1f\x8b", "a gzip archive", "Unpack it and give the .c3d file inside."),
+    (b"PK\x03\x04", "a ZIP archive", "Unpack it and use the .c3d file inside."),
+    (b"\x89PNG", "a PNG picture", "Use the .c3d file."),
+    (b"%PDF", "a PDF document", "Use the .c3d file."),
+    (b"\x1f\x8b", "a gzip archive", "Unpack it and use the .c3d file inside."),
     (b"version https://git-lfs", "a Git LFS pointer, not the file itself", "Fetch it with `git lfs pull`."),
 )
 Value = tuple[str, ...] | NDArray[np.generic]
@@ -64,22 +64,22 @@ def read_c3d_header(path: str | Path) -> C3DHeader:
     head, size = _first_bytes(path)
     for magic, kind, remedy in _MAGIC:
         if head.startswith(magic):
-            raise ReadError("a C3D file is needed", f"{path.name} is {kind}", remedy)
+            raise ReadError("the file must be in C3D format", f"{path.name} is {kind}", remedy)
     parameter_block = head[0]
     start = (parameter_block - 1) * BLOCK
     if head[1] != 0x50 or parameter_block < 2 or start + 4 > len(head):
         text = all(byte in b"\t\n\r" or byte > 31 for byte in head[:64])
         raise ReadError(
-            "a C3D file is needed (its second byte is 80)",
-            f"{path.name} begins with bytes {head[0]} and {head[1]}{', it looks like text' if text else ''}",
-            "Give the .c3d file that the motion capture system exported.",
+            "the second byte of a C3D file must be 80",
+            f"{path.name} begins with bytes {head[0]} and {head[1]}{' and looks like text' if text else ''}",
+            "Use the .c3d file that the motion capture system exported.",
         )
     processor = PROCESSORS.get(head[start + 3])
     if processor is None:
         raise ReadError(
-            "a C3D file needs processor type 84 (Intel), 85 (DEC) or 86 (MIPS)",
+            "a C3D file must have processor type 84 (Intel), 85 (DEC) or 86 (MIPS)",
             f"{path.name} has {head[start + 3]}",
-            "Export the trial again; this copy is damaged.",
+            "Export the trial again. This copy is damaged.",
         )
     words = decoded(head[:24], 2, processor).astype(int) & 0xFFFF
     scale, rate_hz = (float(decoded(head[at : at + 4], 4, processor)[0]) for at in (12, 20))
@@ -121,22 +121,25 @@ def decoded(raw: bytes, width: int, processor: str) -> NDArray[np.generic]:
 def _first_bytes(path: Path) -> tuple[bytes, int]:
     """Up to 256 blocks, enough to reach the parameter section wherever the header may place it."""
     if path.is_dir():
-        raise ReadError("a C3D file is needed", f"{path.name} is a folder", "Give one of the files in it.")
+        raise ReadError("the path must lead to a C3D file", f"{path.name} is a folder", "Name one of the files in it.")
     try:
         size = check_regular(path)
         with path.open("rb") as file:
             head = file.read(256 * BLOCK)
     except FileNotFoundError:
-        raise ReadError("a C3D file is needed", f"{path.name} is not there", "Check the path.") from None
+        needed, found = "the path must lead to a C3D file", f"{path.name} does not exist"
+        raise MissingFileError(needed, found, "Check the path.") from None
     except OSError as error:
         raise ReadError(
-            "a C3D file is needed", f"{path.name} cannot be opened ({error.strerror})", "Check its permissions."
+            "the path must lead to a C3D file",
+            f"{path.name} cannot be opened ({error.strerror})",
+            "Check its permissions.",
         ) from None
     if not head:
-        raise ReadError("a C3D file is needed", f"{path.name} is empty (0 bytes)", "Copy or export it again.")
+        raise ReadError("a C3D file must not be empty", f"{path.name} has 0 bytes", "Copy or export it again.")
     if len(head) < BLOCK:
         raise ReadError(
-            "a C3D file is needed (its header alone has 512 bytes)",
+            "a C3D file must have at least 512 bytes, the length of its header",
             f"{path.name} has {len(head)} bytes",
             "Copy or export it again.",
         )
@@ -218,7 +221,7 @@ def read_c3d_parameters(path: str | Path, header: C3DHeader) -> C3DParameters:
             entries.append((group, name, _value(name, body, header)))
     values = {(names.get(group, f"#{group}"), name): value for group, name, value in reversed(entries)}
     if not {group for group, _ in values} & {"POINT", "ANALOG"}:
-        raise _broken(header, "it names neither the group POINT nor the group ANALOG")
+        raise _broken(header, "it has neither the group POINT nor the group ANALOG")
     return C3DParameters(values)
 
 
@@ -232,13 +235,13 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
             return
         offset_at = at + 2 + length
         if offset_at + 2 > len(section):
-            raise _broken(header, f"an entry at byte {at} of it has a name of {length} letters that runs over its end")
+            raise _broken(header, f"the name of an entry at byte {at} has {length} letters and extends beyond the end")
         name = section[at + 2 : offset_at].decode("latin-1").strip().upper()
         order = "big" if header.processor == "MIPS" else "little"
         offset = int.from_bytes(section[offset_at : offset_at + 2], order)
         end = offset_at + offset if offset else len(section)
         if offset == 1 or end > len(section):
-            raise _broken(header, f"the entry {_shown(name)} at byte {at} of it points {offset} bytes on, over its end")
+            raise _broken(header, f"the entry {_shown(name)} at byte {at} points {offset} bytes ahead, beyond the end")
         yield name, group, section[offset_at + 2 : end]
         if not offset:
             return
@@ -248,15 +251,13 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
 def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     width = _WIDTHS.get(int.from_bytes(body[:1], "little", signed=True))
     if len(body) < 2 or width is None or body[1] > _DIMENSIONS_AT_MOST or len(body) < 2 + body[1]:
-        raise _broken(header, f"the parameter {_shown(name)} is of no known type")
+        raise _broken(header, f"the parameter {_shown(name)} has an unknown type")
     is_text = body[0] == 255
     dimensions = tuple(body[2 : 2 + body[1]])
     count = math.prod(dimensions)
     raw = body[2 + len(dimensions) :][: count * width]
     if len(raw) < count * width:
-        raise _broken(
-            header, f"the parameter {_shown(name)} has {len(raw)} bytes where {dimensions} need {count * width}"
-        )
+        raise _broken(header, f"parameter {_shown(name)} has {len(raw)} bytes, but {dimensions} need {count * width}")
     if is_text:
         length = dimensions[0] if dimensions else 1
         return tuple(_text(raw[at : at + length]) for at in range(0, len(raw), length)) if length else ()
@@ -277,7 +278,7 @@ def _shown(name: str) -> str:
 
 def _broken(header: C3DHeader, found: str) -> ReadError:
     return ReadError(
-        "a C3D file needs a parameter section that can be followed from entry to entry",
+        "the entries of a C3D file's parameter section must link to each other",
         f"{header.file}: {found}",
         "Export the trial again, or repair it in the software that wrote it.",
     )

@@ -64,22 +64,20 @@ def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: st
     if text:
         unit = parsed_unit(text)
         if unit is None or inner_unit(unit) != "m":
-            raise UnitError(
-                "POINT:UNITS of a C3D file is a length", f"{file} says {text!r}", "Correct the parameter: mm or m."
-            )
+            raise UnitError("POINT:UNITS must be a unit of length", f"{file} says {text!r}", "Write mm or m.")
         refuse_other_unit(unit, far, file, "POINT:UNITS")
         return unit, []
     if not far > 0:
         return "m", []
     if METRES_AT_MOST < far < MILLIMETRES_AT_LEAST:
         raise UnitError(
-            "markers need a unit",
-            f"{file} states none, and {far:.4g} from the origin can be neither m nor mm",
+            "markers must have a unit",
+            f"{file} states none, and a distance of {far:.4g} from the origin can be neither m nor mm",
             "Set POINT:UNITS in the file.",
         )
     unit = "m" if far <= METRES_AT_MOST else "mm"
-    what = f"POINT:UNITS is empty; markers lie up to {far:.4g} from the origin, so they are read as {unit}"
-    return unit, [Finding("warning", "unit", file, what, "every length if this is wrong; set POINT:UNITS")]
+    what = f"POINT:UNITS is empty; markers lie up to {far:.4g} from the origin and are read as {unit}"
+    return unit, [Finding("warning", "unit", file, what, "all lengths if this is wrong; set POINT:UNITS")]
 
 
 def point_streams(
@@ -142,9 +140,9 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
     if len(words) != 1:
         return names, []
     (word,) = words
-    what = f"{known[0]} and {len(known) - 1} more outputs of its model end in {word}; taken as {bases[known[0]]}, ..."
+    what = f"{known[0]} and {len(known) - 1} more outputs of its model end in {word}; read as {bases[known[0]]}, ..."
     plain = [bases[name] if name in bases and name.endswith(word) else name for name in names]
-    return plain, [Finding("note", "model suffix", file, what, "nothing if it is Plug-in Gait under its own labels")]
+    return plain, [Finding("note", "model suffix", file, what, "nothing if these are Plug-in Gait outputs")]
 
 
 def _model_part(
@@ -161,7 +159,8 @@ def _model_part(
     inner = inner_unit(unit) if unit else "1"
     if unit is None or (kind.quantity in _INNER and inner.removesuffix("/kg") != _INNER[kind.quantity]):
         what = (
-            f"POINT:{kind.units} is {text!r}, which is no unit of {kind.group.lower()}; kept as numbers without a unit"
+            f"POINT:{kind.units} is {text!r}, which is not a unit of {kind.group.lower()}; the numbers are kept "
+            "without a unit"
         )
         findings.append(Finding("warning", "unit", file, what, f"the {kind.group.lower()}; correct the parameter"))
         unit, inner = "1", "1"
@@ -185,8 +184,8 @@ def _magnitude(values: NDArray[np.float64], kind: ModelOutput, unit: str, file: 
     finite = np.abs(values[np.isfinite(values)])
     most = float(finite.max()) if finite.size else 0.0
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
-        what = f"no angle is beyond {most:.3g} deg; they look like radians"
-        return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
+        what = f"no angle exceeds {most:.3g} deg, so they look like radians"
+        return [Finding("warning", "unit", file, what, "all angles if they are; correct POINT:ANGLE_UNITS")]
     return []
 
 
@@ -195,8 +194,8 @@ def _doubled(names: list[str], parameters: C3DParameters, file: str) -> list[Fin
     doubled = sorted({label for label in plain if label and plain.count(label) > 1})
     if not doubled:
         return []
-    what = f"{len(doubled)} point labels stand more than once ({', '.join(doubled[:3])}); distinguished by their number"
-    return [Finding("warning", "equal labels", file, what, "these points; give them names of their own")]
+    what = f"{len(doubled)} point labels occur more than once ({', '.join(doubled[:3])}); they are numbered"
+    return [Finding("warning", "equal labels", file, what, "these points; give each its own name")]
 
 
 def _without_zeros(markers: NDArray[np.float64], file: str) -> list[Finding]:
@@ -207,7 +206,7 @@ def _without_zeros(markers: NDArray[np.float64], file: str) -> list[Finding]:
     if not count:
         return []
     triples[origin] = np.nan
-    what = f"{count} places of markers were exactly (0, 0, 0) and are taken as not seen"
+    what = f"{count} marker positions were exactly (0, 0, 0) and are treated as missing"
     return [Finding("note", "zero places", file, what, "")]
 
 
@@ -235,9 +234,9 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
     first = (start - 1) * BLOCK
     if first + size > header.size or not frames:
         raise ReadError(
-            f"{header.file} promises {frames} frames of {used} segments in ROTATION",
+            f"{header.file} states {frames} frames of {used} segments in ROTATION",
             f"{max(header.size - first, 0)} of {size} bytes follow block {start}",
-            "Export the trial again; this copy is cut off.",
+            "Export the trial again. This copy is incomplete.",
         )
     with path.open("rb") as file:
         file.seek(first)

@@ -52,9 +52,9 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
     values = _along_plates(values[: frames * samples], surfaces, channels)
     if frames > MOST_FRAMES:
         raise SamplingError(
-            f"a C3D file of {frame_hz:g} frames a second holds {MOST_FRAMES / frame_hz:g} s at most",
-            f"{path.name} would last {frames / frame_hz:g} s",
-            "Write a shorter part, or a table.",
+            f"a C3D file with {frame_hz:g} frames per second can be at most {MOST_FRAMES / frame_hz:g} s long",
+            f"{path.name} would be {frames / frame_hz:g} s long",
+            "Write a shorter part, or write a table.",
         )
     file = ezc3d.c3d()
     labels = list(dict.fromkeys(name.rpartition(".")[0] for name in markers.names)) if markers is not None else []
@@ -85,13 +85,13 @@ def _apart(
     """Markers, and the analog recordings without the centres of pressure, which follow from force and moment."""
     markers = [one for one in recordings if all(channel.quantity == "marker" for channel in one.channels)]
     if len(markers) > 1 or any(abs(one.time[0]) > 1e-9 for one in markers):
-        found = f"{len(markers)} recordings, the first from {markers[0].time[0]:g} s on"
-        raise SamplingError(f"markers of {file} need one recording, from 0 s on", found, "Join or shift them first.")
+        found = f"there are {len(markers)} recordings, and the first begins at {markers[0].time[0]:g} s"
+        raise SamplingError(f"markers of {file} must be one recording from 0 s on", found, "Join or shift them first.")
     names = {channel.name for recording in recordings for channel in recording.channels}
     absent = [name for surface in surfaces for name in _plate_channels(surface) if name not in names]
     if absent:
-        found = f"{absent[0]!r} is not there"
-        raise ChannelError(f"a plate of {file} needs its force and moment", found, "Add it, or leave the plate out.")
+        found = f"{absent[0]!r} is missing"
+        raise ChannelError(f"a plate of {file} must have its force and moment", found, "Add it, or remove the plate.")
     pressure = {f"{surface.name}_p{axis}" for surface in surfaces for axis in "xyz"}
     others = [one for one in recordings if one not in markers]
     return markers[0] if markers else None, [
@@ -144,13 +144,16 @@ def _points(markers: Recording, frames: int) -> NDArray[np.float64]:
 
 
 def _samples_per_frame(recordings: Sequence[Recording], frame_hz: float, file: str) -> int:
-    needed = f"the analog channels of {file} need one time base, from 0 s on, of a multiple of {frame_hz:g} Hz"
+    needed = (
+        f"the analog channels of {file} must have one time base that begins at 0 s and a rate that is a multiple of "
+        f"{frame_hz:g} Hz"
+    )
     first = recordings[0]
     for other in recordings[1:]:
         if not np.array_equal(other.time, first.time):
             found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, {other.names[0]} has "
             found += f"{len(other.time)} at {other.rate_hz:g} Hz"
-            raise SamplingError(needed, found, "Bring them to one time base first.")
+            raise SamplingError(needed, found, "Resample them to one time base first.")
     samples = round(first.rate_hz / frame_hz)
     if samples < 1 or abs(samples * frame_hz - first.rate_hz) > 1e-6 * first.rate_hz or abs(first.time[0]) > 1e-9:
         found = f"{first.names[0]} begins at {first.time[0]:g} s and has {first.rate_hz:g} Hz"

@@ -51,7 +51,7 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
     rows = [line for line in lines if line and not line.isspace()]
     if not rows:
         raise ReadError(
-            f"{form.file} needs rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
+            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
         )
     rows = _even_rows(rows, labels, numbers, form)
     values = _numbers(rows, form)
@@ -71,9 +71,9 @@ def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp]
         row = counts.index(min(counts)) if counts[-1] >= width else len(counts) - 1
         cut = ", the last line" if row == len(rows) - 1 else ""
         raise ReadError(
-            f"{form.file}: every row needs {width} cells, one a column",
+            f"{form.file}: every row must have {width} cells, one per column",
             f"line {numbers[row]}{cut} has {counts[row]}",
-            "The file was cut or edited: copy or export it again.",
+            "The file was cut or edited. Copy or export it again.",
         )
     if max(counts) == width:
         return rows
@@ -82,9 +82,9 @@ def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp]
         cells = form.split(row)
         if any(cell.strip() for cell in cells[width:]):
             raise ReadError(
-                f"{form.file}: every row needs {width} cells, one a column",
+                f"{form.file}: every row must have {width} cells, one per column",
                 f"line {number} has {len(cells)}",
-                "Name every column in the line of labels, or export the file again.",
+                "Name every column in the header line, or export the file again.",
             )
         even.append((" " if form.separator == " " else form.separator).join(cells[:width]))
     return even
@@ -99,10 +99,7 @@ def _numbers(rows: list[str], form: Form) -> NDArray[np.float64] | None:
     for filled in (False, True):
         try:
             values = np.loadtxt(
-                [blank.sub("nan", row) for row in rows] if filled else rows,
-                delimiter=separator,
-                comments=None,
-                ndmin=2,
+                [blank.sub("nan", row) for row in rows] if filled else rows, delimiter=separator, comments=None, ndmin=2
             )
         except ValueError:
             continue
@@ -125,9 +122,9 @@ def _numbers_cell_by_cell(
                 values[i, j] = np.inf
             if not np.isfinite(values[i, j]) or "_" in text:
                 raise ReadError(
-                    f"{form.file}: a number is needed in line {numbers[i]}, column {label!r}",
+                    f"{form.file}: line {numbers[i]}, column {label!r} must contain a number",
                     f"found {text[:40]!r}",
-                    "Correct the cell; leave it blank or write nan where nothing was measured.",
+                    "Correct the cell. Leave it blank or write nan if nothing was measured.",
                 )
     return values
 
@@ -137,16 +134,18 @@ def check_counts(cells: Cells, file: str, *counts: tuple[str, Sequence[int], int
     kind, claimed, there = counts[0]
     if claimed and there < max(claimed):
         raise ReadError(
-            f"{file} should have {max(claimed)} {kind}{' of numbers' * (kind == 'rows')}, as its header says",
+            f"{file} must have {max(claimed)} {kind}{' of numbers' * (kind == 'rows')}, as its header says",
             f"it ends after {there}, at line {cells.lines[-1]}",
-            "The file was cut: copy or export it again.",
+            "The file is incomplete. Copy or export it again.",
         )
     findings = []
     for kind, claimed, there in counts:
         wrong = sorted({count for count in claimed if count != there})
         if wrong:
-            what = f"the header claims {' and '.join(map(str, wrong))} {kind}, {there} are there"
-            findings.append(Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse it"))
+            what = f"the header states {' and '.join(map(str, wrong))} {kind}, the file has {there}"
+            findings.append(
+                Finding("warning", "wrong count", file, what, "nothing here, but other programs may refuse the file")
+            )
     return findings
 
 
@@ -188,12 +187,12 @@ def even_time(
 
     if len(time) < 2:
         raise SamplingError(
-            f"{file}: a recording needs at least two samples", f"it has {len(time)}", "Export the whole trial."
+            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the whole trial."
         )
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))
         raise SamplingError(
-            f"{file}: every sample needs a time", f"{place(row)} has {time[row]}", "Export the file again."
+            f"{file}: every sample must have a time", f"{place(row)} has {time[row]}", "Export it again."
         )
     steps = np.diff(time)
     if steps.min() <= 0:
@@ -201,7 +200,7 @@ def even_time(
         raise SamplingError(
             f"{file}: time must increase",
             f"{place(row + 1)} has t = {time[row + 1]:.10g} s after {time[row]:.10g} s",
-            "Remove the doubled or misplaced rows, or export the trial again.",
+            "Remove the duplicate or misplaced rows, or export the trial again.",
         )
     step = (time[-1] - time[0]) / (len(time) - 1)
     even = time[0] + step * np.arange(len(time))
@@ -221,10 +220,10 @@ def _check_rounding(time: NDArray[np.float64], digit_s: float, file: str, place)
         return
     row = int(np.argmax(np.abs(steps - np.median(steps))))
     raise SamplingError(
-        f"{file}: a recording needs a constant rate",
-        f"between {place(row)} and {place(row + 1)} the step is {steps[row]:.6g} s (t = {time[row]:.6g} s) where the "
-        f"usual one is {np.median(steps):.6g} s, and times are printed to {digit_s:.0e} s",
-        "Samples are missing, or times have too few digits: export at one rate and with more digits.",
+        f"{file}: a recording must have a constant rate",
+        f"between {place(row)} and {place(row + 1)} the step is {steps[row]:.6g} s (t = {time[row]:.6g} s), the usual "
+        f"step is {np.median(steps):.6g} s, and times have a resolution of {digit_s:.0e} s",
+        "Samples are missing, or times have too few digits. Export at one rate and with more digits.",
     )
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, folded_label, nearest_word, side_of, vocabulary
+from gaitdisc.channel import Channel, folded_label, hint_nearest, side_of, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.units import convert, inner_unit, known_units, parsed_unit
@@ -125,7 +125,7 @@ def check_written_names(names: Sequence[str], file: str) -> None:
     for name in names:
         if name != name.strip() or not name.isprintable():
             raise ChannelError(
-                f"{file}: a text table holds names without tabs, line breaks and blanks at the ends",
+                f"{file}: names in a text table must not contain tabs or line breaks, nor begin or end with blanks",
                 f"found {name!r}",
                 "Rename the channel.",
             )
@@ -143,10 +143,9 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
         base, rate = re.split(r"(?=/s2?$)", unit_text, maxsplit=1)
         unit = parsed_unit(base)
     if unit is None:
-        nearest = nearest_word(base, known_units())
         raise UnitError(
-            f"{file}: column {label!r} needs a unit of the closed list",
-            f"found {unit_text!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            f"{file}: the unit of column {label!r} must be in the list of units",
+            f"found {unit_text!r}" + hint_nearest(base, known_units()),
             f"Use one of: {', '.join(known_units())}.",
         )
     inner = inner_unit(unit)
@@ -157,7 +156,7 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
     if allowed and inner not in allowed:
         raise UnitError(
             f"{file}: column {label!r} is {channel.name}, {_a(channel.quantity)} in {allowed[0]}",
-            f"its unit says {unit_text!r}",
+            f"its unit is {unit_text!r}",
             "Correct the unit in the header or in the study's [channels], or map the column to another name.",
         )
     quantity = "angle" if channel.quantity == "signal" and inner == "deg" and not rate else channel.quantity
@@ -179,7 +178,7 @@ def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Colu
     if unit is None and not own:
         seems = f"; it seems to be {alias.name}" if alias else ""
         raise UnitError(
-            f"{file}: column {label!r} needs a unit",
+            f"{file}: column {label!r} must have a unit",
             f"neither its header nor the study states one{seems}",
             f'Write \'{plain} [unit]\' in the header, or "{plain}" = "{alias.name if alias else "name"} [unit]" '
             "in the study's [channels].",
@@ -227,9 +226,9 @@ def sorted_trial(
     step_s = float(time[1] - time[0]) if len(time) >= FEW else 0.0
     if measured and step_s > SLOWEST_S:
         raise SamplingError(
-            f"{source.file}: {measured} of a walk needs a sample every {SLOWEST_S:g} s or more often",
-            f"times are {step_s:g} s apart, and {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
-            "If they are ms, name the column 'time [ms]'.",
+            f"{source.file}: {measured} of a walk must have a sample at least every {SLOWEST_S:g} s",
+            f"its times are {step_s:g} s apart, so {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
+            "If the times are in ms, name the column 'time [ms]'.",
         )
     columns: dict[str, list[int]] = {}
     for i, channel in enumerate(channels):
@@ -248,7 +247,7 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
     if doubled:
         first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
         raise ChannelError(
-            "each channel needs a column of its own",
+            "each channel must have its own column",
             f"{file} has {doubled!r} in columns {first} and {second}",
             "Remove one of them, or name them differently in the study's [channels].",
         )
@@ -262,7 +261,8 @@ def _refuse_missing_force(
         if channel.quantity in ("force", "vertical_force") and missing.any():
             first = int(np.argmax(missing))
             raise ReadError(
-                f"{file}: {channel.name} needs a number in every sample",
-                f"{missing.sum()} of {len(time)} are missing, first in sample {first + 1} at t = {time[first]:.6g} s",
+                f"{file}: {channel.name} must have a number in every sample",
+                f"{missing.sum()} of {len(time)} samples are missing, the first is sample {first + 1} at t = "
+                f"{time[first]:.6g} s",
                 "Export the force again without gaps (0 where the foot is in the air).",
             )

@@ -135,7 +135,7 @@ def force_plates(
         own = columns[place][:wanted] if place < len(columns) else np.empty(0)
         why = ""
         if not wanted:
-            why = f"is of type {kind}; types 1 to 4 are known"
+            why = f"is of type {kind}, but only types 1 to 4 are known"
         elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
             why = f"names channels {', '.join(format(one, 'g') for one in own)} of {channels}"
         elif any(int(one) - 1 in unscaled for one in own):
@@ -160,7 +160,7 @@ def force_plates(
             if not why:
                 plates.append(plate)
         if why:
-            what = f"force plate {place + 1} {why}; its channels stay signals"
+            what = f"force plate {place + 1} {why}; its channels remain signals"
             findings.append(Finding("warning", "force plate", file, what, "its ground forces; correct FORCE_PLATFORM"))
     return plates, findings or _undescribed(parameters, used, max(len(kinds), len(columns), len(corners)), file)
 
@@ -170,20 +170,16 @@ def _undescribed(parameters: C3DParameters, used: int, described: int, file: str
     named = zip(parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS"), strict=False)
     forces = [label for label, unit in named if unit.strip() == "N" and re.search(r"(?i)f[-_. ]?[xyz]", label)]
     if used < described:
-        what = f"FORCE_PLATFORM:USED counts {used} force plates, the group describes {described}"
+        what = f"FORCE_PLATFORM:USED is {used}, but the group describes {described} plates"
     elif forces and not used:
-        what = f"no force plate is described, though {len(forces)} channels are forces in N, as {forces[0].strip()!r}"
+        what = f"no force plate is described, but {len(forces)} channels are forces in N, such as {forces[0].strip()!r}"
     else:
         return []
-    return [Finding("warning", "force plate", file, what, "the ground forces left out; correct FORCE_PLATFORM")]
+    return [Finding("warning", "force plate", file, what, "the excluded ground forces; correct FORCE_PLATFORM")]
 
 
 def plate_streams(
-    rows: NDArray[np.float64],
-    plates: list[ForcePlate],
-    parameters: C3DParameters,
-    length_unit: str,
-    file: str,
+    rows: NDArray[np.float64], plates: list[ForcePlate], parameters: C3DParameters, length_unit: str, file: str
 ) -> tuple[Streams, set[int], list[Finding]]:
     """Stream `forces` of the plates: ground on foot, vertical positive up.
 
@@ -220,11 +216,11 @@ def plate_streams(
         channels += _channels(plate)
     turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
     if turned:
-        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; turned around"
+        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; its sign is reversed"
         findings.append(Finding("note", "force sign", file, what, ""))
     if up and not any(up):
-        what = f"no plate carried {CLEAR_LOAD_N:g} N; the sign of the forces could not be checked"
-        findings.append(Finding("note", "force sign", file, what, "nothing, as nobody stepped on it"))
+        what = f"no plate was loaded with {CLEAR_LOAD_N:g} N, so the sign of the forces could not be checked"
+        findings.append(Finding("note", "force sign", file, what, "nothing, because nobody stepped on a plate"))
     streams: Streams = {"forces": (np.hstack(parts), tuple(channels))} if parts else {}
     return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
 
@@ -261,7 +257,8 @@ def _units(
         unit = parsed_unit(text) if text else expected
         if unit is None or inner_unit(unit) != inner_unit(expected):
             what = (
-                f"force plate {plate.number} has channel #{column + 1} in {text!r} where {expected} is meant; not used"
+                f"force plate {plate.number} has channel #{column + 1} in {text!r} instead of {expected}; it is not "
+                "used"
             )
             return (), [Finding("warning", "force plate", file, what, "its ground forces; correct ANALOG:UNITS")]
         found.append(unit)
@@ -282,8 +279,8 @@ def _zeroed(
     offset = values[first:last].mean(axis=0)
     load = float(np.abs(plate.wrench(offset[None], units)[0][0, 2]))
     if load > CLEAR_LOAD_N:
-        what = f"force plate {plate.number} carries {load:.0f} N in samples {first + 1} to {last}, its zero"
-        return values, [Finding("note", "plate zero", file, what, "the plate's offset is not removed")]
+        what = f"force plate {plate.number} carries {load:.0f} N in samples {first + 1} to {last}, its zero level"
+        return values, [Finding("note", "plate zero", file, what, "the offset of the plate, which is not removed")]
     return values - offset, []
 
 
@@ -303,14 +300,13 @@ def _with_origin(
         return plate, []
     turned = replace(plate, origin=-plate.origin)
     if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
-        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; turned around"
-        return turned, [
-            Finding("note", "plate origin", file, what, "nothing; the centre of pressure lies on the plate")
-        ]
-    what = f"force plate {plate.number}: in {beside:.0%} of the loaded samples the centre of pressure lies beside it"
-    return plate, [
-        Finding("warning", "centre of pressure", file, what, "joint moments; check offset, ORIGIN and units")
-    ]
+        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; its sign is reversed"
+        return turned, [Finding("note", "plate origin", file, what, "nothing; the centre of pressure is inside")]
+    what = (
+        f"force plate {plate.number}: the centre of pressure lies outside the plate in {beside:.0%} of the loaded "
+        "samples"
+    )
+    return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
 
 
 def _exchanged(measured: Sequence[tuple[ForcePlate, NDArray[np.float64], tuple[str, ...]]], file: str) -> list[Finding]:
@@ -321,9 +317,11 @@ def _exchanged(measured: Sequence[tuple[ForcePlate, NDArray[np.float64], tuple[s
         if one.kind != other.kind or astray < STRAY:
             continue
         if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
-            what = f"force plates {one.number} and {other.number} are swapped: the centre of pressure lies beside each "
-            what += f"in {astray:.0%} of the loaded samples, and on each with their channels exchanged"
-            spoils = "which foot is on which plate, moments and powers; correct FORCE_PLATFORM:CHANNEL"
+            what = (
+                f"force plates {one.number} and {other.number} are exchanged: the centre of pressure is outside each "
+            )
+            what += f"in {astray:.0%} of the loaded samples, but inside once their channels are exchanged"
+            spoils = "the assignment of feet to plates, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))
     return findings
 

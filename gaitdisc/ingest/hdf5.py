@@ -26,7 +26,7 @@ def is_hdf5(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(len(SIGNATURE)) == SIGNATURE
     except OSError as error:
-        raise ReadError(f"{path.name} is to be read", str(error.strerror), "Correct the path.") from error
+        raise ReadError(f"{path.name} cannot be read", str(error.strerror), "Correct the path.") from error
 
 
 @contextmanager
@@ -36,7 +36,7 @@ def hdf5_file(path: Path) -> Iterator[Any]:
         import h5py
     except ImportError as error:
         raise ReadError(
-            f"{path.name} is HDF5, which needs the library h5py",
+            f"{path.name} is an HDF5 file, which requires the library h5py",
             f"it cannot be imported ({error})",
             "Install the extra: pip install 'gaitdisc[fields]'.",
         ) from error
@@ -63,15 +63,15 @@ def data_set(file: Any, name: str, path: Path) -> NDArray[Any]:
         kind = getattr(getattr(held, "dtype", None), "kind", "")
         if kind not in tuple("iuf"):
             raise ReadError(
-                f"{path.name}: {name!r} is to be a data set of numbers",
-                f"it is {'of another type' if kind else 'none'}",
-                "Fetch the file again; it may be damaged.",
+                f"{path.name}: {name!r} must be a data set of numbers",
+                f"it is {'of another type' if kind else 'missing'}",
+                "Download or copy the file again. It may be damaged.",
             )
         if held.nbytes > LARGEST_BYTES:
             raise ReadError(
-                f"{path.name}: a data set of at most {LARGEST_BYTES} bytes is read",
+                f"{path.name}: a data set may have at most {LARGEST_BYTES} bytes",
                 f"{name!r} claims {held.nbytes}",
-                "Cut a part out of it, or fetch the file again; it may be damaged.",
+                "Extract a part of it, or download the file again. It may be damaged.",
             )
         return np.asarray(held[()])
 
@@ -98,7 +98,7 @@ def _text_in_time(path: Path, name: str, attribute: str) -> str:
     if "text" in answer:
         return str(answer["text"])
     found = f"attribute {attribute!r} of {name!r} cannot be read: {answer['said']}"
-    raise ReadError(f"{path.name} is to be read as HDF5", found, "Fetch the file again; it is damaged.")
+    raise ReadError(f"{path.name} must be an HDF5 file", found, "Download or copy the file again. It is damaged.")
 
 
 @contextmanager
@@ -111,5 +111,7 @@ def _in_words(path: Path) -> Iterator[None]:
     except Exception as error:
         said = " ".join(str(error).split())[:200] or type(error).__name__
         raise ReadError(
-            f"{path.name} is to be read as HDF5", f"it cannot be: {said}", "Fetch the file again; it may be cut short."
+            f"{path.name} must be an HDF5 file",
+            f"it cannot be read: {said}",
+            "Download or copy the file again. It may be incomplete.",
         ) from error

@@ -99,9 +99,7 @@ def found_study(
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise ReadError(
-            f"a folder of recordings is needed, {folder.name} is none", "it is absent or a file", "Name it."
-        )
+        raise ReadError(f"{folder.name} must be a folder", "it does not exist, or is a file", "Correct the path.")
     notes: list[str] = []
     files = recording_files(folder) if files is None else files
     tables = [path for path in files if is_people_table(path)]
@@ -112,9 +110,9 @@ def found_study(
     if not found:
         unread = f"; {notes[0]}" if notes else ""
         raise ReadError(
-            f"recordings are needed in {folder.name}: files that end in {', '.join(ENDINGS)}",
-            f"none there can be read{unread}",
-            "Name the folder that holds them.",
+            f"{folder.name} must contain recordings: files that end in {', '.join(ENDINGS)}",
+            f"none of its files can be read{unread}",
+            "Name the folder that contains them.",
         )
     groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
     alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
@@ -153,7 +151,7 @@ def found_study(
     ).placed(home)
     lacking = study.one_condition_only()
     if lacking:
-        notes.append(f"one condition only, so not compared: {', '.join(lacking)}")
+        notes.append(f"present in one condition only, therefore not compared: {', '.join(lacking)}")
     return study, notes
 
 
@@ -198,10 +196,10 @@ def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked:
             notes += said
     standing = [each.files[0].as_posix() for each in found if each.which == STATIC]
     if standing:
-        notes.append(f"standing, so {STATIC!r}: {', '.join(standing)}")
+        notes.append(f"standing trials, set to {STATIC!r}: {', '.join(standing)}")
     circled = [each.files[0].as_posix() for each in found if each.which == FUNCTIONAL]
     if circled:
-        notes.append(f"legs circled about the hips by their names, so {FUNCTIONAL!r}: {', '.join(circled)}")
+        notes.append(f"circling legs according to the file names, set to {FUNCTIONAL!r}: {', '.join(circled)}")
     order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")
     return sorted(found, key=lambda each: order.index(each.which))
 
@@ -297,18 +295,18 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
         there = list(dict.fromkeys(trial.word for trial in walks if trial.which == which))
         recognised |= {which: there[0]} if there else {}
         if len(there) > 1:
-            notes.append(f"{', '.join(there)} are all taken as {recognised[which]!r}")
+            notes.append(f"{', '.join(there)} are all set to {recognised[which]!r}")
     counts = Counter(trial.word for trial in walks if not trial.which and trial.word)
     others = sorted(counts, key=lambda word: (-counts[word], word))
     if not recognised and set(others) <= {PLAIN}:
         others = [PLAIN]
-        notes.append(f"no file or folder name shows a condition: every walk is taken as {PLAIN!r}")
+        notes.append(f"no file or folder name shows a condition, so every walk is set to {PLAIN!r}")
     words = list(dict.fromkeys([*recognised.values(), *others]))
     folders = [word for word in others if word not in (*WALK_WORDS, PLAIN)]
     if folders:
         notes.append(
-            f"conditions called after folders: {', '.join(folders)}; they stand on every page: change any that shows "
-            f"who a person is"
+            f"conditions named after folders: {', '.join(folders)}. They are shown on every page; change any that "
+            "identifies a person"
         )
     device = recognised.get("device") if len(words) > 1 else None
     reference = next(word for word in words if word != device)
@@ -319,8 +317,8 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
     unnamed = [trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN]
     if unnamed:
         notes.append(
-            f"condition unknown, listed but not used: {', '.join(unnamed)}. For all of them at once write in "
-            f'[conditions]: unnamed = "{reference}"'
+            f"condition unknown; these trials are listed but not used: {', '.join(unnamed)}. To set it for all, write "
+            f'in [conditions]: unnamed = "{reference}"'
         )
     return Conditions(nominal=reference, device=device, others=rest), called
 
@@ -348,43 +346,43 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
     ids = {who: who[1] if who[1] in taken else next(free) for who in people}
     renamed = [new for (_, old), new in ids.items() if old and old != new]
     if renamed:
-        notes.append(f"folder names that are no pseudonyms became {', '.join(renamed)}; the paths still hold them")
+        notes.append(f"folder names that are not pseudonyms became {', '.join(renamed)}; the paths still contain them")
     twice = [f"{new} ({group or 'no group'})" for (group, old), new in ids.items() if named[old.lower()] > 1]
     if twice:
-        notes.append(f"one name in several groups, taken for several people: {', '.join(twice)}")
+        notes.append(f"the same name in several groups, taken as several people: {', '.join(twice)}")
     kept = [word for _, word in people if word in taken]
     if kept:
-        notes.append(f"taken as pseudonyms as they are: {', '.join(kept)}; change any that shows who a person is")
+        notes.append(f"used unchanged as pseudonyms: {', '.join(kept)}; change any that identifies a person")
     nobody = [new for (_, old), new in ids.items() if not old]
     if nobody:
-        notes.append(f"files whose path names no person were put under {', '.join(nobody)}")
+        notes.append(f"files whose path names no person were assigned to {', '.join(nobody)}")
     return ids
 
 
 def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
     varying = [trial.varying for trial in found if trial.varying is not None]
     if not varying:
-        notes.append("no file holds joint angles: the draft names the usual ones; those of markers are computed")
+        notes.append("no file contains joint angles; the draft names the usual ones; markers are used to compute them")
         return Models()
     first = next(trial.angles for trial in found if trial.angles is not None)
     shared = [name for name in varying[0] if all(name in names for names in varying)]
     constant = sorted(set(first) - set(varying[0]))
     if constant:
-        notes.append(f"left out because they are constant or copies: {', '.join(constant)}")
+        notes.append(f"excluded because they are constant or copies: {', '.join(constant)}")
     angles = tuple(name for name in ANGLES if name in shared) or tuple(shared)
     absent = [name for name in ANGLES if name not in shared]
     if absent:
-        notes.append(f"left out because not every trial has them, varying: {', '.join(absent)}")
+        notes.append(f"excluded because some trials lack them; they vary: {', '.join(absent)}")
     known = {channel.name for channel in vocabulary().channels}
     more = [name for name in shared if name not in angles]
     if more:
         named = [name for name in more if name in known]
-        others = f"{len(more) - len(named)} of the files' own" if len(more) > len(named) else ""
+        others = f"{len(more) - len(named)} from the files" if len(more) > len(named) else ""
         said = ", ".join(part for part in (*named, others) if part)
-        notes.append(f"not among the inputs of section 4.2.2, add them to angles if wanted: {said}")
+        notes.append(f"not used by the response models; add them to angles if you need them: {said}")
     outputs = tuple(name for name in OUTPUTS if name in angles)
     if not angles:
-        notes.append("the trials share no joint angle that varies: the draft names the usual ones")
+        notes.append("the trials share no joint angle that varies; the draft names the usual ones")
         return Models()
     emg = _shared_emg(found, notes)
     of_side = tuple(
@@ -411,9 +409,9 @@ def _shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...
     if not streams:
         return ()
     if len(streams) < len(found):
-        notes.append(f"EMG in {len(streams)} of {len(found)} trials only, so it is not among the inputs")
+        notes.append(f"only {len(streams)} of {len(found)} trials have EMG, so it is not among the inputs")
         return ()
     known = {channel.name for channel in vocabulary().channels}
     shared = tuple(n for n in streams[0] if all(n in other for other in streams) and n in known)
-    notes.append(f"EMG among the inputs: {', '.join(shared) or 'none by a known name; map the labels in [channels]'}")
+    notes.append(f"EMG among the inputs: {', '.join(shared) or 'none with a known name; map the labels in [channels]'}")
     return shared

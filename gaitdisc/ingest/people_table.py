@@ -123,7 +123,7 @@ def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> di
         for word, one in read.items():
             before = found.setdefault(word, one)
             if before != one:
-                notes.append(f"{file.as_posix()}: {word!r} differs from another table, which counts")
+                notes.append(f"{file.as_posix()}: {word!r} differs from another table; the other value is used")
     return found
 
 
@@ -145,8 +145,8 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
     }
     if at["id"] is None or all(at[key] is None for key in ("mass", "sex", "height", "age")):
         notes.append(
-            f"{file} holds no column for who (such as participant_id) beside one of mass_kg, sex, height_m, age: "
-            f"its columns are {', '.join(labels[:8])}"
+            f"{file} has no column that names the person (such as participant_id) together with mass_kg, sex, "
+            f"height_m or age; its columns are {', '.join(labels[:8])}"
         )
         return {}
     found: dict[str, list[Measured]] = {}
@@ -191,7 +191,7 @@ def _number(text: str, where: str, what: str, notes: list[str]) -> float | None:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        notes.append(f"{where}: {what} {text!r} is no number; not used")
+        notes.append(f"{where}: {what} {text!r} is not a number; not used")
         return None
     return value
 
@@ -201,7 +201,7 @@ def _within(text: str, what: str, limits: tuple[float, float, str], where: str, 
     if value is None or low <= value <= high:
         return value
     article = "an" if what[0] in "ae" else "a"
-    notes.append(f"{where}: {article} {what} of {value:g} is none of {low:g} to {high:g} {unit}; not used")
+    notes.append(f"{where}: {article} {what} of {value:g} is not between {low:g} and {high:g} {unit}; not used")
     return None
 
 
@@ -216,14 +216,14 @@ def _height(text: str, label: str, where: str, notes: list[str]) -> float | None
         if low <= value * factor <= high:
             return round(value * factor, 4)
     unit = stated[1] if stated else "m, cm or mm"
-    notes.append(f"{where}: a stature of {value:g} {unit} is none of {low:g} to {high:g} m; not used")
+    notes.append(f"{where}: a stature of {value:g} {unit} is not between {low:g} and {high:g} m; not used")
     return None
 
 
 def _sex(text: str, where: str, notes: list[str]) -> Sex:
     found = _SEX.get(text.lower(), "")
     if not found and text.lower() not in _MISSING:
-        notes.append(f"{where}: sex {text!r} is neither f nor m; the mean of both is taken")
+        notes.append(f"{where}: sex {text!r} is neither f nor m; the mean of both is used")
     return found
 
 

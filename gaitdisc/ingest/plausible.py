@@ -179,8 +179,8 @@ def _frozen_finding(recording: Recording, place: int, still: NDArray[np.bool_]) 
     marker = channel.quantity == "marker"
     value = "one place" if marker else f"{recording.values[int(np.argmax(still)), place]:.4g} {channel.unit}"
     more = f", and in {others} more stretch{'es' if others > 1 else ''}" if others else ""
-    what = f"stands still at {value} from {start:.3f} to {end:.3f} s{more}; no measurement repeats itself for so long; "
-    what += "taken as missing"
+    what = f"is constant at {value} from {start:.3f} to {end:.3f} s{more}; no measurement is constant for so long; "
+    what += "treated as missing"
     name = channel.name.removesuffix(".x") if marker else channel.name
     return Finding("warning", "frozen", recording.source.file, what, "these frames; fill the gap", name, spans)
 
@@ -195,8 +195,8 @@ def _other_unit(recording: Recording, place: int) -> Finding:
     assert limits is not None  # it was found beyond them
     most = float(np.nanmax(np.abs(recording.values[:, place])))
     thousandth = channel.unit == "V" and most <= 1e3 * limits.high
-    looks = "it looks like mV, or these may be counts" if thousandth else "these may be counts"
-    what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} is within {limits.high:g}, so {looks}"
+    looks = "it looks like mV or counts" if thousandth else "it may be in counts"
+    what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} stays within {limits.high:g}, so {looks}"
     spoils = "its amplitude; state the unit in the file or in [channels]"
     return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
 
@@ -209,20 +209,24 @@ def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before
     count, unit = int(beyond.sum()), "" if channel.unit == "1" else f" {channel.unit}"
     more = f", as {'is' if count == 2 else 'are'} {count - 1} more of {len(beyond)} frames" if count > 1 else ""
     where = (
-        f"{recording.values[first, place]:.6g}{unit} in frame {before + first + 1} (t = {recording.time[first]:.6g} s) "
-        f"is beyond what it can be, {limits.low:g} to {limits.high:g}{unit}{more}"
+        f"{recording.values[first, place]:.6g}{unit} in frame {before + first + 1} (t = {recording.time[first]:.6g} "
+        f"s) is outside the possible range, {limits.low:g} to {limits.high:g}{unit}{more}"
     )
     if other_plates and _PLATE.match(channel.name):
-        spoils = "the plate: it is left out; zero it, or correct the cell or the unit and export again"
+        spoils = "the plate, which is excluded; zero it, or correct the cell or the unit and export again"
         return Finding("refused", "out of range", file, where, spoils, channel.name)
     if channel.quantity in ("force", "vertical_force") and channel.unit == "N":
         raise ReadError(
-            f"{file}: {channel.name} needs a plausible force in every sample",
+            f"{file}: {channel.name} must have a plausible force in every sample",
             where,
             "Correct the cell or the unit and export the force again.",
         )
-    spoils = "the unit or the name of the channel, if most of it is" if beyond.mean() > 0.5 else "these frames"
-    spans, what = spans_s(recording.time, beyond), f"{where}; taken as missing"
+    spoils = (
+        "the unit or the name of the channel, if most of its samples are affected"
+        if beyond.mean() > 0.5
+        else "these frames"
+    )
+    spans, what = spans_s(recording.time, beyond), f"{where}; treated as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans)
 
 
@@ -251,29 +255,30 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     senses = {name: _sense(*reach) for name, reach in reaches.items()}
     proven = {sense for sense in senses.values() if sense}
     turned = [name for name, sense in senses.items() if sense == -1 or (sense == 0 and proven == {-1})]
-    spans = {name: f"goes from {low:.0f} to {high:.0f} deg" for name, (low, high) in reaches.items()}
+    spans = {name: f"ranges from {low:.0f} to {high:.0f} deg" for name, (low, high) in reaches.items()}
     file, findings = kinematics.source.file, []
     for name in (name for name, sense in senses.items() if sense is None):
         what = (
-            f"{spans[name]}; a knee bends beyond {HYPEREXTENDED_DEG:g} deg to one side only, so its sign is not known "
-            "and it is left as it is"
+            f"{spans[name]}; a knee bends beyond {HYPEREXTENDED_DEG:g} deg in one direction only, so the sign is "
+            "unknown and not changed"
         )
-        spoils = "whatever rests on the knee; correct the file, or leave the damaged part out by crop_s"
+        spoils = "everything that depends on the knee; correct the file, or exclude the damaged part with crop_s"
         findings.append(Finding("warning", "knee sign", file, what, spoils, name))
     if not turned:
         return dict(streams), findings
     moved = {key: _turned(recording, turned) for key, recording in streams.items()}
     for name in turned:
         others = [c for key in moved for c in moved[key][1] if _of_knee(c) == name and c != name]
-        why = (
-            ", so flexion is negative in this file" if senses[name] == -1 else " and follows the other knee of the file"
-        )
+        why = ", so flexion is negative in this file" if senses[name] == -1 else " and follows the other knee"
         also = f"; with it {', '.join(others)}" if others else ""
-        what = f"{name} {spans[name]}{why}; turned around, flexion is positive here{also}"
+        what = f"{name} {spans[name]}{why}; its sign is reversed, so that flexion is positive{also}"
         findings.append(Finding("note", "knee sign", file, what, "", name))
     if proven == {1, -1}:
         kept, other = (", ".join(name for name, sense in senses.items() if sense == way) for way in (1, -1))
-        what = f"flexion is positive in {kept} and negative in {other} of one file; only the latter was turned"
+        what = (
+            f"flexion is positive in {kept} and negative in {other} of one file; only the sign of the latter was "
+            "reversed"
+        )
         findings.append(Finding("warning", "knee sign", file, what, "the knees if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings
 

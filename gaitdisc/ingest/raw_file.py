@@ -8,8 +8,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ReadError
+from gaitdisc.channel import hint_nearest
+from gaitdisc.errors import MissingFileError, ReadError
 from gaitdisc.recording import Source
 from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 
@@ -38,9 +38,9 @@ class RawFile:
         """Return the lines of a text file, without their ends."""
         if b"\0" in self.content:
             raise ReadError(
-                f"{self.name} should be a plain text file",
-                f"it holds binary data (a zero byte at offset {self.content.index(0)})",
-                "Export it again as plain text (UTF-8, not UTF-16), or give the file its true ending.",
+                f"{self.name} must be a plain text file",
+                f"it contains binary data (a zero byte at offset {self.content.index(0)})",
+                "Export it again as plain text (UTF-8, not UTF-16), or correct the file name's ending.",
             )
         try:
             text = self.content.decode("utf-8-sig")
@@ -55,23 +55,25 @@ def read_raw(path: Path | str, largest_bytes: int = LARGEST_TEXT_BYTES) -> RawFi
     >>> read_raw("walk.mot")
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ReadError: walk.mot is to be read; there is no such file. Check the name and the folder.
+    gaitdisc.errors.MissingFileError: walk.mot cannot be read; there is no such file. Check the name and the folder.
     """
     path = Path(path)
-    needed = f"{path.name or path} is to be read"
+    needed = f"{path.name or path} cannot be read"
     try:
         if not path.is_dir():
             check_regular(path, largest_bytes)
         content = path.read_bytes()
     except FileNotFoundError as error:
-        raise ReadError(needed, "there is no such file" + _near(path), "Check the name and the folder.") from error
+        raise MissingFileError(
+            needed, "there is no such file" + _near(path), "Check the name and the folder."
+        ) from error
     except IsADirectoryError as error:
-        raise ReadError(needed, "it is a folder", "Name the file inside of it.") from error
+        raise ReadError(needed, "it is a folder", "Name a file inside it.") from error
     except ReadError:
         raise
     except (OSError, ValueError) as error:
         words = error.strerror if isinstance(error, OSError) else str(error)
-        raise ReadError(needed, f"the system says: {words}", "Check the name and the right to read it.") from error
+        raise ReadError(needed, f"the operating system reports: {words}", "Check name and permissions.") from error
     if not content.strip():
         raise ReadError(needed, f"it is empty ({len(content)} bytes)", "Export or copy it again.")
     return RawFile(path.name, content, known_sha256(path))
@@ -81,9 +83,8 @@ def _near(path: Path) -> str:
     try:
         names = [entry.name for entry in path.parent.iterdir()]
     except OSError:
-        return ", nor its folder"
-    nearest = nearest_word(path.name, names)
-    return f", the nearest is {nearest!r}" if nearest else ""
+        return ", and no such folder"
+    return hint_nearest(path.name, names)
 
 
 def file_sha256(path: Path) -> str:

@@ -86,9 +86,9 @@ class ReaderProcess:
         code = self._stop()
         thread.join(5)
         if late:
-            said = f"it had not finished after {request.clock_s:.3g} s"
+            said = f"it did not finish within {request.clock_s:.3g} s"
         elif code == -getattr(signal, "SIGXCPU", np.inf):
-            said = f"it had not finished after {request.limit_s:.3g} s of processor time"
+            said = f"it did not finish within {request.limit_s:.3g} s of processor time"
         else:
             said = f"it crashed (exit code {code})"
         return {"said": said}, []

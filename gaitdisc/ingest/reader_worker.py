@@ -148,7 +148,7 @@ def _tree(held: Any, arrays: list[NDArray[Any]]) -> Any:
     if held.dtype.kind == "O":
         return {"cells": [_tree(one, arrays) for one in held.ravel(order="F")]}
     if held.dtype.kind not in "biuf":
-        words = {"U": "text", "S": "text", "c": "complex numbers, which no recording has"}
+        words = {"U": "text", "S": "text", "c": "complex numbers, which a recording cannot contain"}
         return words.get(held.dtype.kind, f"an array of {held.dtype}")
     arrays.append(held)
     return len(arrays) - 1
@@ -172,7 +172,7 @@ def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Any]:
                 return read_c3d(reader, request["path"], *request["wanted"])
             return {"arrays": read_arrays, "hdf5 text": read_hdf5_text}[reader](request["path"], *request["wanted"])
     except MemoryError:
-        return {"said": "it ran out of the memory that a file of this size may take"}, ()
+        return {"said": "it exceeded the memory limit for a file of this size"}, ()
     except Exception as error:  # whatever a reader raises is its opinion of the file
         return {"said": f"it stopped with {type(error).__name__}: {error}"}, ()
 

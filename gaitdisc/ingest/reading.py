@@ -48,14 +48,14 @@ def read_trial(
     reader: C3DReader | None = None,
     part: str = "",
 ) -> Trial:
-    """Trial of one walk, from one file or from several that were recorded at once.
+    """Trial of one walk, from one file or from several that were recorded together.
 
     Parameters
     ----------
     paths : path, DataFrame, or sequence of these
-        Files of the walk: its inverse kinematics, ground forces and EMG, say. Clocks are taken as they are. A DataFrame
-        has times in a column `time` [s] or in an index of that name, and a channel a column: a name of the vocabulary
-        (`knee_angle_r` in deg), or `name [unit]`.
+        Files of the walk, for example inverse kinematics, ground forces and EMG, with their clocks unchanged. A
+        DataFrame has times in a column `time` [s] or in an index of that name, and one column per channel: a name of
+        the vocabulary (`knee_angle_r` in deg), or `name [unit]`.
     channels : mapping of str to str, optional
         The study's `[channels]`: label -> `name` or `name [unit]`.
     subject, condition : str
@@ -63,9 +63,9 @@ def read_trial(
     crop_s : (float, float), optional
         Start and end of the part to keep, on the files' clock [s].
     reader : C3DReader, optional
-        A running reader process to use again; without it one is started for each C3D, `.mat` or `.npz` file.
+        A running reader process; by default one is started for each C3D, `.mat` or `.npz` file.
     part : str
-        Which trial of a `.mat` or `.npz` file that holds several, as `read_arrays` takes it.
+        Trial inside a `.mat` or `.npz` file that contains several, as in `read_arrays`.
 
     Returns
     -------
@@ -75,13 +75,13 @@ def read_trial(
     Raises
     ------
     ReadError
-        If a file cannot be read, its ending is none that is known, or the only ground force is beyond what it can be.
+        If a file cannot be read, its ending is unknown, or the only ground force is outside the possible range.
     ChannelError
-        If two files give the same channel.
+        If two files contain the same channel.
     SamplingError
-        If two files give one stream on different time bases, or nothing lies inside of the crop.
+        If two files contain one stream on different time bases, or the crop is empty.
     UnitError
-        If a unit is absent, unknown or contradicted.
+        If a unit is missing, unknown or contradicted.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def read_trial(
     """
     files = list(paths) if isinstance(paths, list | tuple) else [paths]
     if not files:
-        raise ReadError("a trial needs a file", "none is named", "Name its files in the study.")
+        raise ReadError("a trial must have at least one file", "none is named", "Name its files in the study.")
     parts = [_read(file, channels, reader, part) for file in files]
     streams: dict[str, Recording] = {}
     findings = [finding for one in parts for finding in one.findings]
@@ -103,7 +103,7 @@ def read_trial(
             if key not in streams:
                 streams[key] = recording
             elif key == "signals" and not _one_base(streams[key], recording):
-                what = f"{', '.join(recording.names[:4])} left out: their time base differs"
+                what = f"{', '.join(recording.names[:4])} are excluded because their time base differs"
                 findings.append(Finding("note", "left out", recording.source.file, what, "these signals"))
             else:
                 streams[key] = _joined(streams[key], recording, key)
@@ -145,9 +145,9 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
     if ending not in READERS:
         nearest = nearest_word(ending, ENDINGS) if ending else None
         raise ReadError(
-            f"{path.name} is to be read; known endings are {', '.join(ENDINGS)}",
+            f"the file type of {path.name} must be one of {', '.join(ENDINGS)}",
             f"its ending is {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
-            "Export it as one of these.",
+            "Export it in one of these formats.",
         )
     return READERS[ending](path, channels)
 
@@ -158,9 +158,9 @@ def _frame(given: object) -> pd.DataFrame:
     if isinstance(given, pd.DataFrame):
         return given
     raise ReadError(
-        "a walk is read from files or DataFrames",
+        "a walk can be read from files or DataFrames",
         f"found {type(given).__name__}",
-        "Give a path, or a DataFrame with a column 'time' [s] and one column a channel.",
+        "Give a path, or a DataFrame with a column 'time' [s] and one column per channel.",
     )
 
 
@@ -174,17 +174,17 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
     files = f"{one.source.file} and {other.source.file}"
     if not _one_base(one, other):
         raise SamplingError(
-            f"two files that give {key} must share one time base",
+            f"two files that contain {key} must have one time base",
             f"{files} have {len(one.time)} samples from {one.time[0]:.4g} s at {one.rate_hz:g} Hz and "
             f"{len(other.time)} from {other.time[0]:.4g} s at {other.rate_hz:g} Hz",
-            f"Give one file with all {key}, or list them as two trials.",
+            f"Use one file with all {key}, or list them as two trials.",
         )
     doubled = sorted(set(one.names) & set(other.names))
     if doubled:
         raise ChannelError(
-            f"two files of one trial may give each channel of {key} once",
-            f"{files} both have {doubled[0]!r} ({len(doubled)} in all)",
-            "Leave one file out, or list them as two trials.",
+            f"two files of one trial must not contain the same channel of {key}",
+            f"{files} both contain {doubled[0]!r} ({len(doubled)} in all)",
+            "Remove one file, or list them as two trials.",
         )
     source = Source(
         f"{one.source.file} + {other.source.file}",
@@ -207,7 +207,7 @@ def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording]
     absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
     if not absent:
         return []
-    what = f"[channels] names {', '.join(map(repr, absent[:4]))}, which no file of this trial has"
+    what = f"[channels] names {', '.join(map(repr, absent[:4]))}, but no file of this trial contains them"
     return [Finding("note", "not found", name, what, "")]
 
 
@@ -217,7 +217,7 @@ def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
         if len(recording.time) < 2:
             whole = trial.streams[key]
             raise SamplingError(
-                f"{trial.name}: the crop from {start_s:g} to {end_s:g} s must lie inside of the {key}",
+                f"{trial.name}: the crop from {start_s:g} to {end_s:g} s must lie inside the {key}",
                 f"they last from {whole.time[0]:.4g} to {whole.time[-1]:.4g} s on the file's clock",
                 "Correct crop_s in the study.",
             )
@@ -234,17 +234,17 @@ WRITERS = {".mot": write_storage, ".sto": write_storage, ".csv": write_table, ".
 
 
 def write_recording(recording: Recording, path: Path | str, overwrite: bool = False) -> Path:
-    """Write a recording to a file that `read` reads again, whole or not at all.
+    """Write a recording to a file that `read` can read; never a partial file.
 
     Parameters
     ----------
     recording : Recording
-        Any channels, as they are: names, times [s], values. Marks of suspect samples, subject and condition are not
-        written.
+        Recording with any channels: names, times [s] and values are written; marks of suspect samples, subject and
+        condition are not.
     path : path
         `.mot` or `.sto` for OpenSim, `.csv` or `.parquet` with the unit of each column.
     overwrite : bool
-        Whether a file may be replaced that `write` did not write, or that was changed since.
+        Whether to replace a file that `write` did not write, or that was changed since.
 
     Returns
     -------
@@ -254,9 +254,9 @@ def write_recording(recording: Recording, path: Path | str, overwrite: bool = Fa
     Raises
     ------
     WriteError
-        If the ending is another one, or the file cannot or may not be written.
+        If the ending is unknown, or the file cannot be written.
     ChannelError
-        If a name cannot stand in such a file.
+        If a name is not allowed in such a file.
 
     Examples
     --------
@@ -269,9 +269,9 @@ def write_recording(recording: Recording, path: Path | str, overwrite: bool = Fa
     if ending not in WRITERS:
         nearest = nearest_word(ending, list(WRITERS)) if ending else None
         raise WriteError(
-            f"a recording is written to a file that ends with {', '.join(WRITERS)}",
+            f"the name of a recording's file must end with {', '.join(WRITERS)}",
             f"{Path(path).name} ends with {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
-            "Name it with one of these endings.",
+            "Use one of these endings.",
         )
     with guarded("gd.write", overwrite=overwrite):
         return WRITERS[ending](recording, path)

@@ -41,7 +41,7 @@ def plausible_unit(
     if not joints:
         if stated:
             return stated, None
-        raise _undecided(file, "it has no joint angle that would show it")
+        raise _undecided(file, "no joint angle of the file shows the unit")
     bounded = [i for i in joints if "_rot" not in names[i]] or joints  # an arm or a thigh may wind on by whole turns
     most = _largest(values[:, bounded])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
@@ -60,19 +60,19 @@ def plausible_unit(
         )
     if stated == "deg" and like_rad and moving:
         raise UnitError(
-            f"{file} states degrees, so hips and knees of a moving trial range over more than {WALKING_RAD[1]:g}",
+            f"{file} states degrees, so hips and knees of a moving trial must vary by more than {WALKING_RAD[1]:g}",
             f"their widest range is {reach:.3g} and no joint angle exceeds {most:.3g}, which looks like radians",
             "Write inDegrees=no (or [rad]) in its header, or export it again.",
         )
     if stated:
-        what = f"stated as degrees, but no angle ranges over more than {reach:.3g}"
+        what = f"the file states degrees, but no angle varies by more than {reach:.3g}"
         doubt = Finding("warning", "unit in doubt", file, what, "all angles if they are radians; check inDegrees")
         return stated, doubt if stated == "deg" and like_rad else None
     if not beyond and not like_rad:
         raise _undecided(file, f"the largest joint angle is {most:.3g}, the widest hip or knee range {reach:.3g}")
     unit = "deg" if beyond else "rad"
-    what = f"the header does not say degrees or radians; taken as {unit} (largest joint angle {most:.4g})"
-    return unit, Finding("warning", "unit inferred", file, what, "all angles if wrong; state inDegrees in the header")
+    what = f"the header does not state degrees or radians; read as {unit} (largest joint angle {most:.4g})"
+    return unit, Finding("warning", "unit inferred", file, what, "all angles, if wrong; state inDegrees in the header")
 
 
 def copied_coordinate_unit(
@@ -111,7 +111,7 @@ def _largest(values: NDArray[np.float64]) -> float:
 def _undecided(file: str, why: str) -> UnitError:
     return UnitError(
         f"{file} must state degrees or radians (inDegrees=yes or no)",
-        f"its header is silent and {why}",
+        f"its header states neither, and {why}",
         "Add the line inDegrees=yes or inDegrees=no before endheader.",
     )
 
@@ -134,7 +134,8 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
     """
     if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST):
         raise UnitError(
-            f"markers in {unit} are {'less' if unit == 'm' else 'more'} than {METRES_AT_MOST:g} {unit} from the origin",
+            f"markers in {unit} must be {'less' if unit == 'm' else 'more'} than {METRES_AT_MOST:g} {unit} from the "
+            "origin",
             f"those of {file} are {far:.4g} away, which looks like {'mm' if unit == 'm' else 'm'}",
             f"Correct {where} of the file.",
         )
@@ -151,8 +152,14 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """
     found = []
     for key, quantity, unit, (low, high), like in (
-        ("forces", "vertical_force", "N", FORCE_N, "is loaded as in steps, where a person presses with hundreds of N"),
-        ("moments", "moment", "N m", MOMENT_NM, "is the largest moment of the legs, where walking needs tens of N m"),
+        ("forces", "vertical_force", "N", FORCE_N, "is loaded as in steps, in which a person exerts hundreds of N"),
+        (
+            "moments",
+            "moment",
+            "N m",
+            MOMENT_NM,
+            "is the largest moment of the legs, although walking needs tens of N m",
+        ),
     ):
         if key not in streams:
             continue

@@ -17,8 +17,8 @@ from gaitdisc.channel import (
     QUANTITIES,
     Channel,
     folded_label,
+    hint_nearest,
     list_names,
-    nearest_word,
     path_label,
     side_of,
     vocabulary,
@@ -80,9 +80,9 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
         width = max(before)
         if len(before) == 1 and len(lines[-1]) < width:
             raise ReadError(
-                f"{raw.name}: every line has {width} characters",
-                f"the last one, line {cells.lines[-1]}, stops after {len(lines[-1])}",
-                "The file was cut: copy or export it again.",
+                f"{raw.name}: every line must have {width} characters",
+                f"the last one, line {cells.lines[-1]}, has {len(lines[-1])}",
+                "The file is incomplete. Copy or export it again.",
             )
     time = even_time(cells.values[:, 0], printed_digit(cells.first_column), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
@@ -121,11 +121,7 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
 
 
 def _in_true_unit(
-    columns: list[Column],
-    degrees: bool | None,
-    time: NDArray[np.float64],
-    values: NDArray[np.float64],
-    file: str,
+    columns: list[Column], degrees: bool | None, time: NDArray[np.float64], values: NDArray[np.float64], file: str
 ) -> tuple[list[Column], list[Finding]]:
     """Columns of angles (and of their rates) in the unit that the file really has."""
     turning = [i for i, c in enumerate(columns) if c.unit.startswith("deg") and "[" not in c.label]
@@ -178,10 +174,10 @@ def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
     """
     end = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
     if end is None:
-        nearest = nearest_word("endheader", [line.strip() for line in lines[:60] if len(line) < 30])
         raise ReadError(
-            f"{file} should be an OpenSim storage file, whose header ends with the line 'endheader'",
-            f"none of its {len(lines)} lines is that" + (f", the nearest is {nearest!r}" if nearest else ""),
+            f"{file} must be an OpenSim storage file, whose header ends with the line 'endheader'",
+            f"none of its {len(lines)} lines is 'endheader'"
+            + hint_nearest("endheader", [line.strip() for line in lines[:60] if len(line) < 30]),
             "Export it again from OpenSim, or rename it to .csv if it is a plain table.",
         )
     keys = list(_keys(lines[:end], file))
@@ -191,14 +187,14 @@ def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
     labels = [label.strip() for label in (labels_line.split("\t") if separator == "\t" else labels_line.split())]
     if at is None or not labels or labels[0].lower() != "time":
         raise ReadError(
-            f"{file} needs a line of labels after 'endheader', the first of them 'time'",
+            f"{file} must have a line of labels after 'endheader', the first of them 'time'",
             f"line {(at or end) + 1} begins with {(labels[0][:40] if labels else '')!r}",
             "Export it again, or write the labels there.",
         )
     names = [split_unit(label)[0] for label in labels]
     if len(labels) < 2 or not all(names):
-        blank = f"label {names.index('') + 1} is blank" if "" in names else "there is time alone"
-        raise ReadError(f"{file} needs a label for every column", f"line {at + 1}: {blank}", "Name the column.")
+        blank = f"label {names.index('') + 1} is blank" if "" in names else "time is the only column"
+        raise ReadError(f"{file}: every column must have a label", f"line {at + 1}: {blank}", "Name the column.")
     own = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
     return StorageHeader(
         title=next((line.strip() for line in lines[:end] if line.strip()), ""),
@@ -221,17 +217,17 @@ def _keys(lines: Sequence[str], file: str):
         if key in (*_ROWS, *_COLUMNS) and (sign or value):
             if not re.fullmatch(r"\d{1,12}", value):
                 raise ReadError(
-                    f"{file}: line {number} needs a whole number after {key!r}",
+                    f"{file}: line {number} must have a whole number after {key!r}",
                     f"found {value[:40]!r}",
-                    "Write the count, or take the line away.",
+                    "Write the count, or remove the line.",
                 )
             yield key, int(value)
         elif key == "indegrees" and sign:
             if value.lower() not in _YES_NO:
                 raise ReadError(
-                    f"{file}: line {number} needs inDegrees=yes or inDegrees=no",
+                    f"{file}: line {number} must be inDegrees=yes or inDegrees=no",
                     f"found {value[:40]!r}",
-                    "Write yes where the angles are in degrees, no where they are in radians.",
+                    "Write yes if the angles are in degrees, no if they are in radians.",
                 )
             yield key, _YES_NO[value.lower()]
 
@@ -274,7 +270,7 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
         findings.append(Finding("note", "guessed", file, what, "these channels if wrong; map them in [channels]"))
     sides = {column.channel.side for column in columns if column.label.lower().startswith("ground_force_v")}
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
-        what = "ground_force_ is taken as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"
+        what = "ground_force_ is read as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"
         findings.append(Finding("note", "guessed", file, what, "the sides if wrong; map them in [channels]"))
     return findings
 
@@ -292,7 +288,7 @@ def _column(
             return Column(label, replace(channel, unit="1"), "1")
         if channel.quantity != "signal" or unit:
             return column_in_unit(label, channel, unit or channel.unit, file)
-        return replace(_guessed(label, name, header.title), guessed="its name is in [channels], its unit is not")
+        return replace(_guessed(label, name, header.title), guessed="[channels] gives its name but not its unit")
     if number in header.own:
         quantity, own_unit, side = header.own[number]
         # the label is the name to the letter here, brackets and all: the header states the unit
@@ -313,7 +309,7 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
     if channel and channel.quantity == "emg":
         unit = _OF_ACTUATORS.get(title.lower())
         if unit:
-            return Column(label, Channel(plain, "signal", unit, channel.side), unit, f"{title} of a muscle, no EMG")
+            return Column(label, Channel(plain, "signal", unit, channel.side), unit, f"{title} of a muscle, not EMG")
         return Column(label, replace(channel, unit="1"), "1")
     if channel:
         return Column(label, channel, channel.unit)
@@ -327,15 +323,15 @@ def _muscle(label: str, plain: str) -> Column:
     of_right = vocabulary().named(f"{plain}_r")
     if of_right and of_right.quantity == "emg":
         channel = Channel(of_right.name.removesuffix("_r"), "emg", "1")
-        return Column(label, channel, "1", "the label names no side")
+        return Column(label, channel, "1", "the label does not name the side")
     name = plain if plain.startswith("emg_") else f"emg_{plain}"
-    return Column(label, Channel(name, "emg", "1", side_of(plain)), "1", "kept as EMG of an unknown muscle")
+    return Column(label, Channel(name, "emg", "1", side_of(plain)), "1", "read as EMG of an unknown muscle")
 
 
 def _guessed(label: str, name: str, title: str) -> Column:
     side = side_of(name)
     if name.endswith(("_moment", "_force")):
-        guess = "the generalised force of a copied rotation, taken in N m though OpenSim calls it a force"
+        guess = "the generalised force of a copied rotation, read in N m although OpenSim calls it a force"
         channel = named_channel(name)
         return Column(label, channel, channel.unit, guess if name.endswith("_beta_force") else "")
     ground = _GROUND.fullmatch(name)
@@ -343,9 +339,9 @@ def _guessed(label: str, name: str, title: str) -> Column:
         return _ground(label, name, ground)
     if title.lower() == "coordinates":
         if re.search(r"_t[xyz]$", name):
-            return Column(label, Channel(name, "translation", "m", side), "m", "taken as a translation in m")
-        return Column(label, Channel(name, "angle", "deg", side), "deg", "unknown coordinate, taken as an angle")
-    return Column(label, Channel(name, "signal", "1", side), "1", "unknown name, kept as a signal without a unit")
+            return Column(label, Channel(name, "translation", "m", side), "m", "read as a translation in m")
+        return Column(label, Channel(name, "angle", "deg", side), "deg", "unknown coordinate, read as an angle")
+    return Column(label, Channel(name, "signal", "1", side), "1", "unknown name, read as a signal without a unit")
 
 
 def _ground(label: str, name: str, found: re.Match[str]) -> Column:
@@ -353,7 +349,7 @@ def _ground(label: str, name: str, found: re.Match[str]) -> Column:
     kind, axis = found[1].lower(), found[2].lower()
     words = _GROUND_WORD.findall(name.lower())
     side = side_of(name)
-    guess = "taken as ground reaction by its name" + ("" if side else ", side unknown")
+    guess = "read as a ground reaction because of its name" + ("" if side else ", side unknown")
     if kind == "p":
         return Column(label, Channel(name, "pressure_centre", "m", side), "m", guess)
     if kind == "v" or (not kind and words[-1] == "force"):

@@ -44,12 +44,12 @@ class Conditions(_Part):
         description="the reference condition, without the device or with it passive; or the only condition"
     )
     device: Word | None = Field(
-        default=None, description="the condition with the device, where models compare it with the reference"
+        default=None, description="the condition with the device, which models compare with the reference"
     )
-    others: tuple[Word, ...] = Field(default=(), description="further conditions, of which cycles are pooled")
+    others: tuple[Word, ...] = Field(default=(), description="further conditions, whose cycles are pooled")
     unnamed: Word | None = Field(
         default=None,
-        description="condition of all trials that say 'unknown'; one of the words above. Without it they are not used",
+        description="condition of all trials marked 'unknown'; one of the words above. Without it they are not used",
     )
 
     @property
@@ -62,8 +62,8 @@ class Conditions(_Part):
         """Nominal, then device; a SchemaError where the study has no device."""
         if self.device is None:
             raise SchemaError(
-                "a comparison by models needs two conditions, nominal and device, in [conditions]",
-                f"the study has {', '.join(map(repr, self.words))} and no device",
+                "a comparison by models needs two conditions in [conditions], nominal and device",
+                f"the study has {', '.join(map(repr, self.words))}, but no device",
                 "Add device, or look at the pooled cycles of `gaitdisc run`.",
             )
         return self.nominal, self.device
@@ -73,27 +73,23 @@ class PlannedTrial(_Part):
     """One walk: the files that hold it, and what the files do not say."""
 
     condition: Word = Field(
-        description="a word of [conditions], 'static' for standing, 'functional' for legs circled about the hips, or "
-        "'unknown' for a trial that is not used"
+        description="a word of [conditions], 'static' (standing), 'functional' (circling legs), or 'unknown' (not used)"
     )
     session: Word | None = Field(default=None, description="a word of sessions, never a date")
-    files: tuple[FileName, ...] = Field(min_length=1, description="files of this one walk, relative to the study file")
+    files: tuple[FileName, ...] = Field(min_length=1, description="files of this walk, relative to the study file")
     part: Annotated[str, Field(max_length=40)] = Field(
         default="",
-        description="which trial of a .mat or .npz file that holds several: its number, or what * stands for in "
-        "[channels]",
+        description="trial in a .mat or .npz file with several: its number, or what * stands for in [channels]",
     )
     speed_m_per_s: Positive | None = Field(default=None, description="walking speed of this trial [m/s]")
     crop_s: tuple[float, float] | None = Field(
-        default=None, description="start and end of the part to use, file's clock [s]"
+        default=None, description="start and end of the part to use, on the file's clock [s]"
     )
 
     @model_validator(mode="after")
     def _check(self) -> PlannedTrial:
         if self.crop_s and self.crop_s[0] >= self.crop_s[1]:
-            refuse(
-                ("crop_s",), "a start before its end", f"found {list(self.crop_s)}", "Write [start, end] in seconds."
-            )
+            refuse(("crop_s",), "have a start before its end", f"found {list(self.crop_s)}", "Write [start, end] in s.")
         return self
 
 
@@ -101,21 +97,23 @@ class Participant(_Part):
     """A person, known by a pseudonym only."""
 
     id: Pseudonym = Field(description="pseudonym: letters, digits, _ and -, at most 16")
-    excluded: str = Field(default="", description="why this person is left out of the statistics; empty if not")
+    excluded: str = Field(
+        default="", description="reason why this person is excluded from the statistics; empty otherwise"
+    )
     group: Annotated[str, Field(max_length=40)] = Field(
         default="", description="group of this person, such as control; empty if there are none"
     )
     mass_kg: Annotated[float, Field(ge=5, le=300)] | None = Field(
-        default=None, description="body mass [kg], where the C3D files have none or a wrong one"
+        default=None, description="body mass [kg], if the C3D files state none or a wrong one"
     )
     height_m: Annotated[float, Field(ge=0.4, le=2.5)] | None = Field(
-        default=None, description="stature [m], where the C3D files have none or a wrong one"
+        default=None, description="stature [m], if the C3D files state none or a wrong one"
     )
     sex: Literal["", "f", "m"] = Field(
-        default="", description="f or m, for the inertia of the segments; empty takes the mean of both"
+        default="", description="f or m, for the inertia of the segments; if empty, the mean of both"
     )
     age_years: Annotated[int, Field(ge=1, le=120)] | None = Field(
-        default=None, description="age in whole years, for controls of the like age; never a date of birth"
+        default=None, description="age in whole years, to choose controls of similar age; never a date of birth"
     )
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
 
@@ -140,7 +138,7 @@ class Treadmill(_Part):
 
     speed_m_per_s: Annotated[float, Field(ge=0)] = Field(description="belt speed [m/s]")
     direction: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(
-        default="+x", description="the direction in which the person walks, in the laboratory's axes"
+        default="+x", description="direction of walking, in the laboratory's axes"
     )
 
 
@@ -161,19 +159,17 @@ class Kinematics(_Part):
 
     angles: Literal["file", "markers"] | None = Field(
         default=None,
-        description="file: those of the file; markers: computed, those of the file not used. Without it those of the "
-        "file where it has any, else computed where there is a static trial",
+        description="file: as in the file; markers: computed; by default as in the file, if it has any",
     )
     marker_set: str = Field(
         default="",
-        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file relative to the "
-        "study file; empty: recognised by the labels",
+        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; default: by labels",
     )
     hip: Literal["davis", "harrington"] | None = Field(
-        default=None, description="hip joint centre: davis or harrington; as the marker set says where it is not given"
+        default=None, description="hip joint centre: davis or harrington; by default as in the marker set"
     )
     joints: Literal["free", "held", "planar"] | None = Field(
-        default=None, description="free, held or planar; as the marker set says where it is not given"
+        default=None, description="free, held or planar; by default as in the marker set"
     )
 
 
@@ -181,20 +177,20 @@ class StrideRules(_Part):
     """How strides are cut."""
 
     detector: Literal["auto", "force", "markers", "angles", "events"] = Field(
-        default="auto", description="what finds initial contact: auto, force, markers, angles or events"
+        default="auto", description="detector of initial contact: auto, force, markers, angles or events"
     )
     side: Literal["r", "l"] = Field(default="r", description="the foot whose contacts begin the strides")
     min_s: Positive = Field(default=0.4, description="shortest stride [s]")
     max_s: Positive = Field(default=2.5, description="longest stride [s]")
     ground: Literal["auto", "treadmill", "overground"] = Field(
-        default="auto", description="where people walk: auto goes by the path of the pelvis; treadmill or overground"
+        default="auto", description="where people walk: auto (by the path of the pelvis), treadmill or overground"
     )
 
     @model_validator(mode="after")
     def _check(self) -> StrideRules:
         if self.min_s >= self.max_s:
             found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
-            refuse(("min_s",), "a shortest stride below the longest", found, "Exchange or widen them.")
+            refuse(("min_s",), "be shorter than max_s", found, "Exchange or widen them.")
         return self
 
 
@@ -206,14 +202,14 @@ class Models(_Part):
     outputs: tuple[Word, ...] = Field(
         default=OUTPUTS, min_length=1, description="variables whose second derivative is predicted"
     )
-    seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of every random act")
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of all random numbers")
 
 
 class HeldOut(_Part):
     """The last part of each trial, which no model sees: 30 of 240 s in section 4.2.2."""
 
     share: Annotated[float, Field(gt=0, lt=1)] | None = Field(
-        default=0.125, description="share of the trial, the last part"
+        default=0.125, description="fraction of the trial, its last part"
     )
     seconds: Positive | None = Field(default=None, description="or its length [s]; write one of the two")
 
@@ -221,7 +217,7 @@ class HeldOut(_Part):
     def _check(self) -> HeldOut:
         both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
         if both or (self.seconds is None and self.share is None):
-            refuse(("seconds",), "either 'seconds' or 'share'", "both are there" if both else "none is", "Write one.")
+            refuse(("seconds",), "replace 'share'", "both are there" if both else "none is", "Write one.")
         return self
 
     def length_s(self, duration_s: float) -> float:
@@ -233,13 +229,13 @@ class Quality(_Part):
     """What a trial must have to be used."""
 
     min_strides: Annotated[int, Field(ge=1)] = Field(
-        default=10, description="fewest whole strides of a walk on a treadmill, or of one that models are fitted to"
+        default=10, description="fewest complete strides of a walk on a treadmill, or of one that models are fitted to"
     )
     min_cycles: Annotated[int, Field(ge=1)] = Field(
         default=1, description="fewest cycles over ground, pooled over the trials of a person, session and condition"
     )
     late_change: Literal["refuse", "report"] = Field(
-        default="refuse", description="what to do with a trial whose gait changes late: refuse or report"
+        default="refuse", description="how to treat a trial whose gait changes late: refuse or report"
     )
 
 
@@ -253,7 +249,7 @@ class Study(_Part):
 
     model_config = ConfigDict(json_schema_extra={"description": "A study file of gaitdisc."})
 
-    title: str = Field(default="", description="what the study is called in reports")
+    title: str = Field(default="", description="title of the study in reports")
     sessions: tuple[Word, ...] = Field(
         default=(), description="sessions in the order of their dates, such as before and after; no dates"
     )
@@ -320,7 +316,7 @@ class Study(_Part):
         found = next((each for each in self.participants if each.id == subject), None)
         if found is None:
             ids = ", ".join(each.id for each in self.participants)
-            raise SchemaError("a participant of the study is needed", f"{subject!r} is none", f"Use one of: {ids}.")
+            raise SchemaError("the participant must be in the study", f"{subject!r} is not", f"Use one of: {ids}.")
         return found
 
     def complete(self) -> tuple[Participant, ...]:
@@ -347,7 +343,7 @@ class Study(_Part):
         missing = self.missing_files()
         if missing:
             raise SchemaError(
-                "all files of the study must be there, relative to the study file",
+                "all files of the study must exist, relative to the study file",
                 f"{len(missing)} missing: {', '.join(missing)}",
                 "Correct the names in [[participants.trials]], or copy the files there.",
             )

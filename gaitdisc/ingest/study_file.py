@@ -53,9 +53,9 @@ _KINDS = {
 }
 _OTHERS = {
     "finite_number": ("be a finite number", "Write a number."),
-    "too_short": ("not be empty", "Fill it in, or take the key away."),
-    "too_long": ("have fewer entries", "Take some away."),
-    "string_too_short": ("not be empty", "Fill it in, or take the key away."),
+    "too_short": ("not be empty", "Fill it in, or remove the key."),
+    "too_long": ("have fewer entries", "Remove some."),
+    "string_too_short": ("not be empty", "Fill it in, or remove the key."),
     "string_too_long": ("be shorter", "Use at most 40 characters."),
 }
 _LIMITS = {
@@ -84,8 +84,8 @@ def load_study(path: Path | str) -> Study:
     except ValueError as error:
         raise SchemaError(
             f"{raw.name} must be a TOML file",
-            f"it says: {str(error)[:200]}",
-            "Correct that line: text in quotes, numbers without, lists in brackets.",
+            f"the parser reports: {str(error)[:200]}",
+            "Correct that line: text in quotes, numbers without quotes, lists in brackets.",
         ) from error
     try:
         as_json = json.dumps(content, default=str)  # JSON, since strict validation takes its lists for tuples
@@ -244,7 +244,7 @@ def schema_error(error: ValidationError, model: type[BaseModel], text: str, file
     where = file if line is None else f"{file}, line {line}"
     needed, found, remedy = _sentence(first, place, model)
     if len(findings) > 1:
-        remedy += f" ({len(findings) - 1} more to correct after this.)"
+        remedy += f" ({len(findings) - 1} more to correct after this one.)"
     return SchemaError(f"{where}: {needed}", found, remedy)
 
 
@@ -258,15 +258,19 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
         owner = _part(place[:-1], model)
         keys = list(owner.model_fields) if owner else []
         nearest = nearest_word(str(place[-1]), keys)
-        needed = f"the keys of {_table(place[:-1])} are {', '.join(keys)}"
-        return (needed, f"{place[-1]!r} is not known", f"Did you mean {nearest!r}?" if nearest else "Remove it.")
+        needed = f"the keys of {_table(place[:-1])} must be among {', '.join(keys)}"
+        return (needed, f"{place[-1]!r} is unknown", f"Did you mean {nearest!r}?" if nearest else "Remove it.")
     if kind == "missing" and isinstance(place[-1], int):
-        return f"{_named(place[:-1])} needs {place[-1] + 1} or more entries", f"found {place[-1]}", "Add the other."
+        return (
+            f"{_named(place[:-1])} must have at least {place[-1] + 1} entries",
+            f"found {place[-1]}",
+            "Add one.",
+        )
     if kind == "missing":
         remedy = f"Add {place[-1]} ({_about(place, model)})."
-        return f"{_table(place[:-1])} needs {place[-1]!r}", "it is absent", remedy
+        return f"{_table(place[:-1])} must have {place[-1]!r}", "it is missing", remedy
     if kind == "gaitdisc":
-        return f"{_named(place)} needs {context['needed']}", context["found"], context["remedy"]
+        return f"{_named(place)} must {context['needed']}", context["found"], context["remedy"]
     found = f"found {given!r}" if isinstance(given, str | int | float) else f"found {_what(given)}"
     wanted, remedy = _wanted(kind, given, context)
     if kind == "tuple_type" and isinstance(given, dict):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pydantic_core import PydanticCustomError
 
-from gaitdisc.channel import nearest_word, vocabulary
+from gaitdisc.channel import hint_nearest, nearest_word, vocabulary
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.units import known_units, parsed_unit
 
@@ -38,12 +38,12 @@ def check_conditions(conditions: Conditions, unknown: str) -> None:
     words = conditions.words
     if len(set(words)) < len(words) or unknown in words:
         found = f"found {' and '.join(map(repr, words))}"
-        needed = "two different words" if len(words) == 2 else "different words"
+        needed = "be two different words" if len(words) == 2 else "be different words"
         name = "Name the two conditions." if len(words) == 2 else "Name each condition once."
         refuse(("conditions",), f"{needed}, neither of them {unknown!r}", found, name)
     if conditions.unnamed is not None and conditions.unnamed not in words:
         found = f"found {conditions.unnamed!r}"
-        refuse(("conditions", "unnamed"), f"one of {', '.join(map(repr, words))}", found, "Write one of them.")
+        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Write one of them.")
 
 
 def check_sessions(study: Study) -> None:
@@ -51,14 +51,9 @@ def check_sessions(study: Study) -> None:
     for i, word in enumerate(study.sessions):
         if _DATE.search(word):
             remedy = 'Write words in the order of the dates, such as sessions = ["before", "after"].'
-            refuse(
-                ("sessions", i),
-                "a word that is no date, since a date may show who a person is",
-                f"found {word!r}",
-                remedy,
-            )
+            refuse(("sessions", i), "not be a date, because a date can identify a person", f"found {word!r}", remedy)
         if study.sessions.index(word) != i:
-            refuse(("sessions", i), "each session once", f"{word!r} stands twice", "Take one away.")
+            refuse(("sessions", i), "list each session once", f"{word!r} occurs twice", "Remove one.")
     for i, participant in enumerate(study.participants):
         for j, trial in enumerate(participant.trials):
             if trial.session is not None and trial.session not in study.sessions:
@@ -66,7 +61,7 @@ def check_sessions(study: Study) -> None:
                 remedy = f"Did you mean {nearest!r}?" if nearest else f"Add it: sessions = [{trial.session!r}]."
                 listed = ", ".join(map(repr, study.sessions)) or "none"
                 place = ("participants", i, "trials", j, "session")
-                refuse(place, f"a session that the study lists ({listed})", f"found {trial.session!r}", remedy)
+                refuse(place, f"be a session that the study lists ({listed})", f"found {trial.session!r}", remedy)
 
 
 def check_participants(study: Study, others: Sequence[str]) -> None:
@@ -75,8 +70,10 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
     ids = Counter(each.id.lower() for each in study.participants)
     for i, participant in enumerate(study.participants):
         if ids[participant.id.lower()] > 1:
-            found = f"{participant.id!r} stands {ids[participant.id.lower()]} times"
-            refuse(("participants", i, "id"), "a pseudonym for one person only", found, "Put all trials under one.")
+            found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
+            refuse(
+                ("participants", i, "id"), "be used for one person only", found, "List all trials under one pseudonym."
+            )
         for j, trial in enumerate(participant.trials):
             if trial.condition not in (*words, *others):
                 nearest = nearest_word(trial.condition, (*words, *others))
@@ -86,7 +83,7 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
             for k, file in enumerate(trial.files):
                 if "\0" in file:
                     place = ("participants", i, "trials", j, "files", k)
-                    refuse(place, "a name without a NUL character", f"found {file!r}", "Correct the name.")
+                    refuse(place, "be a name without a NUL character", f"found {file!r}", "Correct the name.")
 
 
 def check_channels(channels: Mapping[str, str]) -> None:
@@ -99,16 +96,15 @@ def check_channels(channels: Mapping[str, str]) -> None:
         name, unit = split_unit(said)
         place = ("channels", label)
         if not name:
-            refuse(place, "the name of a channel", f"found {said!r}", 'Write for example "emg_sol_r [V]".')
+            refuse(place, "be the name of a channel", f"found {said!r}", 'Write for example "emg_sol_r [V]".')
         if unit is not None and parsed_unit(unit) is None:
-            nearest = nearest_word(unit, known_units())
-            found = f"found {unit!r}" + (f", the nearest is {nearest!r}" if nearest else "")
-            refuse(place, "a unit of the closed list", found, f"Use one of: {', '.join(known_units())}.")
+            found = f"found {unit!r}" + hint_nearest(unit, known_units())
+            refuse(place, "be in the list of units", found, f"Use one of: {', '.join(known_units())}.")
         if unit is None:
             _check_spelling(place, name)
         if name in owners:
             found = f"{owners[name]!r} and {label!r} both mean {name!r}"
-            refuse(place, "a name for one label only", found, "Give them two names, or leave one out.")
+            refuse(place, "be used for one label only", found, "Use two names, or remove one label.")
         owners[name] = label
 
 
@@ -120,17 +116,17 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
         names: tuple[str, ...] = getattr(models, key)
         for i, name in enumerate(names):
             if names.count(name) > 1:
-                refuse(("models", key), "each name once", f"{name!r} stands twice", "Remove one of them.")
+                refuse(("models", key), "list each name once", f"{name!r} occurs twice", "Remove one of them.")
             if key == "outputs" and name not in inputs:
                 nearest = nearest_word(name, inputs)
-                found = f"{name!r} is none" + (f", the nearest is {nearest!r}" if nearest else "")
-                remedy = "Add it to angles or emg, or take it out of outputs."
-                refuse(("models", key), "outputs among the inputs (angles and emg)", found, remedy)
+                found = f"{name!r} is not" + (f", the nearest is {nearest!r}" if nearest else "")
+                remedy = "Add it to angles or emg, or remove it from outputs."
+                refuse(("models", key), "be among the inputs (angles and emg)", found, remedy)
             if name not in mapped:
                 _check_spelling(("models", key, i), name)
     both = sorted(set(models.angles) & set(models.emg))
     if both:
-        refuse(("models", "emg"), "angles and EMG apart", f"{both[0]!r} is in both", "Remove it from one of them.")
+        refuse(("models", "emg"), "not repeat a channel of angles", f"{both[0]!r} is in both", "Remove it from one.")
 
 
 def _check_spelling(place: Sequence[str | int], name: str) -> None:
@@ -140,5 +136,5 @@ def _check_spelling(place: Sequence[str | int], name: str) -> None:
         return
     near = difflib.get_close_matches(name, known, n=1, cutoff=MISSPELT)
     if near:
-        remedy = f'Did you mean {near[0]!r}? A channel of your own needs its unit in [channels]: "{name} [V]".'
-        refuse(place, "a channel name", f"found {name!r}", remedy)
+        remedy = f'Did you mean {near[0]!r}? A channel of your own must have its unit in [channels]: "{name} [V]".'
+        refuse(place, "be a channel name", f"found {name!r}", remedy)

@@ -15,14 +15,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Form, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import (
-    Column,
-    check_written_names,
-    column_of,
-    mapped_label,
-    sorted_trial,
-    split_unit,
-)
+from gaitdisc.ingest.columns import Column, check_written_names, column_of, mapped_label, sorted_trial, split_unit
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
 from gaitdisc.recording import Finding, Recording, Source, Trial
@@ -88,9 +81,9 @@ def frame_columns(frame: pd.DataFrame, channels: Mapping[str, str] | None = None
         frame = frame.reset_index()
     elif not any(_time_unit(str(name), channels) for name in frame.columns):
         raise ReadError(
-            f"{FRAME} needs times [s] in a column 'time' (or time_s, time [ms]), or in an index of that name",
-            f"its columns are {', '.join(map(str, frame.columns[:6]))}, its index is {frame.index.name or 'nameless'}",
-            'Name the times so: frame.rename(columns={"t": "time"}), or frame.rename_axis("time") for the index.',
+            f"{FRAME} must have times [s] in a column 'time' (or time_s, time [ms]), or in an index of that name",
+            f"its columns are {', '.join(map(str, frame.columns[:6]))}, its index is {frame.index.name or 'unnamed'}",
+            'Rename the column, frame.rename(columns={"t": "time"}), or the index, frame.rename_axis("time").',
         )
     labels, values = _of_frame(frame, FRAME, channels)
     digit = printed_digit(map(repr, values[:, _time_column(labels, channels)].tolist()))
@@ -160,7 +153,7 @@ def _text(
     lines = raw.lines()
     top = next((i for i, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
     if top is None:
-        raise _no_time(raw.name, "it holds comments only")
+        raise _no_time(raw.name, "it contains only comments")
     named = (i for i in range(top, min(len(lines), top + LEADING)) if _header(lines[i], channels))
     top = next(named, top)
     separator, labels = _header(lines[top], channels) or (",", [])
@@ -203,18 +196,16 @@ def _known_unit(cell: str) -> str | None:
 def _check_labels(labels: Sequence[str], where: str) -> None:
     names = [split_unit(label)[0] for label in labels]
     if "" in names:
-        raise ReadError(
-            f"{where}: every column needs a name", f"column {names.index('') + 1} has none", "Name it in the header."
-        )
+        raise ReadError(f"{where}: every column must have a name", f"column {names.index('') + 1} has none", "Name it.")
     if len(labels) < 2:
-        raise ReadError(f"{where}: a table needs channels beside time", "there is time alone", "Export the channels.")
+        raise ReadError(f"{where}: a table must have channels", "time is its only column", "Export the channels.")
 
 
 def _no_time(file: str, found: str) -> ReadError:
     return ReadError(
-        f"{file} needs a column 'time [s]' (or time, time_s, time [ms])",
+        f"{file} must have a column 'time [s]' (or time, time_s, time [ms])",
         found,
-        'Name the column of times so, or in the study\'s [channels]: "Frame time" = "time [s]".',
+        'Rename the column, or map it in the study\'s [channels]: "Frame time" = "time [s]".',
     )
 
 
@@ -226,9 +217,9 @@ def _parquet(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str
         frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
     except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
         raise ReadError(
-            f"{raw.name} should be a Parquet table",
+            f"{raw.name} must be a Parquet table",
             f"it cannot be read as one: {str(error).splitlines()[0][:120] if str(error) else type(error).__name__}",
-            "Write it again, or give it its true ending.",
+            "Write it again, or correct its ending.",
         ) from error
     return _of_frame(frame, raw.name, channels)
 
@@ -242,17 +233,17 @@ def _of_frame(
     labels = [str(label) for label in frame.columns]
     for label, dtype in zip(labels, frame.dtypes, strict=True):
         if not is_numeric_dtype(dtype) or is_bool_dtype(dtype) or dtype.kind == "c":
-            remedy = "Give times as numbers of seconds." if _time_unit(label, channels) else "Leave that column out."
-            raise ReadError(f"{name}: columns need numbers", f"column {label!r} holds others ({dtype})", remedy)
+            remedy = "Give times as numbers of seconds." if _time_unit(label, channels) else "Remove that column."
+            raise ReadError(f"{name}: columns must contain numbers", f"column {label!r} has others ({dtype})", remedy)
     if not any(_time_unit(label, channels) for label in labels):
         raise _no_time(name, f"its columns are {', '.join(labels[:6])}")
     _check_labels(labels, name)
     values = frame.to_numpy(float, na_value=np.nan)
     if not len(values) or np.isinf(values).any():
-        where = "no row"
+        where = "it has no row"
         if len(values):
-            where = f"column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r} is infinite"
-        raise ReadError(f"{name} needs rows of finite numbers", f"found {where}", "Write it again.")
+            where = f"column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r} contains infinite values"
+        raise ReadError(f"{name} must have rows of finite numbers", f"found {where}", "Write it again.")
     return labels, values
 
 

@@ -60,14 +60,14 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
         raise SamplingError(
             f"{raw.name}: the header's DataRate and the time column must agree",
             f"DataRate says {header.rate_hz:g} Hz, the times step by {step:.6g} s, which is {1 / step:.6g} Hz",
-            "Find out which is right and export the file again.",
+            "Find out which one is correct and export the file again.",
         )
     seen = np.where(cells.values[:, 2:] == 0, np.nan, cells.values[:, 2:])
     refuse_other_unit(header.unit, distance_from_origin(seen), raw.name, "Units in line 3")
     positions = np.asarray(convert(cells.values[:, 2:], header.unit, inner_unit(header.unit)), float)
     names, dropped = _marker_names(header.labels, channels)
     if dropped:
-        findings.append(Finding("note", "identifier", raw.name, "the part of labels before ':' was dropped", ""))
+        findings.append(Finding("note", "identifier", raw.name, "the part of the labels before ':' was removed", ""))
     made = [Channel(f"{name}.{axis}", "marker", "m") for name in names for axis in "xyz"]
     triples = positions.reshape(len(positions), -1, 3).copy()
     triples[(triples == 0).all(axis=2)] = np.nan
@@ -83,29 +83,29 @@ def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
     """
     if len(lines) < 4 or not lines[0].lstrip().startswith("PathFileType"):
         raise ReadError(
-            f"{file} should be a marker file, whose first line begins with 'PathFileType'",
+            f"{file} must be a marker file, whose first line begins with 'PathFileType'",
             f"it begins with {lines[0][:40]!r}",
-            "Export it again as TRC, or give it its true ending.",
+            "Export it again as TRC, or correct its ending.",
         )
     fields = dict(zip(lines[1].split(), lines[2].split(), strict=False))
     absent = [key for key in _KEYS if key not in fields]
     if absent:
         raise ReadError(
-            f"{file} needs {', '.join(_KEYS)} in line 2 with their values in line 3",
-            f"{absent[0]} is absent or has no value",
+            f"{file} must have {', '.join(_KEYS)} in line 2 and their values in line 3",
+            f"{absent[0]} is missing or has no value",
             "Export the file again.",
         )
     rate, frames, markers = (_number(fields, key, file) for key in _KEYS[:3])
     unit = parsed_unit(fields["Units"])
     if unit is None or inner_unit(unit) != "m":
         raise UnitError(
-            f"{file}: markers need a unit of length in line 3",
-            f"found Units {fields['Units']!r}",
-            "Write m, cm or mm there.",
+            f"{file}: markers must have a unit of length in line 3",
+            f"Units is {fields['Units']!r}",
+            "Write m, cm, mm.",
         )
     labels = tuple(label.strip() for label in lines[3].split("\t")[2:] if label.strip())
     if not labels:
-        raise ReadError(f"{file} needs the names of its markers in line 4", "there are none", "Export it again.")
+        raise ReadError(f"{file} must name its markers in line 4", "there are no names", "Export it again.")
     body = 4
     while body < len(lines) and (not lines[body].strip() or re.match(r"\s*X\d", lines[body], re.IGNORECASE)):
         body += 1
@@ -118,7 +118,7 @@ def _number(fields: Mapping[str, str], key: str, file: str) -> float:
     except ValueError:
         number = 0.0
     if not 0 < number < 1e9:
-        raise ReadError(f"{file}: {key} in line 3 needs a number above 0", f"found {fields[key]!r}", "Export it again.")
+        raise ReadError(f"{file}: {key} in line 3 must be above 0", f"found {fields[key]!r}", "Export it again.")
     return number
 
 

@@ -108,7 +108,7 @@ def shared_recording(study: Study, participant: Participant) -> str:
         if same_recording(study, own, trial):
             names = f"{participant.trial_name(own)} and {other.trial_name(trial)}"
             said = f"{names} are the same recording: their files have the same SHA-256. A recording must belong to one"
-            return f"{said} person, session and condition. Take it out of [[participants.trials]] where it is wrong."
+            return f"{said} person, session and condition. Remove it from [[participants.trials]] where it is wrong."
     return ""
 
 
@@ -130,14 +130,14 @@ def differing_body(study: Study, participant: Participant) -> str:
         if high - low > most:
             said = f"{name} is {low:.4g} {unit} in {values[low]} and {high:.4g} {unit} in {values[high]}; files of one "
             said += f"person and session may differ by {most:g} {unit}"
-            return f"{said}. Give each person, or session, its own files, or correct the measure."
+            return f"{said}. Give each person or session its own files, or correct the value."
     return ""
 
 
 def not_compared(study: Study, participant: Participant) -> str:
     """Why models cannot compare two walks of a participant; empty where they can."""
     if study.conditions.device is None:
-        return "the study compares no device"
+        return "the study does not compare a device"
     walks = [trial for trial in participant.trials if is_walk(study, trial)]
     both = study.conditions.both
     one_each = all(len(participant.trials_of(word)) == 1 for word in both)

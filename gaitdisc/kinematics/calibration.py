@@ -55,10 +55,7 @@ class Calibration:
 
 
 def calibrated(
-    static: Recording | None,
-    marker_set: MarkerSet,
-    measures: BodyMeasures | None = None,
-    hips: Points | None = None,
+    static: Recording | None, marker_set: MarkerSet, measures: BodyMeasures | None = None, hips: Points | None = None
 ) -> Calibration:
     """Frames, joint centres and marker places of a person from the static trial.
 
@@ -70,8 +67,8 @@ def calibrated(
     if static is None:
         raise ChannelError(
             "angles from markers need a static trial of the person",
-            "there is none",
-            "Record one with all markers of the set, the person standing, or name it.",
+            "the trial has none",
+            "Record a static trial with all markers of the set, or name it.",
         )
     file = static.source.file or "the static trial"
     names = marker_set.names(marker_labels(static))
@@ -82,9 +79,9 @@ def calibrated(
     _check_complete(marker_set, places, file)
     if moved > STANDS_M:
         raise SamplingError(
-            f"in a static trial the person stands, markers within {STANDS_M * 1000:.0f} mm for half a second",
+            f"in a static trial the markers must stay within {STANDS_M * 1000:.0f} mm for half a second",
             f"in {file} they move by {moved * 1000:.0f} mm in the stillest half second, at {start:.2f} s",
-            "Give the trial in which the person stands.",
+            "Use the trial in which the person stands.",
         )
     return _Builder(marker_set, places, measures or BodyMeasures(), file, hips or {}).calibration()
 
@@ -94,9 +91,9 @@ def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
     if lacking:
         several = f" and {len(lacking) - 1} more: {', '.join(lacking[1:6])}" if len(lacking) > 1 else ""
         raise ChannelError(
-            f"the static trial needs every landmark of the marker set {marker_set.name}",
+            f"the static trial must have every landmark of the marker set {marker_set.name}",
             f"{file} has no {lacking[0]}{several}",
-            "Name the marker in the set's [aliases], or give the marker set of these labels.",
+            "Name the marker in the set's [aliases], or use the marker set with these labels.",
         )
 
 
@@ -155,7 +152,7 @@ class _Builder:
         self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
         if self.measures.inter_asis_m is not None:
-            what = f"distance of the iliac spines {self.measures.inter_asis_m * 1000:.0f} mm as measured, "
+            what = f"measured distance of the iliac spines {self.measures.inter_asis_m * 1000:.0f} mm, "
             self._note("pelvis width", f"{what}{width * 1000:.0f} mm between the markers")
             width = self.measures.inter_asis_m
         for side in "lr":
@@ -172,11 +169,11 @@ class _Builder:
             raise ChannelError(
                 "the hip joint centre after Davis needs the lengths of both legs",
                 f"{self.file} and the measures have {', '.join(sorted(legs)) or 'none'}",
-                'Give leg_length_m, or take hip = "harrington".',
+                'Provide leg_length_m, or use hip = "harrington".',
             )
         if methods[0] == "davis" and side == "l":
-            what = f"hips after Harrington, not Davis: {self.file} and the measures have no lengths of both legs"
-            self._note("hip", what, "hip centres by 1 to 2 cm against Plug-in Gait")
+            what = f"hips after Harrington, not Davis: {self.file} and the measures lack a leg length"
+            self._note("hip", what, "hip centres by 1 to 2 cm compared with Plug-in Gait")
         return harrington_hip(width, depth, side)
 
     def _radius(self) -> float:
@@ -184,8 +181,8 @@ class _Builder:
         if diameter is None:
             diameter = USUAL_DIAMETER_M
             if not any(finding.kind == "marker diameter" for finding in self.findings):
-                what = f"the diameter of the markers is not known; {diameter * 1000:.0f} mm are taken"
-                self._note("marker diameter", what, "joint centres by some mm if they are of another size")
+                what = f"the diameter of the markers is unknown; {diameter * 1000:.0f} mm is assumed"
+                self._note("marker diameter", what, "joint centres by some mm if the diameter differs")
         return diameter / 2
 
     def _centre(self, joint: str, side: str, above: str, wand: str) -> NDArray[np.float64]:
@@ -206,9 +203,9 @@ class _Builder:
             self._note("width", f"width of {joint}_{side} {width * 1000:.0f} mm from its two markers")
             return width
         raise ChannelError(
-            f"a {joint} joint centre by one lateral marker needs the width of the {joint}",
+            f"a {joint} joint centre from one lateral marker needs the width of the {joint}",
             f"neither {self.file} nor the measures have it for side {side!r}",
-            f"Give {joint}_width_m, or put on a medial marker in the static trial.",
+            f"Provide {joint}_width_m, or add a medial marker in the static trial.",
         )
 
     def _leg(self, side: str) -> None:
@@ -242,9 +239,9 @@ class _Builder:
                 followers[point] = self.static[segment].to_segment(place[None])[0]
         if len(followers) < FEWEST_POINTS:
             raise ChannelError(
-                f"segment {segment} needs {FEWEST_POINTS} points that follow it",
+                f"segment {segment} needs at least {FEWEST_POINTS} points",
                 f"{self.file} has {', '.join(followers) or 'none'}, and no {', '.join(absent)}",
-                "Put the markers on, or give the marker set of these labels.",
+                "Attach the markers, or use the marker set with these labels.",
             )
         return followers
 
@@ -266,15 +263,18 @@ class _Builder:
             self._pelvis()
             check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
             raise ShapeError(
-                "in a static trial each landmark lies where it does in every person who stands",
+                "the landmarks of a static trial must lie in anatomical order",
                 f"in {self.file} {wrong[1]} ({-wrong[0] * 1000:.0f} mm)",
                 "Correct the labels, or record the person with the legs side by side.",
             )
         self.places = swapped(self.places, pair)
         self.exchanged = pair
-        what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial makes it fit"
+        what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial corrects it"
         self._note(
-            "exchanged markers", what, "the segments of these markers and those below; correct the labels", "warning"
+            "exchanged markers",
+            what,
+            "the segments of these markers and those distal to them; correct the labels",
+            "warning",
         )
 
     def _spoiled(self) -> tuple[str, ...]:
@@ -298,9 +298,7 @@ def _axes(
     size = float(np.linalg.norm(forward))
     if not size > 1e-3 * float(np.linalg.norm(up) * np.linalg.norm(right)) or not size > 0:
         raise ShapeError(
-            f"the frame of {segment} needs landmarks that make a plane",
-            f"in {file} they lie on a line",
-            "Check the markers of the static trial.",
+            f"landmarks of {segment} must span a plane", f"in {file} they are collinear", "Check its markers."
         )
     x = forward / size
     if kept == "y":

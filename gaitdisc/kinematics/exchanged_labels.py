@@ -24,7 +24,7 @@ EXPLAINED = 0.5  # of the misfit is gone when two labels are exchanged
 UNFIT = ("exchanged markers", "broken segment")  # kinds of findings
 MOST_PAIRS = 3  # exchanged in one trial
 FRAMES = 12  # in which each pair is tried
-SPOILS = "angles of these segments there, and cycles with them; correct the labels, or give this session's static trial"
+SPOILS = "angles of these segments there, and cycles with them; correct the labels, or use this session's static trial"
 FEWEST_FRAMES = 3  # that a pair has to explain: fewer are single frames in which a marker jumped
 
 
@@ -133,16 +133,16 @@ def exchange_findings(
         order = landmark_order(calibration.marker_set, swapped(calibration.places, one.pair), up)
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         what = (
-            f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} makes it fit in "
-            f"{int(one.frames.sum())} of {len(one.frames)} frames: {1e3 * one.after_m:.0f} mm from the static trial, "
-            f"not {f'{1e3 * one.before_m:.0f} mm' if np.isfinite(one.before_m) else 'turned about'}"
+            f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {int(one.frames.sum())} "
+            f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm from the static trial, not "
+            f"{f'{1000.0 * one.before_m:.0f} mm' if np.isfinite(one.before_m) else 'rotated'}"
         )
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans))
     for segment, frames in broken.items():
         if frames.any():
-            what = f"{segment}: in {int(frames.sum())} of {len(frames)} frames its markers lie more than "
-            what += f"{1e3 * BROKEN_M:.0f} mm from where the static trial has them, and no two labels explain it"
+            what = f"{segment}: in {int(frames.sum())} of {len(frames)} frames its markers are more than "
+            what += f"{1000.0 * BROKEN_M:.0f} mm from their positions in the static trial, and no two labels explain it"
             findings.append(Finding("warning", "broken segment", file, what, SPOILS, "", spans_s(markers.time, frames)))
     return findings
 

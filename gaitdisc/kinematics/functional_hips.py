@@ -18,7 +18,7 @@ FARTHEST_M = 0.05  # from the hip after the landmarks, which is right to some 2 
 FEWEST_FRAMES = 50
 ROUNDS = 50
 SETTLED_M = 1e-7
-SPOILS = "this hip by 1 to 2 cm; circle the leg by 20 deg or more, front to back and side to side"
+SPOILS = "this hip by 1 to 2 cm; circle the leg by at least 20 deg, front to back and side to side"
 
 
 class Pivot(NamedTuple):
@@ -47,12 +47,15 @@ def functional_hips(
         usual = calibration.points["pelvis"][f"hip_{side}"]
         found, refused = _found(pelvis, placed[f"thigh_{side}"], usual)
         if found is None:
-            what = f"hip_{side} not by function but after the landmarks: {refused}"
+            what = f"hip_{side} from the landmarks, not from the functional trial: {refused}"
             findings.append(Finding("warning", "functional hip", file, what, SPOILS))
             continue
         hips[f"hip_{side}"] = found.centre
-        what = f"hip_{side} by function, {_mm(_apart(found, usual))} from the hip after the landmarks; the thigh keeps "
-        findings.append(Finding("note", "functional hip", file, f"{what}to it by {_mm(found.residual_m)} (rms)", ""))
+        what = (
+            f"hip_{side} from the functional trial, {_mm(_apart(found, usual))} from the hip from the landmarks; the "
+            "thigh moves about "
+        )
+        findings.append(Finding("note", "functional hip", file, f"{what}it within {_mm(found.residual_m)} (rms)", ""))
     return hips, tuple(findings)
 
 
@@ -63,7 +66,7 @@ def _found(
     body, seen = thigh
     whole = pelvis.known & np.isfinite(seen).all(axis=(1, 2))
     if whole.sum() < FEWEST_FRAMES:
-        return None, f"pelvis and thigh are seen whole in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
+        return None, f"pelvis and thigh are complete in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
     above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), seen[whole]
     below, places = fitted_pose(body, markers).pose, above.to_segment(markers)
     found = fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
@@ -73,12 +76,12 @@ def _found(
     spread = np.linalg.eigvalsh(np.cov(way.T))
     swing_deg = float(np.degrees(np.sqrt(max(spread[1], 0.0))))
     if swing_deg < LEAST_SWING_DEG:
-        words = f"the thigh turns by {swing_deg:.1f} deg (rms) at right angles to its largest swing"
+        words = f"the thigh turns by {swing_deg:.1f} deg (rms) perpendicular to its largest swing"
         return None, f"{words}, {LEAST_SWING_DEG:g} are needed"
     if found.residual_m > LARGEST_RESIDUAL_M:
-        return None, f"the thigh leaves the centre by {_mm(found.residual_m)} (rms)"
+        return None, f"the thigh deviates from the centre by {_mm(found.residual_m)} (rms)"
     if _apart(found, usual) > FARTHEST_M:
-        return None, f"the centre found lies {_mm(_apart(found, usual))} from there"
+        return None, f"the computed centre is {_mm(_apart(found, usual))} from there"
     return found, ""
 
 

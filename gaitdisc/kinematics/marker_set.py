@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.channel import folded_label, list_names, nearest_word, schema_folder
+from gaitdisc.channel import folded_label, hint_nearest, list_names, schema_folder
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS
 from gaitdisc.regular_file import check_regular
@@ -32,11 +32,7 @@ SIDED = (
 )
 LANDMARKS = (*SIDED, "sacrum")
 NEEDED = ("asis", "sacrum", "knee_lateral", "ankle_lateral", "heel", "toe")
-METHODS = {
-    "hip": ("harrington", "davis"),
-    "knee": ("midpoint", "chord"),
-    "ankle": ("midpoint", "chord"),
-}
+METHODS = {"hip": ("harrington", "davis"), "knee": ("midpoint", "chord"), "ankle": ("midpoint", "chord")}
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
 JOINTS = ("free", "held", "planar")
 PARTS = ("pelvis", "thigh", "shank", "foot")
@@ -81,14 +77,16 @@ class MarkerSet:
     def with_joints(self, joints: str) -> MarkerSet:
         """Return the same set with its joints free, held, or moving in a plane."""
         if joints not in JOINTS:
-            raise SchemaError(f"joints are {', '.join(JOINTS)}", _found(joints, JOINTS), "Correct the word.")
+            raise SchemaError(f"joints must be one of {', '.join(JOINTS)}", _found(joints, JOINTS), "Correct the word.")
         return replace(self, joints=joints)
 
     def with_hip(self, method: str) -> MarkerSet:
         """Return the same set with another hip joint centre."""
         if method not in METHODS["hip"]:
             known = METHODS["hip"]
-            raise SchemaError(f"hip joint centres are {', '.join(known)}", _found(method, known), "Correct the word.")
+            raise SchemaError(
+                f"the hip joint centre must be one of {', '.join(known)}", _found(method, known), "Correct the word."
+            )
         return replace(self, joint_centres={**self.joint_centres, "hip": (method,)})
 
     def names(self, labels: Iterable[str]) -> dict[str, str]:
@@ -207,7 +205,7 @@ def marker_set(name: str | Path) -> MarkerSet:
     if str(name).endswith(".toml"):
         return read_marker_set(Path(name))
     raise SchemaError(
-        f"a marker set is one of {', '.join(shipped)}, or a file that ends in .toml",
+        f"a marker set must be one of {', '.join(shipped)}, or a file that ends in .toml",
         _found(str(name), tuple(shipped)),
         "Correct the name, or write the file as docs/kinematics.md shows.",
     )
@@ -226,12 +224,12 @@ def read_marker_set(path: Path) -> MarkerSet:
         check_regular(path, LARGEST_BYTES)
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        reason = "it is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise ReadError("a marker set is read from a file", f"{path.name}: {reason}", "Check the path.") from error
+        reason = "it is not a UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
+        raise ReadError("a marker set must be a file", f"{path.name}: {reason}", "Check the path.") from error
     try:
         table = parsed_toml(text)
     except tomllib.TOMLDecodeError as error:
-        raise SchemaError("a marker set is a TOML file", f"{path.name}: {error}", EXAMPLE) from error
+        raise SchemaError("a marker set must be a TOML file", f"{path.name}: {error}", EXAMPLE) from error
     return _checked(table, path)
 
 
@@ -270,13 +268,12 @@ def _of_kind(kind: str, value: Any, where: str, file: str) -> Any:
     """Value of the file, if it is a table, a text or a list of names."""
     sound = isinstance(value, {"table": dict, "text": str, "list of names": list}[kind])
     if not sound or (isinstance(value, list) and not all(isinstance(item, str) and item for item in value)):
-        raise SchemaError(f"{where} of a marker set is a {kind}", f"{file}: found {value!r}", EXAMPLE)
+        raise SchemaError(f"{where} of a marker set must be a {kind}", f"{file}: found {value!r}", EXAMPLE)
     return value
 
 
 def _found(word: str, known: Sequence[str]) -> str:
-    near = nearest_word(word, known)
-    return f"found {word!r}" + (f", the nearest is {near!r}" if near else "")
+    return f"found {word!r}" + hint_nearest(word, known)
 
 
 def _check_words(words: Iterable[str], known: Sequence[str], where: str, file: str) -> None:
@@ -289,12 +286,12 @@ def _check_words(words: Iterable[str], known: Sequence[str], where: str, file: s
 def _check_landmarks(landmarks: Mapping[str, str], file: str) -> None:
     absent = [key for key in NEEDED if not choices(landmarks.get(key, ""))]
     if absent:
-        needed = f"[landmarks] of a marker set needs {', '.join(NEEDED)}"
+        needed = f"[landmarks] of a marker set must have {', '.join(NEEDED)}"
         raise SchemaError(needed, f"{file} has no {absent[0]}", EXAMPLE)
     for key, text in landmarks.items():
         empty = not all(all(choice) for choice in choices(text))
         if empty or (key in SIDED and not PLACEHOLDER.search(text)):
-            needed = f"landmarks.{key} names markers" + (" of both sides with {S}, {s} or {side}" * (key in SIDED))
+            needed = f"landmarks.{key} must name markers" + (" of both sides with {S}, {s} or {side}" * (key in SIDED))
             mend = f'Write it as {key} = "{{S}}NAME", for RNAME and LNAME.'
             raise SchemaError(needed, f"{file}: found {text!r}", mend)
 
@@ -302,7 +299,7 @@ def _check_landmarks(landmarks: Mapping[str, str], file: str) -> None:
 def _check_methods(methods: Mapping[str, tuple[str, ...]], landmarks: Mapping[str, str], file: str) -> None:
     for joint, known in METHODS.items():
         if joint not in methods:
-            raise SchemaError(f"[joint_centres] needs {', '.join(METHODS)}", f"{file} has no {joint}", EXAMPLE)
+            raise SchemaError(f"[joint_centres] must have {', '.join(METHODS)}", f"{file} has no {joint}", EXAMPLE)
         _check_words(methods[joint], known, f"joint_centres.{joint} = ", file)
     for joint, wand in (("knee", "thigh_wand"), ("ankle", "shank_wand")):
         for method, landmark in (("midpoint", f"{joint}_medial"), ("chord", wand)):
@@ -315,7 +312,7 @@ def _check_tracked(tracked: Mapping[str, Iterable[str]], file: str) -> None:
     for part, above in zip(PARTS, ((), ("hip",), ("knee",), ("ankle",)), strict=True):
         points = on_sides(tracked.get(part, ()), "lr" if part == "pelvis" else "r")
         if len(points) < FEWEST_POINTS:
-            needed = f"tracked.{part} needs {FEWEST_POINTS} points or more"
+            needed = f"tracked.{part} must have at least {FEWEST_POINTS} points"
             raise SchemaError(needed, f"{file} has {len(points)}: {', '.join(points)}", EXAMPLE)
         wrong = [point for point in points if point in METHODS and point not in above]
         if wrong:
@@ -348,8 +345,8 @@ def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str
         return max(fitting, key=lambda pair: pair[0])[1]
     *_, name, lacking = min(nearest)
     raise ChannelError(
-        f"the markers need to be of one of the sets {', '.join(shipped_marker_sets())}",
-        f"{file or 'the static trial'} has {list_names(static, none='no markers')}; "
-        f"the nearest set is {name}, which lacks {list_names(lacking)}",
-        "Give the marker set, rename the markers, or write a set of your own as docs/kinematics.md shows.",
+        f"the markers must belong to one of the sets {', '.join(shipped_marker_sets())}",
+        f"{file or 'the static trial'} has {list_names(static, none='no markers')}; the nearest set is {name}, which "
+        f"also needs {list_names(lacking)}",
+        "Name the marker set, rename the markers, or write your own set as docs/kinematics.md shows.",
     )

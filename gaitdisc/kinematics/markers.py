@@ -29,7 +29,7 @@ def marker_labels(markers: Recording) -> list[str]:
         raise ChannelError(
             "angles from markers need a recording of markers, with channels <marker>.x, .y, .z",
             f"{markers.source.file or 'the recording'} has {', '.join(markers.names[:4]) or 'no channel'}",
-            "Give the stream `markers` of the trial.",
+            "Use the stream `markers` of the trial.",
         )
     return labels
 
@@ -96,18 +96,19 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
     lines = lines[np.isfinite(lines).all(axis=1)]
     if not len(lines):
         raise ShapeError(
-            "up is found from a frame with markers of the pelvis and of a foot",
+            "the upward direction needs a frame with markers of the pelvis and of a foot",
             f"{file or 'the recording'} has none",
-            "Fill the markers, or give another trial.",
+            "Fill the gaps in the markers, or use another trial.",
         )
     mean = lines.mean(axis=0)
     size = float(np.linalg.norm(mean))
     axis = int(np.argmax(np.abs(mean)))
     if not size > 0 or abs(mean[axis]) < UPRIGHT * size:
         raise ShapeError(
-            "one axis of the laboratory points up, along which the pelvis is above the feet",
-            f"{file or 'the recording'}: from feet to pelvis it is ({', '.join(f'{part:.3g}' for part in mean)}) m",
-            "Export the markers in the laboratory's level frame.",
+            "one axis of the laboratory must point up, along which the pelvis is above the feet",
+            f"{file or 'the recording'}: the vector from feet to pelvis is "
+            f"({', '.join(f'{part:.3g}' for part in mean)}) m",
+            "Export the markers in a level frame.",
         )
     up = np.zeros(3)
     up[axis] = np.sign(mean[axis])
@@ -120,15 +121,15 @@ def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], fil
     >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ShapeError: the laboratory's axes make a right-handed frame... or the labels.
+    gaitdisc.errors.ShapeError: the laboratory's axes must ... up is down (cosine -1.00): ...
     """
     upright = float(np.nanmedian(pelvis[:, :, 1] @ up))
     if not upright > 0:
         raise ShapeError(
-            "the laboratory's axes make a right-handed frame, and left and right markers bear their own names",
+            "the laboratory's axes must be right-handed, and the names of left and right markers correct",
             f"{file or 'the recording'}: with the right iliac spine on the right and the sacrum behind, up is down "
             f"(cosine {upright:.2f}): the frame is mirrored, or left and right are exchanged",
-            "Correct the export's axes, or the labels.",
+            "Correct the axes of the export, or the labels.",
         )
 
 
@@ -153,9 +154,7 @@ def walking_frame(
         return WalkingFrame(_frames(np.tile(_level_given(given, up), (len(origin), 1)), up), "forward as given")
     known = np.isfinite(origin).all(axis=1) & np.isfinite(facing).all(axis=1)
     if not known.any():
-        raise StrideError(
-            "the direction of walking needs a frame with the pelvis", "there is none", "Fill the markers of the pelvis."
-        )
+        raise StrideError("the direction of walking needs the pelvis", "no frame has it", "Fill its marker gaps.")
     faced = _level(facing[known].mean(axis=0), up)
     seen = np.flatnonzero(known)
     spread = seen - seen.mean()
@@ -163,11 +162,11 @@ def walking_frame(
     headings = _headings(origin, seen, up, rate_hz)
     if headings is None and np.linalg.norm(mean) < TRAVELS_M_PER_S:
         return WalkingFrame(
-            _frames(np.tile(faced, (len(origin), 1)), up), "forward as the pelvis faces: it stays in place"
+            _frames(np.tile(faced, (len(origin), 1)), up), "forward as the pelvis faces, because it stays in place"
         )
     paths = np.tile(_level(mean, up), (len(origin), 1)) if headings is None else headings
     backwards = bool(np.median(np.einsum("fi,fi->f", paths[known], facing[known])) < 0)
-    words = "forward along the path of the pelvis" + ", against it since the person walks backwards" * backwards
+    words = "forward along the path of the pelvis" + ", against it because the person walks backwards" * backwards
     paths = -paths if backwards else paths
     turned = float(np.degrees(np.ptp(np.unwrap(np.arctan2(paths @ np.cross(up, faced), paths @ faced)))))
     if turned < STRAIGHT_DEG:
@@ -183,9 +182,9 @@ def _level_given(given: Sequence[float], up: NDArray[np.float64]) -> NDArray[np.
     size = float(np.linalg.norm(forward)) if forward.shape == (3,) else 0.0
     if not size > 0 or not abs(forward @ up) <= 0.5 * size:
         raise StrideError(
-            "the direction of walking is a level vector of three numbers",
-            f"found {tuple(np.ravel(forward).tolist())}, up is {tuple(up.tolist())}",
-            "Give it in the laboratory's axes, such as 0 -1 0.",
+            "the direction of walking must be a horizontal vector of three numbers",
+            f"it is {tuple(np.ravel(forward).tolist())}, up is {tuple(up.tolist())}",
+            "Write it in the laboratory's axes, for example 0 -1 0.",
         )
     return _level(forward, up)
 

@@ -15,13 +15,7 @@ from scipy.spatial.transform import Rotation
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.exchanged_labels import (
-    UNFIT,
-    Exchange,
-    exchange_findings,
-    exchanged_pairs,
-    without_exchanged,
-)
+from gaitdisc.kinematics.exchanged_labels import UNFIT, Exchange, exchange_findings, exchanged_pairs, without_exchanged
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import WalkingFrame, check_right_handed, marker_labels, up_axis, walking_frame
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose, clinical_angles, fitted_pose, residual_m
@@ -115,8 +109,8 @@ def chosen_marker_set(
     if static is None:
         raise ChannelError(
             "angles from markers need a static trial of the person",
-            "there is none",
-            "Record one with all markers of the set, the person standing, or name it.",
+            "the trial has none",
+            "Record a static trial with all markers of the set, or name it.",
         )
     return recognised_marker_set(marker_labels(static), marker_labels(markers), static.source.file)
 
@@ -139,9 +133,9 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     said = exchange_findings(exchanges, broken, calibration, markers, up)
     if unfit["pelvis"].all():
         raise ShapeError(
-            "angles need a pelvis whose markers lie as in the static trial",
+            "the pelvis markers must lie as in the static trial",
             f"{file}: {next(one.what for one in (*calibration.findings, *said) if one.kind in UNFIT)}",
-            "Correct the labels, or give the static trial of this person and session.",
+            "Correct the labels, or use the static trial of this person and session.",
         )
     for segment, frames in unfit.items():
         body, seen = placed[segment]
@@ -187,7 +181,7 @@ def _set_words(calibration: Calibration) -> str:
     ways = [(joint, chosen.joint_centres[joint], usual.joint_centres[joint]) for joint in ("hip", "knee", "ankle")]
     ways += [(part, chosen.tracked[part], usual.tracked[part]) for part in ("thigh", "shank", "foot")]
     other = [f"{key} by {' '.join(own)}, not {' '.join(pig)}" for key, own, pig in ways if own != pig]
-    differs = f"; unlike Plug-in Gait {'; '.join(other)}, which turns the axes" if other else ""
+    differs = f"; unlike Plug-in Gait {'; '.join(other)}, which rotates the axes" if other else ""
     return f"{chosen.name}: {chosen.title}; joints {chosen.joints}{differs}".replace("{S}", "")
 
 
@@ -210,16 +204,19 @@ def _gaps_and_shape(
     file, frames = markers.source.file or "the trial", len(markers.time)
     findings = []
     if bridged.any():
-        what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the others carry it"
+        what = (
+            f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the other markers define it "
+            "there"
+        )
         findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
-        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: fewer than 3 points, or on one line"
-        spoils = "its joints there; fill the gaps, or put a marker beside the line"
+        what = f"{segment} is unknown in {int(unknown.sum())} of {frames} frames: fewer than 3 or collinear points"
+        spoils = "its joints there; fill the gaps, or add a marker off the line"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
     if typical > ANOTHER_SHAPE_M:
-        what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
-        spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
+        what = f"the markers of {segment} are {typical * 1000:.0f} mm from their positions in the static trial"
+        spoils = "its angles; check that the static trial is of this person and session and that no label is exchanged"
         findings.append(Finding("warning", "another shape", file, what, spoils))
     return findings
 
@@ -282,7 +279,7 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
         raise ChannelError(
             "angles from segments need pelvis, thighs, shanks and feet, as pelvis, l_thigh, ...",
             f"{file} has no {', '.join(lacking)}; it has {', '.join(sorted(there))}",
-            "Export these segments too, or the joint angles themselves.",
+            "Export these segments too, or export the joint angles.",
         )
     poses = {segment: _pose(segments, LABELS[segment], file) for segment in SEGMENTS}
     pelvis = poses["pelvis"]
@@ -292,13 +289,13 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     sure = {segment: np.zeros(len(pelvis), bool) for segment in SEGMENTS}
     angles = angles_of_poses(replace(segments, suspect=None), poses, sure, walking)
     findings = [
-        Finding("note", "segments", file, f"angles of the poses of {len(SEGMENTS)} segments that the file holds", ""),
+        Finding("note", "segments", file, f"angles from the poses of {len(SEGMENTS)} segments in the file", ""),
         Finding("note", "direction", file, walking.how, ""),
     ]
     counts = {segment: int((~poses[segment].known).sum()) for segment in SEGMENTS}
     for count in sorted(set(counts.values()) - {0}):
         which = ", ".join(LABELS[segment] for segment in SEGMENTS if counts[segment] == count)
-        what = f"{which}: not known in {count} of {len(pelvis)} frames"
+        what = f"{which}: unknown in {count} of {len(pelvis)} frames"
         findings.append(Finding("warning", "gap", file, what, "their joints there"))
     return angles, tuple(findings)
 
@@ -318,9 +315,9 @@ def _square(axes: NDArray[np.float64], label: str, file: str) -> NDArray[np.floa
     wrong: NDArray[np.intp] = np.flatnonzero((skew > SKEWED) | (np.linalg.det(some) < 0))
     if len(wrong):
         raise ShapeError(
-            "poses of segments need axes of length 1, at right angles, right-handed",
-            f"{file}: {label} in frame {known[wrong[0]] + 1} differs from that by {skew[wrong[0]]:.2g}, "
-            f"its determinant is {np.linalg.det(some[wrong[0]]):.3g}",
+            "the axes of a segment must have length 1, be perpendicular and be right-handed",
+            f"{file}: {label} in frame {known[wrong[0]] + 1} differs from that by {skew[wrong[0]]:.2g}, its "
+            f"determinant is {np.linalg.det(some[wrong[0]]):.3g}",
             "Export the trial again.",
         )
     found = np.full(axes.shape, np.nan)

@@ -38,9 +38,9 @@ class Pose:
         origin, rotation = read_only(self.origin), read_only(self.rotation)
         if origin.ndim != 2 or origin.shape[1] != 3 or rotation.shape != (len(origin), 3, 3):
             raise ShapeError(
-                "a pose needs an origin of shape (frame, 3) and a rotation of shape (frame, 3, 3)",
-                f"found {origin.shape} and {rotation.shape}",
-                "Put frames first; the columns of a rotation are the segment's axes.",
+                "a pose must have an origin of shape (frame, 3) and a rotation of shape (frame, 3, 3)",
+                f"their shapes are {origin.shape} and {rotation.shape}",
+                "Put frames first. The columns of a rotation are the segment's axes.",
             )
         known = np.isfinite(rotation).all(axis=(1, 2))
         some = rotation[known]
@@ -49,9 +49,9 @@ class Pose:
         if wrong.any():
             first = int(np.flatnonzero(wrong)[0])
             raise ShapeError(
-                "a pose needs rotations: axes of length 1, at right angles, right-handed",
-                f"frame {int(np.flatnonzero(known)[first])} has determinant {np.linalg.det(some[first]):.6g} "
-                f"and axes that differ from right angles and length 1 by up to {stretch[first]:.3g}",
+                "the axes of a pose must have length 1, be perpendicular and be right-handed",
+                f"frame {int(np.flatnonzero(known)[first])} has determinant {np.linalg.det(some[first]):.6g}, and its "
+                f"axes deviate from right angles and length 1 by up to {stretch[first]:.3g}",
                 "Give the columns as x forward, y up, z to the right of the person.",
             )
         object.__setattr__(self, "origin", origin)
@@ -264,10 +264,10 @@ def chord_centre(
     area = float(np.linalg.norm(normal))
     if not length > distance_m or not area > 1e-4 * length**2:
         raise ShapeError(
-            "a joint centre by one lateral marker needs a marker farther from the joint above than half its width, "
-            "and a wand beside the line between them",
-            f"the marker is {length:.4g} m from the joint above, half the width is {distance_m:.4g} m, "
-            f"the wand is {area / max(length, 1e-9):.4g} m beside the line",
+            "a joint centre from one lateral marker needs a marker farther from the proximal joint than half its "
+            "width, and a wand marker off the line between them",
+            f"the marker is {length:.4g} m from the proximal joint, half the width is {distance_m:.4g} m, the wand "
+            f"marker is {area / max(length, 1e-09):.4g} m off the line",
             "Check the markers of the static trial and the width.",
         )
     along = along / length

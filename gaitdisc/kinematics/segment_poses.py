@@ -288,9 +288,9 @@ def placed_markers(
         if len(points) < FEWEST_POINTS:
             absent = [point for point in body if point not in points]
             raise ChannelError(
-                f"segment {segment} needs {FEWEST_POINTS} points that follow it",
+                f"segment {segment} needs at least {FEWEST_POINTS} points",
                 f"{file or 'the trial'} has {', '.join(points) or 'none'}, and no {', '.join(absent)}",
-                "Give the marker set of these labels, or name the markers in its [aliases].",
+                "Use the marker set with these labels, or name the markers in its [aliases].",
             )
         own = [point for point in points if point in places]
         placed[segment] = np.array([body[point] for point in own]), np.stack([places[p] for p in own], axis=1)

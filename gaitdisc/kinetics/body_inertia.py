@@ -30,7 +30,7 @@ class Person:
     >>> Person(0.7)
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.UnitError: moments per kg need a body mass of 5 to 300 kg; the mass given is 0.7 kg. Give it in kg.
+    gaitdisc.errors.UnitError: the body mass must be between 5 and 300 kg; it is 0.7 kg. Give it in kg.
     """
 
     mass_kg: float | None
@@ -43,20 +43,18 @@ class Person:
         if self.mass_kg is None or not np.isfinite(self.mass_kg):
             raise UnitError(
                 "moments and powers per kg need the person's body mass [kg]",
-                "none is given, and the file states none",
-                "Give it in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
+                "neither the study nor the file states one",
+                "Write it in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
             )
         if not LIGHTEST_KG <= self.mass_kg <= HEAVIEST_KG:
             raise UnitError(
-                f"moments per kg need a body mass of {LIGHTEST_KG:g} to {HEAVIEST_KG:g} kg",
-                f"the mass given is {self.mass_kg:g} kg",
+                f"the body mass must be between {LIGHTEST_KG:g} and {HEAVIEST_KG:g} kg",
+                f"it is {self.mass_kg:g} kg",
                 "Give it in kg.",
             )
         if self.sex not in ("f", "m", ""):
             raise SchemaError(
-                "tables of segment inertia have a column for women and one for men: sex 'f' or 'm', or '' for the mean",
-                f"the sex given is {self.sex!r}",
-                "Write f, m, or leave it empty.",
+                "sex must be 'f' or 'm', or '' for the mean of both", f"it is {self.sex!r}", "Write f, m or nothing."
             )
 
     @property
@@ -112,7 +110,7 @@ def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
     """
     if table not in TABLES:
         raise SchemaError(
-            f"segment inertia is taken from one of {', '.join(TABLES)}", f"{table!r} was named", "Name one of them."
+            f"the table of segment inertia must be one of {', '.join(TABLES)}", f"it is {table!r}", "Name one of these."
         )
     with (schema_folder() / "segment_inertia.csv").open(newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if (row["table"], row["sex"]) == (table, sex)]
@@ -137,7 +135,7 @@ def leg_inertia(
         low, high = (0.05, 0.35) if segment == "foot" else (0.1, 0.8)
         if not low <= lengths[segment] <= high:
             raise UnitError(
-                f"the {segment} of a person is {low:g} to {high:g} m long",
+                f"the {segment} must be {low:g} to {high:g} m long",
                 f"{segment}_{side} is {lengths[segment]:.4g} m",
                 "Check the markers' unit and the joint centres.",
             )
@@ -161,7 +159,7 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
             raise ShapeError(
                 f"the length of {segment}_{side} needs the poses of {segment}_{side} and {beyond}_{side}",
                 f"there are {', '.join(poses) or 'none'}",
-                "Give the markers of the whole leg.",
+                "Provide the markers of the entire leg.",
             )
         length = np.linalg.norm(ends[0].origin - ends[1].origin, axis=1)
         length = length[np.isfinite(length)]
@@ -169,14 +167,14 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
             raise ShapeError(
                 f"the length of {segment}_{side} needs a frame with both of its joint centres",
                 "no frame has both",
-                "Fill the markers of this leg.",
+                "Fill the gaps in the markers of this leg.",
             )
         low, middle, high = np.quantile(length, [0.05, 0.5, 0.95])
         if high - low > _SPREAD_OF_LENGTH * middle:
             raise ShapeError(
-                f"{segment}_{side} needs one length between its joint centres",
-                f"it goes from {low:.3f} to {high:.3f} m",
-                "Check the markers of this leg: two may be exchanged.",
+                f"{segment}_{side} must have a constant length between its joint centres",
+                f"the length ranges from {low:.3f} to {high:.3f} m",
+                "Check the markers of this leg. Two may be exchanged.",
             )
         found[segment] = float(middle)
     return found
@@ -194,9 +192,9 @@ def _foot_from_heel(row: TableRow, person: Person, sex: str, foot: FootPoints) -
     """De Leva's foot: along the line from heel to toes, whose tips are known by the stature."""
     if person.stature_m is None:
         raise UnitError(
-            "the foot of de Leva (1996) is measured from heel to toe tip, by the person's stature [m]",
-            "no stature is given",
-            "Give it, or take the table dumas2007.",
+            "the foot of de Leva (1996) is measured from heel to toe tip and needs the person's stature [m]",
+            "no stature is stated",
+            "State it, or use the table dumas2007.",
         )
     length = _FOOT_OF_STATURE[sex] * person.stature_m
     ahead = (foot.toe - foot.heel) / np.linalg.norm(foot.toe - foot.heel)

@@ -181,12 +181,12 @@ class KineticsSettings:
         for name in ("marker_cutoff_hz", "force_cutoff_hz"):
             if not getattr(self, name) > 0:
                 raise SamplingError(
-                    f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Give it in Hz, or inf for none."
+                    f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Use Hz, or inf for no filter."
                 )
         for name, known in (("inertia", TABLES), ("frame", FRAMES)):
             if getattr(self, name) not in known:
                 raise SchemaError(
-                    f"{name} is one of {', '.join(known)}", f"{getattr(self, name)!r} was named", "Name one of them."
+                    f"{name} must be one of {', '.join(known)}", f"it is {getattr(self, name)!r}", "Name one of these."
                 )
 
 
@@ -224,7 +224,7 @@ def _foot_points(path: FootPath, foot: Pose) -> FootPoints:
         raise ShapeError(
             f"the inertia of foot_{path.side} needs a frame with heel, toes and the foot's pose",
             "no frame has all three",
-            "Fill the markers of this foot, or name others.",
+            "Fill the gaps in the markers of this foot, or name others.",
         )
     return FootPoints(*(np.median(place[seen], axis=0) for place in places))
 

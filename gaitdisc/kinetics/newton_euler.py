@@ -84,9 +84,9 @@ def segment_motions(
             continue
         if len(poses[name]) != len(time):
             raise ShapeError(
-                "poses need one frame for each time",
-                f"{name} has {len(poses[name])} frames and there are {len(time)} times",
-                "Give the poses and times of one recording.",
+                "there must be one pose for each time",
+                f"{name} has {len(poses[name])} frames, and there are {len(time)} times",
+                "Use the poses and times of the same recording.",
             )
         pose = poses[name]
         if np.isfinite(cutoff_hz):

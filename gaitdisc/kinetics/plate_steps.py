@@ -42,9 +42,9 @@ class FootPath:
         heel, toe, time = read_only(self.heel), read_only(self.toe), read_only(self.time)
         if heel.shape != (len(time), 3) or toe.shape != heel.shape:
             raise ShapeError(
-                "a foot's path needs heel and toe of shape (frame, 3)",
-                f"found {heel.shape} and {toe.shape} with {len(time)} times",
-                "Give the markers of one recording.",
+                "heel and toe of a foot must have shape (frame, 3)",
+                f"their shapes are {heel.shape} and {toe.shape}, with {len(time)} times",
+                "Use the markers of one recording.",
             )
         for name, value in (("heel", heel), ("toe", toe), ("time", time)):
             object.__setattr__(self, name, value)
@@ -111,7 +111,7 @@ class PlateStep:
         """Why the step is left out, for a person to read; None where it is used."""
         if self.clean:
             return None
-        what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is left out: {self.reason}"
+        what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is excluded: {self.reason}"
         return Finding(
             self.doubt or "note",
             "plate step",
@@ -184,7 +184,7 @@ def weighed_steps(
         share = weight.share(named[step.platform], (start, end)) if end - start >= ALONE_S else 1.0
         if not abs(share - 1) > MOST_APART:
             return step
-        found = f"it shows {share:.2f} of the force that {weight.newton:.0f} N of body weight need on one leg"
+        found = f"it shows {share:.2f} of the force that one leg needs to carry {weight.newton:.0f} N of body weight"
         if step.reason and share < 1:  # a sole beyond the edge, another foot: explains what is missing, never too much
             return replace(step, doubt=step.doubt or "note")
         return replace(step, reason=f"{found} from {start:.2f} to {end:.2f} s", doubt="warning")
@@ -199,7 +199,7 @@ def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = L
             "note",
             "empty plate",
             file,
-            f"nobody stepped on {platform.name}: it never carries more than {platform.load_n.max():.0f} N",
+            f"nobody stepped on {platform.name}: its force never exceeds {platform.load_n.max():.0f} N",
             "nothing; no step on it is counted",
         )
         for platform in found
@@ -216,19 +216,19 @@ def _foot(
     side = min(known, key=lambda key: known[key], default="")
     if platform.side:
         own = known.get(platform.side, 0.0)
-        whose = f"it is named the foot's of side {platform.side}, and its centre of pressure"
+        whose = f"it is assigned to the foot of side {platform.side}, but its centre of pressure"
         if own > BESIDE_FOOT_M and side != platform.side:
             return platform.side, f"{whose} follows the other foot ({side}), {100 * own:.0f} cm away", "warning"
-        reason = f"{whose} is {100 * own:.0f} cm beside it" if own > BESIDE_FOOT_M else ""
+        reason = f"{whose} is {100 * own:.0f} cm from it" if own > BESIDE_FOOT_M else ""
         return platform.side, reason, "warning" if reason else ""
     standing = {side: _stands_s(foot, platform, span) for side, foot in feet.items()}
     if len(standing) == 2 and min(standing.values()) >= STANDS_S:
         both = ", ".join(f"{side} for {seconds:.2f} s" for side, seconds in standing.items())
-        return "", f"both feet stand on it, {both}", "note"
+        return "", f"both feet are on it, {both}", "note"
     if not known:
-        return "", "no foot has its markers then", ""
+        return "", "the markers of both feet are missing then", ""
     if known[side] > BESIDE_FOOT_M:
-        return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})", "warning"
+        return "", f"the centre of pressure is {100 * known[side]:.0f} cm from the nearest foot ({side})", "warning"
     return side, _edge(feet[side], platform, span, least_load_n), ""
 
 
@@ -263,7 +263,7 @@ def _edge(foot: FootPath, platform: Platform, span: tuple[float, float], least_l
     """Say which part of a foot bears load beside the platform, or must, as the centre of pressure is near its edge."""
     if platform.surface is None:
         return ""
-    for name, part in (("the heel stands", foot.heel), ("the toes stand", foot.toe)):
+    for name, part in (("the heel is", foot.heel), ("the toes are", foot.toe)):
         frames = _frames(foot, span) & foot.still(part)
         outside = platform.surface.outside(part)[frames]
         outside = outside[np.isfinite(outside)]

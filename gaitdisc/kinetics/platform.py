@@ -35,8 +35,8 @@ class Wrench:
         force, moment = read_only(self.force), read_only(self.moment)
         if force.ndim != 2 or force.shape[1] != 3 or moment.shape != force.shape:
             raise ShapeError(
-                "a wrench needs a force and a moment of shape (sample, 3)",
-                f"found {force.shape} and {moment.shape}",
+                "a wrench must have a force and a moment of shape (sample, 3)",
+                f"their shapes are {force.shape} and {moment.shape}",
                 "Put samples first, the laboratory's axes second.",
             )
         object.__setattr__(self, "force", force)
@@ -149,7 +149,7 @@ def platforms(trial: Trial) -> list[Platform]:
         raise ChannelError(
             "joint moments need force and moment of the ground in three directions",
             f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
-            "Give plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
+            "Provide plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
         )
     for platform in found:
         _check_sign(platform, forces.source.file or trial.name)
@@ -161,7 +161,7 @@ def _plate(forces: Recording, name: str, surfaces: dict[str, Surface]) -> Platfo
         raise ChannelError(
             f"the wrench of {name} needs the corners of its surface",
             f"{forces.source.file or 'the trial'} has them for {', '.join(surfaces) or 'no plate'}",
-            "Keep the trial's surfaces, or correct FORCE_PLATFORM:CORNERS.",
+            "Keep the corners of the trial's plates, or correct FORCE_PLATFORM:CORNERS.",
         )
     surface = surfaces[name]
     force, moment = _three(forces, f"{name}_f{{}}"), _three(forces, f"{name}_m{{}}")
@@ -180,8 +180,9 @@ def _foot_force(forces: Recording, key: str) -> Platform:
     if lost.any():
         first, file = int(np.argmax(lost)), forces.source.file or "the trial"
         raise ReadError(
-            f"ground_force_{key} needs its point and moment wherever it presses",
-            f"{file} has {force[first, 1]:.0f} N at {forces.time[first]:.3f} s without, and {lost.sum()} such samples",
+            f"ground_force_{key} must have its point and moment in every loaded sample",
+            f"{file} lacks them for {force[first, 1]:.0f} N at {forces.time[first]:.3f} s, in {lost.sum()} samples in "
+            "all",
             "Export the centre of pressure in m, and 0 where the foot is in the air.",
         )
     floor = float(np.median(point[pressed, 1])) if pressed.any() else 0.0
@@ -210,5 +211,5 @@ def _check_sign(platform: Platform, file: str) -> None:
         raise UnitError(
             f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
             f"{file} has {load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N",
-            "Its sign is turned: give it as the force of the ground on the foot.",
+            "The sign is reversed. Export the force of the ground on the foot.",
         )

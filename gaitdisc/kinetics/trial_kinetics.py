@@ -48,7 +48,10 @@ class ForceBalance:
     def line(self) -> str:
         """Return the balance as one line of text."""
         if not self.tested:
-            return f"force balance: the load of both feet is known together in {self.frames} frames only; not tested"
+            return (
+                f"force balance: the loads of both feet are known at the same time in {self.frames} frames only; not "
+                "tested"
+            )
         return (
             f"force balance over {self.frames} frames: vertical rms {self.rms:.1f} % of body weight "
             f"(mean {self.mean:+.1f} %), horizontal rms {self.level_rms:.1f} %"
@@ -82,7 +85,7 @@ def force_balance(
         raise ChannelError(
             "the balance of forces needs both legs and the pelvis",
             f"there is {'the leg ' + ', '.join(found) if found else 'no leg'}",
-            "Give the markers of both legs.",
+            "Provide the markers of both legs.",
         )
     needed = np.zeros(loads["r"].wrench.force.shape)
     rest = person.kg
@@ -147,9 +150,9 @@ def trial_kinetics(
     if not any(step.clean for step in steps):
         reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
         raise ChannelError(
-            "joint moments need a step of one foot alone on a force platform",
+            "joint moments need a step of one foot alone on a force plate",
             f"{file} has {reasons or 'no loaded platform'}",
-            "Leave the trial out of kinetics, or give one whose plates were hit by one foot each.",
+            "Exclude the trial from kinetics, or use one in which each foot hit its own plate.",
         )
     loads = foot_loads(found, steps, time, settings.force_cutoff_hz, airborne)
     both = legs(poses, feet, person, settings)

@@ -40,21 +40,21 @@ def compare(
     smallest_deg: float = 2.0,
     smallest_n_m_per_kg: float = 0.1,
 ) -> Mismatch:
-    """Say where over the stride two walks disagree, how much, and whether that is more than chance.
+    """Compare two walks over the stride: where they differ, by how much, and whether significantly.
 
-    Both are filtered alike and cut at the same mark of the stride; a permutation test over strides holds the chance of
-    any false region in any channel at 5 %.
+    Both are filtered identically and cut at the same event of the stride. A permutation test over strides limits the
+    probability of any false region in any channel to 5 %.
 
     Parameters
     ----------
     first, second : path, Trial, DataFrame or Recording
         A simulated and a measured walk, or two conditions; the gap is second minus first.
     channels : sequence of str, or str
-        Only these; by default all that both have.
+        Channels to compare; by default all that both have.
     cutoff_hz : float
         Low-pass of angles and moments, -3 dB of one pass [Hz].
     detector : str
-        What finds initial contact in both: `auto`, `force`, `events`, `markers` or `angles`.
+        Detector of initial contact in both: `auto`, `force`, `events`, `markers` or `angles`.
     smallest_deg : float
         Smallest difference of an angle that is reported [deg].
     smallest_n_m_per_kg : float
@@ -63,12 +63,12 @@ def compare(
     Returns
     -------
     Mismatch
-        Curves, the gap with its band, and the regions of the stride where it is more than chance.
+        Curves, the gap with its band, and the regions of the stride where it is significant.
 
     Raises
     ------
     GaitdiscError
-        If a file cannot be read, is no walking, or the two have nothing in common.
+        If a file cannot be read or is not a walk, or the two have no channels in common.
 
     References
     ----------
@@ -90,28 +90,29 @@ def compare(
 
 
 def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05) -> pd.DataFrame:
-    """Test each column of the second table against the first, one row a participant in both.
+    """Test each column of the second table against the first; both have one row per participant.
 
-    Wilcoxon's signed-rank test, exact, of the pairs; Holm's step-down with Sidak's levels over the columns.
+    The test is Wilcoxon's exact signed-rank test of the pairs, with Holm's step-down and Sidak's levels over the
+    columns.
 
     Parameters
     ----------
     first, second : DataFrame (participant, variable)
         With the same participants in the index and the same columns, in any order; NaN where a number is missing.
     alpha : float
-        Chance of one false alarm or more in all columns.
+        Probability of at least one false positive over all columns.
 
     Returns
     -------
     DataFrame
-        One row a variable: n, w, p, medians, Hodges-Lehmann `shift` (second minus first) with its 95 % interval `low`
-        and `high`, `rank_biserial`, `p_adjusted`, `different`, and who was left out. A variable that fewer than six
-        participants have is not tested, and not counted among the tests.
+        One row per variable: n, w, p, medians, Hodges-Lehmann `shift` (second minus first) with its 95 % interval `low`
+        and `high`, `rank_biserial`, `p_adjusted`, `different`, and who was left out. A variable with fewer than six
+        participants is not tested and not counted.
 
     Raises
     ------
     ShapeError
-        If the tables are of other participants or variables, a participant stands twice, or a column holds no numbers.
+        If the tables differ in participants or variables, a participant occurs twice, or a column is not numeric.
 
     References
     ----------
@@ -130,9 +131,9 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     for table in (first, second):
         if not isinstance(table, pd.DataFrame):
             raise ShapeError(
-                "paired tests take two DataFrames (participant, variable)",
+                "paired tests need two DataFrames (participant, variable)",
                 f"found {type(table).__name__}",
-                "Take signed_rank for one variable; bring a long table here with table.pivot(...).",
+                "Use signed_rank for one variable. Convert a long table with table.pivot(...).",
             )
         check_numbers(table, "variables")
     check_same(first.index, second.index, "participants")
@@ -149,7 +150,7 @@ def permutation_clusters(
     permutations: int = 2000,
     seed: int = 0,
 ) -> pd.DataFrame:
-    """Find where two sets of curves differ, all points and channels corrected together.
+    """Find where two sets of curves differ, corrected for all points and channels together.
 
     Parameters
     ----------
@@ -157,26 +158,27 @@ def permutation_clusters(
         One row a person, a stride or a block of strides, complete: `strides.normalised(recording)`, or a DataFrame
         with one column a point of the stride.
     paired : bool
-        Row k of both belongs to one person (of two DataFrames, rows of one index); else the sets are independent.
+        Whether row k of both (in DataFrames: rows with one index) belongs to one person; otherwise the sets are
+        independent.
     channels : sequence of str, or str, optional
-        Names of the channels; numbers where they are not given.
+        Names of the channels; by default their numbers.
     alpha : float
-        Chance of a false alarm anywhere.
+        Probability of a false positive anywhere.
     permutations : int
-        At most; all there are where there are fewer.
+        Maximum number; all possible permutations if there are fewer.
     seed : int
-        Of the permutations that are drawn.
+        Seed of the random permutations.
 
     Returns
     -------
     DataFrame
-        One row a cluster: channel, first_point and last_point (both inside), sign of second minus first (1 where the
+        One row per cluster: channel, first_point and last_point (both inside), sign of second minus first (1 where the
         second set lies above), mass, p; empty where nothing differs. `attrs` holds threshold, permutations and exact.
 
     Raises
     ------
     ShapeError
-        If the curves do not fit together or a value is missing.
+        If the curves do not match or a value is missing.
     ComparisonError
         If there are fewer than six units, or too few permutations for this alpha.
 
@@ -200,7 +202,8 @@ def permutation_clusters(
     names = several(channels) or tuple(range(one.shape[2]))
     if one.shape[1:] != other.shape[1:] or len(names) != one.shape[2] or (paired and len(one) != len(other)):
         raise ShapeError(
-            "two sets of curves have the same points and channels" + (", and as many rows in pairs" if paired else ""),
+            "two sets of curves must have the same points and channels"
+            + (", and as many rows for pairs" if paired else ""),
             f"found {one.shape} and {other.shape}, (unit, phase, channel), with {len(names)} names of channels",
             "Cut both into strides of 101 points with the same channels.",
         )
@@ -218,15 +221,16 @@ def _curves(given: Any) -> NDArray[np.float64]:
         if pd.api.types.infer_dtype(given.columns) in ("mixed", "mixed-integer"):  # 0, 1, ..., 100, participant
             name = next(label for label in given.columns if isinstance(label, str))
             raise ShapeError(
-                "every column is one of the points of the stride",
-                f"column {name!r} stands beside {len(given.columns) - 1} others",
+                "every column must be one of the points of the stride",
+                f"column {name!r} occurs among {len(given.columns) - 1} others",
                 f"Make it the index: table.set_index({name!r}).",
             )
     values = real_array(given)
     if values.ndim not in (2, 3) or (len(values) == POINTS != values.shape[1]):
         raise ShapeError(
-            "a set of curves has the shape (unit, phase) or (unit, phase, channel): one row a person or stride",
+            "a set of curves must have shape (unit, phase) or (unit, phase, channel), with one row per person or "
+            "stride",
             f"found {values.shape}",
-            "Turn it round (array.T); of a long table, table.pivot(index=..., columns=..., values=...).",
+            "Transpose it (array.T). For a long table use table.pivot(index=..., columns=..., values=...).",
         )
     return values[:, :, None] if values.ndim == 2 else values

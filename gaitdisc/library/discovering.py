@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gaitdisc.batch.discover_files import discovered
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.engines.mapping import names_engine
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.library.simulating import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
@@ -33,10 +32,10 @@ def discover(
     effects: Sequence[str] = (),
     alpha: float = 0.05,
 ) -> tuple[Discovery, Simulation]:
-    """Find where a model and measured trials disagree, name what is missing with its numbers, and add it.
+    """Identify the effect that a model lacks in comparison with measured trials, estimate it, and add it to the model.
 
-    A part of the data is held out before anything is fitted: other trials where there are several, else the last part
-    of the one trial. How far the gap closes is reported on these.
+    Part of the data is held out before any fit: entire trials if there are several, otherwise the last part of the
+    trial. The reduction of the gap is reported on these data.
 
     Parameters
     ----------
@@ -45,26 +44,26 @@ def discover(
         MuJoCo or OpenSim or its mapping file (docs/engines.md).
     data : path, DataFrame, Recording, or sequence of Recording or of DataFrame
         Measured trials: a table (or its CSV or Parquet file) with the columns `time` [s], each input and each observed
-        channel in the model's units, and `trial` where there are several; or one table a trial; or one Recording a
-        trial, whose units are converted to the model's.
+        channel in the model's units, and `trial` where there are several; or one table per trial; or one Recording per
+        trial, whose units are converted to those of the model.
     catalogue : path, optional
-        A file of effects of your own, considered beside those that come along.
+        A file of your own effects, in addition to the included ones.
     progress : callable, optional
-        Called with one line about each step; `print`, say. Of a model of an engine, and of a function whose
-        equations could not be written down, which take their time, they go to the standard error stream by default.
+        Function that receives one line about each step, such as `print`. By default the lines go to the logger
+        `gaitdisc`.
     effects : sequence of str, optional
-        Search nothing, and fit exactly these, each ``"effect@place"`` (``"viscous_damping@air"``): data that were held
-        out prove or refute them together.
+        Fit exactly these effects without a search, each ``"effect@place"`` (``"viscous_damping@air"``); held-out data
+        support or refute them together.
     alpha : float, optional
-        The greatest rate of false finds: the p of what is named, on held-out data, is below it. Of a recorded walk
-        that is tracked it is .05.
+        Maximum false-positive rate: the p-value of a named effect on held-out data is below it. For a tracked walk it
+        is .05.
 
     Returns
     -------
     found : Discovery
         The verdict, a sentence, the effects with their intervals, rivals, and the gap before and after.
     augmented : Simulation
-        The model with what was found in it; `simulate` runs it. Of a model of MuJoCo or OpenSim, its mapping.
+        The model with the identified effect; `simulate` runs it. For a MuJoCo or OpenSim model, its mapping.
 
     Raises
     ------
@@ -85,20 +84,16 @@ def discover(
     """
     request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects), alpha)
     if isinstance(model, Path | str) and names_engine(model):
-        return _of_engine(Path(model), data, request, progress or _to_the_terminal)
+        return _of_engine(Path(model), data, request, progress or LOG.info)
     simulation = model_of(model)
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
         files[Path(model)] = "simulation"
     slow = simulation.manner if isinstance(simulation, PythonSimulation) else ""
-    report = progress or (_to_the_terminal if slow else lambda _: None)
+    report = progress or LOG.info
     if slow:
         report(slow)
     return discovered(simulation, measured, request, files, report)
-
-
-def _to_the_terminal(step: str) -> None:
-    print(step, file=sys.stderr, flush=True)
 
 
 def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str], None]) -> tuple[Discovery, Simulation]:
@@ -109,7 +104,7 @@ def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str],
     if walk is not None:
         if not isinstance(data, Path | str):
             raise SchemaError(
-                f"the walk of {model.name} is tracked by a file of its angles (.mot, .sto)",
+                f"the walk of {model.name} must be given as a file of its angles (.mot, .sto)",
                 f"found {type(data).__name__}",
                 "Give the path of that file.",
             )
@@ -144,9 +139,9 @@ def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path
     if isinstance(data, pd.DataFrame):
         return measured_of_table(_timed(data), simulation, "the table"), {}
     raise SimulationError(
-        "measured data are a table, a file or recordings",
+        "measured data must be a table, a file or recordings",
         f"found {type(data).__name__}",
-        "Give a DataFrame with a column 'time' [s], the path of a CSV or Parquet file, or one Recording a trial.",
+        "Give a DataFrame with a column 'time' [s], the path of a CSV or Parquet file, or one Recording per trial.",
     )
 
 

@@ -34,31 +34,31 @@ def lowpass(
     max_gap_s: float = MAX_SPLINE_S,
     rate_hz: float | None = None,
 ) -> Signal:
-    """Take away what is faster than the cut-off, without lag.
+    """Remove frequencies above the cut-off, without lag.
 
-    A Butterworth filter runs forwards and backwards. Gaps up to `max_gap_s` are bridged by a cubic spline and marked
-    suspect; longer ones stay NaN, and what lies between them is filtered run by run. 1.8 periods of the cut-off at both
-    ends of each run are marked suspect. A heading that passes 180 deg is filtered as it goes on, and comes round again
-    afterwards.
+    A Butterworth filter runs forwards and backwards. Gaps up to `max_gap_s` are interpolated by a cubic spline and
+    marked suspect; longer gaps stay NaN, and the segments between them are filtered separately. 1.8 periods of the
+    cut-off at both ends of each run are marked suspect. A heading that passes 180 deg is unwrapped, filtered and
+    wrapped again.
 
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        A DataFrame has its times [s] in a column `time` or in an index of that name; every other column is filtered.
-        A Series has them in its index. Without times `rate_hz` is given, as for an array.
+        A DataFrame has its times [s] in a column `time` or in an index of that name; every other column is filtered. A
+        Series has them in its index. A table without times, like an array, needs `rate_hz`.
     cutoff_hz : float
-        -3 dB frequency of one pass [Hz]; both passes are 3 dB down at 5.39 Hz where this is 6 (order 4, 100 Hz).
+        -3 dB frequency of one pass [Hz]; for 6 Hz (order 4, 100 Hz), both passes together have -3 dB at 5.39 Hz.
     order : int
-        Order of one pass; the roll-off of both is that of twice the order.
+        Order of one pass; both passes together have twice the order's roll-off.
     max_gap_s : float
         Longest gap that is bridged [s].
     rate_hz : float, optional
-        Samples a second, of what has no times.
+        Sampling rate of a signal without times [Hz].
 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        In the form of `signal`; runs too short to filter are NaN.
+        As `signal`; segments too short for the filter are NaN.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def lowpass(
 
     References
     ----------
-    Ebers (2023), section 4.2.1. Differs: the two passes, the cut-off's meaning and the edges are stated.
+    Ebers (2023), section 4.2.1. Differs: the two passes, the meaning of the cut-off and the edges are stated here.
 
     Examples
     --------
@@ -88,12 +88,12 @@ def highpass(
     max_gap_s: float = MAX_SPLINE_S,
     rate_hz: float | None = None,
 ) -> Signal:
-    """Take away what is slower than the cut-off, without lag; otherwise as `lowpass`.
+    """Remove frequencies below the cut-off, without lag; otherwise as `lowpass`.
 
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        As `lowpass` takes it.
+        Signal in the forms of `lowpass`.
     cutoff_hz : float
         -3 dB frequency of one pass [Hz].
     order : int
@@ -101,17 +101,17 @@ def highpass(
     max_gap_s : float
         Longest gap that is bridged [s].
     rate_hz : float, optional
-        Samples a second, of what has no times.
+        Sampling rate of a signal without times [Hz].
 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        In the form of `signal`; runs too short to filter are NaN.
+        As `signal`; segments too short for the filter are NaN.
 
     Raises
     ------
     SamplingError
-        As `lowpass`.
+        For the reasons of `lowpass`.
 
     Examples
     --------
@@ -136,30 +136,30 @@ def envelope(
     Parameters
     ----------
     emg : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        Raw EMG, as digitised, not rectified; EMG channels only. As `lowpass` takes it.
+        Raw EMG, as digitised and not rectified; EMG channels only, in the forms of `lowpass`.
     highpass_hz, lowpass_hz : float
         -3 dB frequencies of one pass [Hz].
     order : int
-        Order of one pass, of both filters.
+        Order of one pass of both filters.
     rate_hz : float, optional
-        Samples a second, of what has no times.
+        Sampling rate of a signal without times [Hz].
 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        In the form and unit of `emg`. Small negative values can follow a burst: the low-pass rings; they are kept.
+        As `emg`, in the same unit. The low-pass can give small negative values after a burst; these are kept.
 
     Raises
     ------
     SamplingError
-        If the rate is not above twice the high-pass frequency, or the signal is an envelope already.
+        If the rate is not above twice the high-pass frequency, or the signal is already an envelope.
     ChannelError
         If a channel of a Recording is not EMG.
 
     References
     ----------
     Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
-    filters". Differs: order 4 in each of two passes, no lag; the text says neither.
+    filters". Differs: order 4 in each of two passes, no lag; the text states neither.
 
     Examples
     --------
@@ -177,17 +177,17 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        Filtered; the difference quotient passes on what noise is left. As `lowpass` takes it.
+        Filtered signal, because differentiation amplifies noise; in the forms of `lowpass`.
     order : int
         1 or 2.
     rate_hz : float, optional
-        Samples a second, of what has no times.
+        Sampling rate of a signal without times [Hz].
 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        In the form of `signal`, per second; a Recording's unit says so (`deg/s`). NaN at two samples of each end and
-        within two samples of a missing one.
+        As `signal`, per second; the unit of a Recording is adapted (`deg/s`). NaN at two samples of each end and within
+        two samples of a missing one.
 
     Raises
     ------
@@ -231,16 +231,16 @@ def _in_its_form(
         values = np.asarray(signal) if np.iscomplexobj(signal) else np.asarray(signal, float)
     except (TypeError, ValueError):
         raise ShapeError(
-            "a filter takes a Recording, a DataFrame or an array of numbers",
+            "the input of a filter must be a Recording, a DataFrame or an array of numbers",
             f"found {type(signal).__name__}",
             "Read a file with gaitdisc.read first.",
         ) from None
     values = real_array(values)
     if values.ndim not in (1, 2) or (values.ndim == 2 and values.shape[1] > LIKELY * len(values)):
         raise ShapeError(
-            "an array that is filtered has the shape (time,) or (time, channel), time first",
+            "an array must have shape (time,) or (time, channel) to be filtered",
             f"found {values.shape}",
-            "Turn it round (array.T), or filter one trial at a time.",
+            "Transpose it (array.T), or filter one trial at a time.",
         )
     time = _times(len(values), rate_hz)
     columns = values.reshape(len(values), -1)
@@ -253,13 +253,13 @@ def _in_its_form(
 def _times(count: int, rate_hz: float | None) -> NDArray[np.float64]:
     if rate_hz is None:
         raise SamplingError(
-            "an array, or a table without times, is filtered at its rate",
-            "no rate_hz is given",
-            "Say how many samples a second it has: rate_hz=100, for instance.",
+            "an array, or a table without times, needs a rate to be filtered",
+            "rate_hz is not given",
+            "Give the number of samples per second, for example rate_hz=100.",
         )
     if not isinstance(rate_hz, int | float | np.number) or not 0 < rate_hz < np.inf:
         raise SamplingError(
-            "a rate is a number of samples a second above zero", f"rate_hz is {rate_hz!r}", "Write rate_hz=100."
+            "a rate must be a number of samples per second above zero", f"rate_hz is {rate_hz!r}", "Write rate_hz=100."
         )
     return np.arange(count) / rate_hz
 
@@ -267,7 +267,7 @@ def _times(count: int, rate_hz: float | None) -> NDArray[np.float64]:
 def _check_rate(rate_hz: float | None, recording: Recording) -> None:
     if rate_hz is not None and not abs(_times(2, rate_hz)[1] * recording.rate_hz - 1) < 1e-3:
         raise SamplingError(
-            "a signal with times has its rate from them",
-            f"its times give {recording.rate_hz:g} samples a second, rate_hz is {rate_hz:g}",
-            "Leave rate_hz out, or correct the times (they are in seconds).",
+            "a signal with times takes its rate from them",
+            f"its times give {recording.rate_hz:g} samples per second, but rate_hz is {rate_hz:g}",
+            "Omit rate_hz, or correct the times (they are in seconds).",
         )

@@ -37,43 +37,42 @@ def simulation_from_function(
 ) -> Simulation | PythonSimulation:
     """Simulation of a Python function that gives the time derivative of each state.
 
-    The arguments say what is what. The first ones are the states, as many as the function returns derivatives.
-    Arguments after them without a default are inputs, columns of the data; those with a default are parameters, and
-    the default is their value (or a dict of several). Arguments after a `*` are ports: places where a missing effect
-    may enter, zero in the model as it is. An argument called `t` is the time [s]. Or, with `states`, it is a function
-    of the time, the vector of the states, the vector of the inputs (where there are any) and the dict of the parameters
-    (likewise), as solvers take it: `rates(t, x, u, p)`.
+    The first arguments are the states, one for each derivative that the function returns. Arguments after them without
+    a default are inputs, columns of the data; those with a default are parameters, and the default is their value (or a
+    dict of several). Arguments after a `*` are ports: places where a missing effect may act, zero in the initial model.
+    An argument called `t` is the time [s]. With `states`, the function has the form that solvers use, `rates(t, x, u,
+    p)`: time, vector of states, vector of inputs (if any) and dict of parameters (if any).
 
-    The function is called once with names in place of numbers, and what it does with them is written down: arithmetic,
-    NumPy or `math`, `if`, loops, other functions of yours. The simulation has these equations then, and runs as fast as
-    one from a file. Of a function that does something else (solves for a mass matrix, calls a program) the simulation
-    calls the function itself, with arrays of points where it can, else point by point: ten to a thousand times slower.
+    The function is called once with symbols, which derives its equations from arithmetic, NumPy, `math`, `if`, loops
+    and other functions. The simulation then runs as fast as one from a file. If the function does something else (it
+    solves for a mass matrix or calls a program), the simulation calls the function itself, with arrays of points if
+    possible, otherwise point by point: ten to a thousand times slower.
 
     Parameters
     ----------
     function : callable
         Returns a derivative for each state, in their order: a tuple, a list or an array.
     units : mapping of str to str, optional
-        Unit of each argument, `{"angle": "rad", "torque": "N m"}`; what is not named has the unit 1. Name all or
-        none: where some have units, a discovery says which terms do not fit.
+        Unit of each argument, `{"angle": "rad", "torque": "N m"}`; other arguments have the unit 1. Give all units or
+        none: with units, a discovery reports terms whose units do not match.
     observations : mapping of str to str, optional
-        Measured column and what it measures, in states, inputs and parameters: `{"height": "level + offset"}`. By
-        default each state is measured under its own name, as far as the data have such a column.
+        Measured column and its expression of states, inputs and parameters: `{"height": "level + offset"}`. By default
+        each state is measured under its own name, as far as the data have such a column.
     states, inputs : sequence of str, or str, optional
-        Names of the elements of both vectors, where the function takes vectors.
+        Names of the elements of both vectors, if the function takes vectors.
     parameters : mapping of str to float, optional
-        Parameters that such a function takes as a dict, and their values.
+        Parameters of such a function and their values.
 
     Returns
     -------
     Simulation or PythonSimulation
-        Goes wherever a simulation goes: `gaitdisc.simulate`, `gaitdisc.discover`.
+        A simulation for `gaitdisc.simulate` and `gaitdisc.discover`.
 
     Raises
     ------
     SimulationError
-        If the function has too few arguments, a default that is no number, raises whatever it is given, or returns
-        other derivatives when it is called again.
+        If the function has too few arguments, a default that is not a number, always raises an error, or returns
+        different derivatives when it is called again.
 
     Examples
     --------
@@ -93,9 +92,9 @@ def simulation_from_function(
     if count > len(taken.signals) or (states and count != len(states)):
         given = f"{len(states)} states" if states else f"{len(taken.signals)} arguments without a default"
         raise SimulationError(
-            "the first arguments of a simulation's function are its states, one for each derivative",
+            "the first arguments of a simulation's function must be its states, one for each derivative",
             f"{taken.title} returns {count} derivatives and has {given}",
-            "Give every state an argument of its own, before the inputs.",
+            "Give every state its own argument, before the inputs.",
         )
     unit = dict(units or {})
     _refuse_unknown_units(taken, unit)
@@ -117,7 +116,7 @@ def simulation_from_function(
         rates = _Called(taken, count, by_points=False)
         rates = rates if rates.agrees else _Called(taken, count, by_points=True)
         model = python_simulation(taken.title, rates, *parts, seen)
-        return replace(model, manner=f"{rates.manner}, since its equations could not be written down: {reason}")
+        return replace(model, manner=f"{rates.manner}, because its equations could not be derived: {reason}")
 
 
 class _NoNumbersError(TypeError):
@@ -147,7 +146,7 @@ class _Taken:
         if not found:
             raised = self.raised[0]
             raise SimulationError(
-                "a simulation's function takes a number for each argument and returns a derivative for each state",
+                "a simulation's function must accept a number for each argument and return a derivative for each state",
                 str(raised)
                 if isinstance(raised, _NoNumbersError)
                 else f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
@@ -157,9 +156,9 @@ class _Taken:
         before = next(one for one in reversed(self.returned) if one)
         if not np.array_equal(again, before, equal_nan=True):
             raise SimulationError(
-                "a simulation's function returns the same derivatives whenever it is called with the same numbers",
+                "a simulation's function must return the same derivatives whenever it is called with the same numbers",
                 f"{self.title} returned {before}, then {again}",
-                "Leave random numbers and what it remembers out of it; noise belongs to the measurement.",
+                "Remove random numbers and internal memory. Noise belongs to the measurement.",
             )
         return found[0][0]
 
@@ -271,7 +270,7 @@ def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
         for names in ((TIME,), machine.states, machine.inputs, machine.parameters)
     )
     if not taken.gives(machine.rates(t[:, 0], x, u, values)):
-        raise NotTraced("they give other numbers than the function")
+        raise NotTraced("they give numbers that differ from the function")
     return simulation
 
 
@@ -281,9 +280,9 @@ def _by_name(function: Callable[..., Any]) -> _Taken:
     for one in arguments.values():
         if one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD, one.POSITIONAL_ONLY):
             raise SimulationError(
-                "a simulation's function names each of its states, inputs and parameters as an argument",
+                "a simulation's function must name each of its states, inputs and parameters as an argument",
                 f"{_title(function)} has {str(one)!r}",
-                "Write one argument for each; or, where it takes vectors, name their elements: "
+                "Write one argument for each. If it takes vectors, name their elements: "
                 "simulation_from_function(function, states=[...], inputs=[...], parameters={...}).",
             )
     plain = [one.name for one in arguments.values() if one.default is one.empty and one.kind is not one.KEYWORD_ONLY]
@@ -306,7 +305,7 @@ def _by_name(function: Callable[..., Any]) -> _Taken:
     if len(plain) - len(signals) == 1 == len(signals):  # a solver's f(t, y), or that of odeint
         order = "" if plain[0] == TIME else " (with the time as the first argument)"
         remedy = (
-            f"Where {signals[0]!r} is the vector of the states, name them{order}: "
+            f"If {signals[0]!r} is the vector of the states, name them{order}: "
             f'gaitdisc.simulation_from_function({_title(function)}, states=["angle", "rate"]).'
         )
         return _Taken(function, signals, numbers, ports, from_values, remedy)
@@ -323,7 +322,7 @@ def _as_vectors(
     if len(taken) not in (wanted, wanted + 1):
         named = ["t", "x", *(["u"] if inputs else []), *(["p"] if numbers else [])]
         raise SimulationError(
-            f"with these states, inputs and parameters a function takes ({', '.join(named)})",
+            f"with these states, inputs and parameters the function must take ({', '.join(named)})",
             f"{_title(function)} takes ({', '.join(one.name for one in taken)})",
             "Name the elements of each vector, or give the function these arguments.",
         )
@@ -345,9 +344,9 @@ def _title(function: Callable[..., Any]) -> str:
 def _number(function: Callable[..., Any], name: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
         raise SimulationError(
-            "an argument with a default is a parameter of the simulation, a number or a dict of numbers",
+            "an argument with a default must be a parameter of the simulation: a number or a dict of numbers",
             f"{_title(function)} has {name}={value!r}",
-            "Give it a number, or take the default away.",
+            "Use a number, or remove the default.",
         )
     return float(value)
 
@@ -357,7 +356,7 @@ def _refuse_unknown_units(taken: _Taken, units: Mapping[str, str]) -> None:
     unknown = next((name for name in units if name not in known), None)
     if unknown is not None:
         raise SimulationError(
-            "a unit belongs to an argument of the function",
-            f"{taken.title} has none called {unknown!r}",
+            "a unit must belong to an argument of the function",
+            f"{taken.title} has no argument {unknown!r}",
             f"Known: {', '.join(known)}.",
         )

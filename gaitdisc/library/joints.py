@@ -32,14 +32,14 @@ def angles(
     walk : Trial, path, DataFrame, Recording or sequence of paths
         With markers.
     static : Trial or path
-        The same person standing, with the same markers; widths of joints are read from its C3D file.
+        Static trial of the same person with the same markers; joint widths are read from its C3D file.
     marker_set : str or path, optional
-        `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; recognised by the
-        labels where it is not given.
+        `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; by default recognised
+        by the labels.
     joints : str, optional
-        `free`, `held` or `planar`; as the marker set says where it is not given.
+        `free`, `held` or `planar`; by default as in the marker set.
     forward : sequence of 3 floats, optional
-        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+        Direction of walking in the laboratory's axes; by default from the pelvis.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def angles(
     Raises
     ------
     ChannelError
-        If a marker or a width is missing, or the labels are of no known set.
+        If a marker or a width is missing, or the labels belong to no known set.
     ShapeError
         If the laboratory's frame is mirrored or tilted, or left and right are exchanged.
 
@@ -72,32 +72,32 @@ def moments(
     marker_set: Path | str | None = None,
     force_cutoff_hz: float = 20.0,
 ) -> Recording:
-    """Joint moments and powers of a walk from its markers and force platforms, by inverse dynamics.
+    """Joint moments and powers of a walk from its markers and force plates, by inverse dynamics.
 
     Parameters
     ----------
     walk : Trial, path, DataFrame, Recording or sequence of paths
         With markers and ground forces.
     static : Trial or path
-        The same person standing, with the same markers.
+        Static trial of the same person with the same markers.
     mass_kg : float, optional
-        Body mass [kg]; as the static C3D file says where it is not given.
+        Body mass [kg]; by default from the static C3D file.
     sex : str
-        `f` or `m`, for the inertia of the segments; the mean of both where it is empty.
+        `f` or `m`, for the inertia of the segments; if empty, the mean of both.
     marker_set : str or path, optional
         As for `angles`.
     force_cutoff_hz : float
-        Low-pass of the ground's force [Hz]; 6 filters it as the markers are.
+        Low-pass of the ground force [Hz]; use 6 to filter it like the markers.
 
     Returns
     -------
     Recording
-        Internal moments [N m/kg] and powers [W/kg]; NaN in frames where the load of the foot is not known.
+        Internal moments [N m/kg] and powers [W/kg]; NaN in frames with an unknown load of the foot.
 
     Raises
     ------
     GaitdiscError
-        If markers, forces or the mass are missing, or no foot stands alone on a platform.
+        If markers, forces or the mass are missing, or no foot is alone on a force plate.
 
     References
     ----------

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def load(
     folder: Path | str,
 ) -> ResponseRun | Discovery | Reconstruction | Mismatch | VariantRun | PooledCycles | Reconstructor:
-    """Load a result that a command or `.save(folder)` wrote; what was changed since is refused.
+    """Load a result that a command or `.save(folder)` wrote; changed files are refused.
 
     Parameters
     ----------
@@ -33,12 +33,12 @@ def load(
     Returns
     -------
     ResponseRun, Discovery, Reconstruction, Mismatch, VariantRun, PooledCycles or Reconstructor
-        As the folder says.
+        The kind of result that the folder contains.
 
     Raises
     ------
     SchemaError
-        If the folder holds no result, or one that is damaged, incomplete or of a format that this version does not
+        If the folder contains no result, or one that is damaged, incomplete or in a format that this version cannot
         read (docs/compatibility.md).
 
     Examples
@@ -50,18 +50,18 @@ def load(
 
 
 def check(walk: Walk) -> Inspection:
-    """Look at a recording without changing or writing anything.
+    """Check a recording without changing or writing files.
 
     Parameters
     ----------
     walk : path, Trial, DataFrame or Recording
-        A file of a walk, or what was read of it.
+        A file of a walk, or the recording read from it.
 
     Returns
     -------
     Inspection
-        `light` is `green`, `amber` (channels or samples are spoiled) or `red` (the file cannot be used, `refusal` says
-        why); `findings` holds everything that was seen, the severest first.
+        `light` is `green`, `amber` (channels or samples are affected) or `red` (the file cannot be used; `refusal`
+        gives the reason); `findings` lists all findings, the most severe first.
 
     Examples
     --------

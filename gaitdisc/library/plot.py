@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitdisc.channel import nearest_word, side_of
+from gaitdisc.channel import hint_nearest, side_of
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Strides
@@ -181,9 +181,7 @@ def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
     draw_r2(axes, numbers)
     axes.set_xlabel("R² on the held-out device walk [1]")
     null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
-    axes.legend(
-        handles=r2_key(len(run.responses), null), frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncols=3
-    )
+    axes.legend(handles=r2_key(len(run.responses), null), frameon=False, loc=3, bbox_to_anchor=(0, 1), ncols=3)
     return axes
 
 
@@ -234,7 +232,7 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
         draw_runs(axes, numbers, name)
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{name} [{unit}]")
-    axes.set_title(f"{name}: what is left" if left else name)
+    axes.set_title(f"{name}: residual" if left else name)
     axes.legend(handles=discovery_key(measured=not left), frameon=False)
     return axes
 
@@ -377,9 +375,9 @@ def __dir__() -> list[str]:
 def _refuse_other(given: object, kind: str, made_by: str) -> None:
     if type(given).__name__ != kind:
         raise ShapeError(
-            f"this picture is of a {kind}, as {made_by} gives it",
+            f"this plot needs a {kind}, as {made_by} returns it",
             f"found {type(given).__name__}",
-            "Give the result itself, or what gaitdisc.load read of its folder.",
+            "Pass the result itself, or load it from its folder with gaitdisc.load.",
         )
 
 
@@ -395,10 +393,9 @@ def _stride_axis(axes: Axes, channel: str, unit: str) -> None:
 def _known(name: str, among: object) -> str:
     names = list(dict.fromkeys(str(one) for one in among))  # type: ignore[attr-defined]
     if name not in names:
-        nearest = nearest_word(name, names)
         raise ChannelError(
-            f"channel {name!r} is to be drawn",
-            f"the result has {', '.join(names[:8]) or 'none'}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            f"channel {name!r} cannot be drawn",
+            f"the result has {', '.join(names[:8]) or 'none'}" + hint_nearest(name, names),
             "Name one of these.",
         )
     return name

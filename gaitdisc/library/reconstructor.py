@@ -33,29 +33,29 @@ SETTINGS = ("kind", "rate_hz", "history_s", "spacing_s", "ahead_s", "seed")
 
 
 class Reconstructor(Saved, file="model.json"):
-    """Estimate the states of a system from the readings of a few sensors and their history.
+    """Estimate the states of a system from a few sensors and their history.
 
     Parameters
     ----------
     kind : str
-        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the present readings), `delay ridge` (on
+        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the current readings), `delay ridge` (on
         readings and their history), `fourier ridge` (on random Fourier features of these), `shallow decoder` (SDN,
         present readings), `shred` (recurrent network on readings and history, shallow decoder), or one on request.
     rate_hz : float
-        Samples a second of all arrays [Hz].
+        Sampling rate of all arrays [Hz].
     history_s : float
-        How far back a window reaches [s].
+        Length of the history in a window [s].
     spacing_s : float
-        From one reading of a window to the next [s].
+        Time between two readings of a window [s].
     ahead_s : float
-        0 estimates the present state, more of it forecasts [s].
+        0 for the current state; a positive value is a forecast [s].
     seed : int
-        Of every random act.
+        Seed of all random numbers.
 
     Attributes
     ----------
     half_widths : ndarray (state,) [each state's unit]
-        Half width of the 90 % interval, from the part that the model was chosen by; after `fit`.
+        Half width of the 90 % interval, from the validation part; available after `fit`.
 
     References
     ----------
@@ -87,14 +87,14 @@ class Reconstructor(Saved, file="model.json"):
     def fit(self, x: Trials, y: Trials) -> Reconstructor:
         """Fit the model to one trial, or to several.
 
-        The last 15 % of each trial choose penalties, epochs and the interval; a gap of one window and 0.3 s keeps them
-        apart from the rest. Filter `x` and `y` before, and hold your test data out before you call this.
+        Penalties, epochs and the interval are chosen on the last 15 % of each trial, separated from the rest by one
+        window and 0.3 s. Filter `x` and `y` first, and hold out your test data before you call this.
 
         Parameters
         ----------
         x : array_like (time, sensor), DataFrame, Series, Recording, or a sequence of them
-            Readings; a DataFrame or a Recording names them, and `predict` then finds them by name. Times, in a column
-            `time` or an index of that name, are no sensor; they have to go with `rate_hz`.
+            Readings. `predict` finds the columns of a DataFrame or Recording by name. Times, in a column `time` or an
+            index of that name, are not a sensor; they must agree with `rate_hz`.
         y : array_like (time, state), DataFrame, Series, Recording, or a sequence of them
             States at the same times.
 
@@ -106,11 +106,11 @@ class Reconstructor(Saved, file="model.json"):
         Raises
         ------
         ShapeError
-            If the arrays do not fit together.
+            If the arrays do not match.
         SamplingError
             If a trial is shorter than a window.
         TrainingError
-            If too few windows are left, or a state does not vary.
+            If too few windows remain, or a state does not vary.
         """
         many = isinstance(x, list | tuple) and (isinstance(x[0], Recording) or np.ndim(x[0]) > 1)
         given = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
@@ -119,17 +119,17 @@ class Reconstructor(Saved, file="model.json"):
         readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in given)
         if len(readings) != len(states):
             raise ShapeError(
-                "a model is fitted to as many trials of states as of readings",
-                f"found {len(readings)} of readings, {len(states)} of states",
+                "a model needs as many trials of states as of readings",
+                f"there are {len(readings)} of readings and {len(states)} of states",
                 "Give one array of states for each array of readings.",
             )
         sensors, targets = _names(readings[0], "sensor"), _names(states[0], "state")
         both = [name for name in targets if name in sensors]
         if both:
             raise ShapeError(
-                "a state is none of the sensors",
+                "a state must not be one of the sensors",
                 f"{both[0]!r} is in both",
-                "Leave it out of the states: it is measured.",
+                "Remove it from the states, because it is measured.",
             )
         lags = Lags(
             max(1, round(self.history_s / self.spacing_s) + 1) if self.history_s else 1,
@@ -151,13 +151,13 @@ class Reconstructor(Saved, file="model.json"):
         Parameters
         ----------
         x : array_like (time, sensor), DataFrame or Recording
-            Readings at `rate_hz`, with the sensors of `fit`: by name, or in their order.
+            Readings at `rate_hz`, with the sensors of `fit` by name or in the same order.
 
         Returns
         -------
         ndarray (time, state)
-            At the times of `x`; a forecast of a time rests on readings that end `ahead_s` before it. NaN where the
-            history is not full or a reading is missing.
+            States at the times of `x`; a forecast uses readings up to `ahead_s` before its time. NaN if the history is
+            incomplete or a reading is missing.
 
         Raises
         ------
@@ -171,7 +171,7 @@ class Reconstructor(Saved, file="model.json"):
         return np.array(model(self._recording(x, model.reconstructor.sensing.sensors)).values)
 
     def score(self, x: Readings, y: Readings) -> float:
-        """R2 of the estimates, the mean over states, where there are any.
+        """R2 of the estimates, averaged over states.
 
         Parameters
         ----------
@@ -187,7 +187,7 @@ class Reconstructor(Saved, file="model.json"):
         return float(np.mean(r2(measured[known], estimated[known])))
 
     def windows(self, x: ArrayLike, percent: ArrayLike) -> Samples:
-        """Windows of readings, as the fitted model takes them.
+        """Windows of readings in the form that the fitted model needs.
 
         Parameters
         ----------
@@ -199,24 +199,24 @@ class Reconstructor(Saved, file="model.json"):
         Returns
         -------
         Samples
-            Without states; percent stride at the last reading of each window.
+            Windows without states; percent stride of the last reading of each window.
         """
         what = self.model.reconstructor.sensing
         read = self._recording(x, what.sensors)
         return windows_of(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
     def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
-        """Settings by name, as scikit-learn's `clone` and `Pipeline` read them.
+        """Settings by name, for scikit-learn's `clone` and `Pipeline`.
 
         Parameters
         ----------
         deep : bool
-            Of no effect: there is nothing inside.
+            Without effect, because there is no inner estimator.
         """
         return {name: getattr(self, name) for name in SETTINGS}
 
     def set_params(self, **settings: Any) -> Reconstructor:
-        """Change settings, as scikit-learn's searches do; what was fitted is forgotten.
+        """Change settings, for scikit-learn's searches; the fitted model is discarded.
 
         Parameters
         ----------
@@ -226,7 +226,7 @@ class Reconstructor(Saved, file="model.json"):
         unknown = sorted(set(settings) - set(SETTINGS))
         if unknown:
             raise TrainingError(
-                f"a Reconstructor has the settings {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
+                f"settings of a Reconstructor are {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
             )
         self.__init__(**{**self.get_params(), **settings})  # type: ignore[misc]
         return self
@@ -241,9 +241,9 @@ class Reconstructor(Saved, file="model.json"):
 
     @property
     def model(self) -> SensingModel:
-        """What was fitted; takes a Recording as well."""
+        """The fitted model; it also accepts a Recording."""
         if self._model is None:
-            raise TrainingError("a model is fitted before it estimates", "fit was not called", "Call fit(x, y) first.")
+            raise TrainingError("a model must be fitted to predict", "fit was not called", "Call fit(x, y) first.")
         return self._model
 
     @property
@@ -265,9 +265,9 @@ class Reconstructor(Saved, file="model.json"):
         values = _array(_in_order(x, sensors), "readings")
         if values.shape[1] != len(sensors):
             raise ShapeError(
-                f"the model reads {len(sensors)} sensors",
-                f"found {values.shape[1]} columns",
-                "Give the sensors of fit, in their order.",
+                f"the model needs {len(sensors)} sensors",
+                f"the array has {values.shape[1]} columns",
+                "Give the sensors of fit, in the same order.",
             )
         time = np.arange(len(values)) / self.rate_hz
         return Recording(time, values, tuple(Channel(name, "signal", "1") for name in sensors))
@@ -276,9 +276,9 @@ class Reconstructor(Saved, file="model.json"):
         read, states = self._recording(x, what.sensors), _array(y, "states")
         if states.shape != (len(read.time), len(what.states)):
             raise ShapeError(
-                f"every reading has its row of {len(what.states)} states",
-                f"found readings {read.values.shape} and states {states.shape}, (time, column)",
-                "Give one row a time in both.",
+                f"every reading must have a row of {len(what.states)} states",
+                f"the readings have shape {read.values.shape}, the states {states.shape}",
+                "Give one row per time in both.",
             )
         both = Recording(
             read.time,
@@ -316,9 +316,9 @@ def _array(given: Any, words: str) -> NDArray[np.float64]:
         values = values[:, None]
     if values.ndim != 2:
         raise ShapeError(
-            f"{words} are an array (time, column)",
+            f"{words} must be an array (time, column)",
             f"found {values.shape}",
-            "Put time first, one column a sensor or state: x[:, None] for one of them.",
+            "Put time first, with one column per sensor or state: x[:, None] for a single one.",
         )
     return values
 
@@ -360,18 +360,18 @@ def _check_same_times(x: Any, y: Any, rate_hz: float) -> None:
     row = int(np.argmax(np.abs(first - second)))
     if abs(first[row] - second[row]) > 0.5 / rate_hz:
         raise SamplingError(
-            "readings and states are measured at the same times",
-            f"in row {row + 1} the readings are of {first[row]:.6g} s, the states of {second[row]:.6g} s",
-            "Cut both to one span, or shift the clock of one.",
+            "readings and states must be measured at the same times",
+            f"in row {row + 1} the readings are at {first[row]:.6g} s, the states at {second[row]:.6g} s",
+            "Cut both to the same period, or shift the clock of one.",
         )
 
 
 def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
     if abs(found_hz - rate_hz) > 1e-3 * rate_hz:
         raise SamplingError(
-            f"the model reads {rate_hz:g} samples a second",
+            f"the model needs {rate_hz:g} samples per second",
             f"the {what} has {found_hz:g}",
-            "Resample it, or give its rate: Reconstructor(rate_hz=...).",
+            "Resample it, or state its rate: Reconstructor(rate_hz=...).",
         )
 
 
@@ -387,8 +387,8 @@ def _in_order(given: Any, sensors: tuple[str, ...]) -> Any:
     absent = [name for name in sensors if name not in names]
     if absent:
         raise ShapeError(
-            f"the model is of the columns {', '.join(sensors)}",
+            f"the model needs the columns {', '.join(sensors)}",
             f"{absent[0]!r} is not among {', '.join(names[:8])}",
-            "Name the columns as in fit, or give an array in the order of fit.",
+            "Use the column names of fit, or an array in the order of fit.",
         )
     return _array(given, "readings")[:, [names.index(name) for name in sensors]]

@@ -33,8 +33,8 @@ def fit_response(
 ) -> ResponseRun:
     """Fit Nominal, Exo, Discrepancy and Augmented models of one person to two walks.
 
-    Both walks are filtered, cut into strides and differentiated; models are fitted to the first part of each and
-    scored on the last, which is held out. Beside each network stand ridge regressions and what filtered noise reaches.
+    Both walks are filtered, cut into strides and differentiated; models are fitted to the first part of each and scored
+    on the last, which is held out. Each network is compared with ridge regressions and with filtered noise.
 
     Parameters
     ----------
@@ -43,26 +43,26 @@ def fit_response(
     outputs : sequence of str, or str
         Angles whose second derivative is predicted.
     angles : sequence of str, or str, optional
-        Angles among the inputs; the package's usual ones that both walks have where it is not given.
+        Angles among the inputs; by default the usual ones that both walks have.
     emg : sequence of str, or str
         EMG channels among the inputs.
     held_out_share : float
-        Share of each walk that is held out, its last part.
+        Share of each walk that is held out (its last part).
     seed : int
-        Of every random act.
+        Seed of all random numbers.
 
     Returns
     -------
     ResponseRun
-        Of one participant; `to_frame()` is the table of R2, `gaitdisc.plot.r2` draws it. `gaitdisc run` does the same
-        for all participants of a study.
+        Result of one participant; `to_frame()` is the table of R2, and `gaitdisc.plot.r2` draws it. `gaitdisc run` does
+        the same for all participants of a study.
 
     Raises
     ------
     ChannelError
-        If an angle or a muscle is missing or dead.
+        If an angle or muscle is missing or unusable.
     StrideError
-        If a walk is no walking, its sides are swapped, or its gait changes late.
+        If a recording is not a walk, its sides are exchanged, or its gait changes late.
     SamplingError
         If a walk is too short.
 
@@ -78,11 +78,7 @@ def fit_response(
     """
     trials = {word: replace(trial_of(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
     if not 0 < held_out_share < 1:
-        raise SamplingError(
-            "the share that is held out lies between 0 and 1",
-            f"held_out_share is {held_out_share!r}",
-            "Write 0.125 for 12.5 %.",
-        )
+        raise SamplingError("held_out_share must lie in 0 to 1", f"it is {held_out_share!r}", "Write 0.1 for 10 %.")
     inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
     models = Models(angles=inputs, emg=several(emg), outputs=several(outputs), seed=seed)
     person = trials[WITH].subject or trials[WITHOUT].subject or "P01"
@@ -98,16 +94,9 @@ def fit_response(
     summaries = tuple(replace(walk.summary(), subject=person) for walk in walks.values())
     files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}
     made = {**public_settings(study), "fits": asdict(settings)}
-    provenance = made_now(made, seed, files, "chapter 4: response to a device")
-    responses = (replace(response, participant=person),)
-    return ResponseRun(
-        f"Response of {person}",
-        WITHOUT,
-        WITH,
-        (),
-        provenance,
-        {WALK.file: summaries, RESPONSE.file: responses},
-    )
+    origin = made_now(made, seed, files, "chapter 4: response to a device")
+    fits = (replace(response, participant=person),)
+    return ResponseRun(f"Response of {person}", WITHOUT, WITH, (), origin, {WALK.file: summaries, RESPONSE.file: fits})
 
 
 def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence[str] | None) -> tuple[str, ...]:
@@ -117,8 +106,8 @@ def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence
     absent = [name for name in outputs if name not in chosen]
     if absent:
         raise ChannelError(
-            "an output is one of the angles that both walks have",
+            "each output must be an angle that both walks have",
             f"{absent[0]!r} is not among {', '.join(chosen) or 'them'}",
-            "Leave it out of outputs, or name it in angles.",
+            "Remove it from outputs, or name it in angles.",
         )
     return chosen

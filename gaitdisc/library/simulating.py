@@ -51,7 +51,7 @@ def model_of(model: ModelLike) -> Simulation:
     if callable(model):
         return cast("Simulation", simulation_from_function(model))
     raise SimulationError(
-        "a model is a simulation file, a Simulation or a Python function",
+        "a model must be a simulation file, a Simulation or a Python function",
         f"found {type(model).__name__}",
         "Give the path of a .toml file, or a function that returns the derivative of each state.",
     )
@@ -63,35 +63,34 @@ def simulate(
     inputs: Recording | pd.DataFrame | Mapping[str, ArrayLike] | None = None,
     start: Mapping[str, float] | Sequence[float] | None = None,
 ) -> Recording:
-    """Run a simulation (Runge-Kutta of order 4, five steps a sample; a model of an engine by its own) and observe it.
+    """Run a simulation (Runge-Kutta of order 4; an engine's model with its own integrator) and return its observations.
 
     Parameters
     ----------
     model : path, Simulation or callable
-        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`); a model of
-        MuJoCo or OpenSim, or the mapping of one, which its engine runs.
+        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`); a MuJoCo or
+        OpenSim model, or its mapping, which the engine runs.
     time : array_like (time,) [s]
         Evenly spaced, increasing.
     inputs : Recording, DataFrame or mapping of str to array_like (time,), optional
-        What drives the simulation, by the input's name [the input's unit]. A Recording is read at `time`, linearly
-        between its samples, and so is a DataFrame that has times; a mapping may also hold a number or a function of
-        the time.
+        Inputs of the simulation by name [the input's unit]. A Recording, or a DataFrame with times, is interpolated
+        linearly at `time`; a mapping may also contain a number or a function of time.
     start : mapping of str to float, or sequence of float (state,), optional
-        State at the first time [the state's unit]; what is not named starts at the state's own `initial`.
+        State at the first time [the state's unit]; other states start at their `initial`.
 
     Returns
     -------
     Recording
-        The observed channels; then states that are observed under no name of their own, then the inputs. A channel
-        whose unit the closed list does not have (`gaitdisc.units`) has the unit 1.
+        The observed channels, then the other states, then the inputs. A channel whose unit is not in the list
+        (`gaitdisc.units`) has the unit 1.
 
     Raises
     ------
     SimulationError
-        If an input or a start is missing or unknown, or the simulation leaves all bounds: state, time and parameter
-        are named.
+        If an input or an initial value is missing or unknown, or the simulation diverges; the message gives state, time
+        and parameter.
     SamplingError, ShapeError
-        If time is not even, or an input has not one value a time.
+        If time is not evenly spaced, or an input does not have one value per time.
 
     Examples
     --------
@@ -110,9 +109,9 @@ def simulate(
     time = np.asarray(time, float)
     if time.ndim != 1 or len(time) < 3:
         raise ShapeError(
-            "a simulation runs over the times at which it is read, three or more [s]",
+            "a simulation needs at least three increasing times [s]",
             f"found {time.tolist() if time.size < 3 else time.shape}",
-            "Give every time, np.linspace(start, end, number) for instance.",
+            "Give every time, for example np.linspace(start, end, number).",
         )
     base = Recording(time, np.empty((len(time), 0)), ())  # refuses a time that is not even
     driven, begun = _driven(simulation, time, inputs), _start(simulation, start)
@@ -151,9 +150,9 @@ def _run_by(
     lost = np.flatnonzero(~np.isfinite(states).all(axis=1))
     if lost.size:
         raise SimulationError(
-            f"{engine.called} runs {engine.path.name} to the end",
-            f"it has no numbers from t = {time[lost[0]]:.6g} s on",
-            "Begin at another state, or look at the inputs there.",
+            f"{engine.called} must run {engine.path.name} to the end",
+            f"its numbers are not finite from t = {time[lost[0]]:.6g} s on",
+            "Use another initial state, or check the inputs there.",
         )
     channels = [*dict(simulation.observations)]
     seen = observed(simulation, channels, Points(time, states, driven, rate=rate))
@@ -172,9 +171,9 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
     given: Any = {} if inputs is None else inputs
     if not isinstance(given, Recording | Mapping) and not hasattr(given, "columns"):
         raise SimulationError(
-            f"{simulation.title or 'the simulation'!r} is driven by {', '.join(names)}",
-            f"the inputs are given as {type(given).__name__}, without names",
-            f"Name them: inputs={{{names[0]!r}: values}}, or a DataFrame or Recording with these columns.",
+            f"{simulation.title or 'the simulation'!r} needs the inputs {', '.join(names)}",
+            f"the inputs are a {type(given).__name__} without names",
+            f"Name them: inputs={{{names[0]!r}: values}}, or use a DataFrame or Recording with these columns.",
         )
     table: Any = given
     if hasattr(table, "columns") and has_times(table):  # it is read at the simulation's times
@@ -184,9 +183,9 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
     for name in names:
         if name not in known:
             raise SimulationError(
-                f"{simulation.title or 'the simulation'!r} is driven by {', '.join(names)}",
-                f"{name!r} is not among the inputs given ({', '.join(known) or 'none'})",
-                f"Give it: inputs={{{name!r}: values}}.",
+                f"{simulation.title or 'the simulation'!r} needs the inputs {', '.join(names)}",
+                f"{name!r} is not among the given inputs ({', '.join(known) or 'none'})",
+                f"Add it: inputs={{{name!r}: values}}.",
             )
         if isinstance(given, Recording):
             values = interpolated(given.time, given.selected([name]).values, time)[:, 0]
@@ -194,8 +193,8 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
             values = _values(given[name], time)
         if values.shape != time.shape:
             raise ShapeError(
-                f"the input {name!r} has one value a time",
-                f"found {values.shape} at {len(time)} times",
+                f"the input {name!r} must have one value per time",
+                f"its shape is {values.shape}, for {len(time)} times",
                 "Give both the same length.",
             )
         columns.append(values)
@@ -204,9 +203,9 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
     if bad.size:
         row, column = bad[0]
         raise SimulationError(
-            "an input is known at every time",
+            "an input must be known at every time",
             f"{names[column]!r} is missing at t = {time[row]:.6g} s",
-            "Fill the gap, or simulate a shorter time.",
+            "Fill the gap, or simulate a shorter period.",
         )
     return driven
 
@@ -222,18 +221,18 @@ def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] 
     if start is not None and not isinstance(start, Mapping):
         if np.shape(start) != (len(names),):
             raise ShapeError(
-                f"a start has a number for each state: {', '.join(names)}",
+                f"the start must have a number for each state: {', '.join(names)}",
                 f"found {np.shape(start)}",
-                "Give one number a state, or name them: start={'state': value}.",
+                "Give one number per state, or name them: start={'state': value}.",
             )
         start = dict(zip(names, start, strict=True))
     moved = simulation.with_starts(start or {})
     for state in moved.states:
         if state.initial is None:
             raise SimulationError(
-                "a simulation starts somewhere",
-                f"the state {state.name!r} has no initial value",
-                f"Give it: start={{{state.name!r}: value}}.",
+                "every state of a simulation must have an initial value",
+                f"the state {state.name!r} has none",
+                f"Add it: start={{{state.name!r}: value}}.",
             )
     return np.array([state.initial for state in moved.states], float)
 

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     """Initial contacts of both feet.
 
-    `auto` takes ground force before the file's own events before heel markers before joint angles, but none that sees
-    fewer than 80 % of the strides that another sees.
+    `auto` uses ground force, the file's events, heel markers or joint angles, in this order, but skips a detector that
+    finds fewer than 80 % of the strides of another.
 
     Parameters
     ----------
     trial : Trial, path, DataFrame or Recording
-        A walk: what `read` gave or takes, or a recording.
+        A walk: a trial from `read`, its files, or a recording.
     detector : str
         `auto`, `force`, `events`, `markers` or `angles`.
 
@@ -40,7 +40,7 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     Raises
     ------
     StrideError
-        If the detector, or every detector, finds no stride; each one's reason is named.
+        If no detector finds a stride; the message gives each reason.
 
     Examples
     --------
@@ -53,18 +53,18 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
 
 
 def contacts_by_detector(trial: Walk) -> dict[str, dict[str, Contacts]]:
-    """Initial contacts as each detector itself places them, to set one beside the other.
+    """Initial contacts of each detector, for comparison.
 
     Parameters
     ----------
     trial : Trial, path, DataFrame or Recording
-        A walk: what `read` gave or takes, or a recording.
+        A walk: a trial from `read`, its files, or a recording.
 
     Returns
     -------
     dict of str to dict of str to Contacts
-        Detector (`force`, `events`, `markers`, `angles`), then side; without those that the walk does not serve. Unlike
-        those of `contacts`, times by markers and angles are not moved to those of a plate.
+        Detector (`force`, `events`, `markers`, `angles`), then side; without detectors for which the walk has no data.
+        Unlike in `contacts`, times from markers and angles are not shifted to those of a plate.
 
     Examples
     --------
@@ -90,28 +90,28 @@ def cycles(
     Parameters
     ----------
     trial : Trial, path, DataFrame or Recording
-        A walk: what `read` gave or takes, or a recording.
+        A walk: a trial from `read`, its files, or a recording.
     side : str
         The foot whose contacts begin the cycles, `r` or `l`.
     detector : str
         `auto`, `force`, `events`, `markers` or `angles`.
     recording : Recording or DataFrame, optional
-        What will be cut: cycles in which it has a gap that cannot be filled are dropped.
+        Recording that will be cut; cycles with a gap that cannot be filled are excluded.
     min_s, max_s : float
         Shortest and longest cycle [s].
     contacts : array_like (contact,), Contacts, or what `gaitdisc.contacts` gave, optional
-        Initial contacts of that foot [s], on the walk's clock, where they are known; nothing is searched for then.
+        Known initial contacts of that foot [s], on the walk's clock; no detector is used then.
 
     Returns
     -------
     Strides
-        `normalised(recording)` gives every cycle on 0 to 100 % in 101 points; `dropped` says which cycles are not used
-        and why.
+        `normalised(recording)` returns every cycle on 0 to 100 % in 101 points; `dropped` lists the excluded cycles
+        with reasons.
 
     Raises
     ------
     StrideError
-        If no contact of that side is found, or no cycle is left.
+        If no contact of that side is found, or no cycle remains.
 
     Examples
     --------
@@ -121,14 +121,12 @@ def cycles(
     >>> strides.normalised(walk.stream("kinematics")).shape[1]
     101
     """
-    found = (
-        dict(chosen_contacts(trial_of(trial), detector).contacts) if contacts is None else _given(contacts, side, trial)
-    )
+    found = chosen_contacts(trial_of(trial), detector).contacts if contacts is None else _given(contacts, side, trial)
     if side not in found:
         raise StrideError(
             f"cycles of side {side!r} begin at its initial contacts",
-            f"contacts were found of side {', '.join(sorted(found)) or 'none'}",
-            "Take the other side ('r' or 'l'), or another detector.",
+            f"contacts were found for side {', '.join(sorted(found)) or 'none'}",
+            "Use the other side ('r' or 'l'), or another detector.",
         )
     return cut_strides(found[side], None if recording is None else recording_of(recording), min_s, max_s)
 
@@ -145,8 +143,8 @@ def _given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
     latest = max((one.time[-1] for one in walk.streams.values()), default=np.inf)
     if time.size and np.nanmax(time) > latest:
         raise StrideError(
-            "initial contacts are times on the walk's clock [s]",
-            f"one is at {np.nanmax(time):g} s, and {walk.name} ends at {latest:g} s",
-            "Divide numbers of frames by the rate, milliseconds by 1000.",
+            "initial contacts must be times on the walk's clock [s]",
+            f"one is at {np.nanmax(time):g} s, but {walk.name} ends at {latest:g} s",
+            "Divide frame numbers by the rate, or milliseconds by 1000.",
         )
     return {side: Contacts(time, side, "events")}

@@ -34,15 +34,15 @@ def recording_of(signal: Recording | Trial | pd.DataFrame, kind: Kind | None = N
         return signal
     if isinstance(signal, Trial):
         raise ChannelError(
-            "one stream of a trial is taken, not all of them",
+            "this function needs one stream of a trial",
             f"{signal.name} has {', '.join(signal.streams) or 'none'}",
-            'Give one of them: trial.stream("kinematics"), for instance.',
+            'Select one, for example trial.stream("kinematics").',
         )
     if not hasattr(signal, "columns"):
         raise ShapeError(
-            "a recording is a Recording, or a DataFrame with times [s] in a column 'time'",
+            "a recording must be a Recording, or a DataFrame with times [s] in a column 'time'",
             f"found {type(signal).__name__}",
-            "Read a file with gaitdisc.read first; put arrays into a DataFrame.",
+            "Read a file with gaitdisc.read first, or put arrays into a DataFrame.",
         )
     columns = frame_columns(signal)
     known = {} if kind else {channel.name: channel for channel in vocabulary().channels}
@@ -85,16 +85,16 @@ def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
 
 
 def example_files(folder: Path | str, duration_s: float = 20.0, overwrite: bool = False) -> dict[str, tuple[Path, ...]]:
-    """Write the walks of `example_walks` as a laboratory's files, to try reading on.
+    """Write the walks of `example_walks` as files of a laboratory, to try out `read`.
 
     Parameters
     ----------
     folder : path
-        Where; made if missing.
+        Output folder; created if missing.
     duration_s : float
         Length of each walk [s].
     overwrite : bool
-        Whether files may be replaced that `example_files` did not write, or that were changed since.
+        Whether to replace files that `example_files` did not write, or that were changed since.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def example_files(folder: Path | str, duration_s: float = 20.0, overwrite: bool 
     Raises
     ------
     WriteError
-        If a file cannot or may not be written.
+        If a file cannot be written.
 
     Examples
     --------

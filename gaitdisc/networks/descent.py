@@ -141,9 +141,9 @@ def descend(
         losses.append(steps.loss())
         if not math.isfinite(losses[-1]):
             raise TrainingError(
-                "training needs a loss that stays finite",
+                "the training loss must stay finite",
                 f"it was {losses[-1]} after epoch {epoch} of {epochs} at learning rate {schedule.rates[0, 0]:g}",
-                "Take another seed or a tenth of the learning rate; findings may also name samples far out of range.",
+                "Use another seed or a tenth of the learning rate. Check the findings for samples far out of range.",
             )
         if losses[-1] <= min(losses):
             best = steps.weights()

@@ -43,7 +43,7 @@ class Shred(nn.Module):
         super().__init__()
         if inputs % sensors:
             raise ShapeError(
-                f"a window of {sensors} sensors needs as many readings of each",
+                f"a window must have the same number of samples from each of its {sensors} sensors",
                 f"it has {inputs} numbers",
                 "Give the number of sensors that the windows were made with.",
             )

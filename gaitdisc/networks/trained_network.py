@@ -91,7 +91,7 @@ def load_network(path: Path, build: Callable[[int, int], nn.Module]) -> TrainedN
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise _refusal(path, str(error)) from error
     if names["format"] != FORMAT:
-        raise _refusal(path, f"it has format {names['format']}, this version reads {FORMAT}")
+        raise _refusal(path, f"it has format {names['format']}; this version reads {FORMAT}")
     network = build(len(names["inputs"]), len(names["outputs"]))
     weights = {key[len(WEIGHT) :]: torch.from_numpy(v) for key, v in arrays.items() if key.startswith(WEIGHT)}
     try:
@@ -104,9 +104,9 @@ def load_network(path: Path, build: Callable[[int, int], nn.Module]) -> TrainedN
 
 def _refusal(path: Path, found: str) -> SchemaError:
     return SchemaError(
-        f"{path.name} is to be read as a trained network of gaitdisc",
+        f"{path.name} must be a trained network saved by gaitdisc",
         found,
-        "Name the kind of network it was saved from, or train it again.",
+        "Load it as the kind of network that was saved, or train it again.",
     )
 
 

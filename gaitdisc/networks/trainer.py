@@ -165,9 +165,9 @@ def chosen_device(wanted: str) -> torch.device:
     if wanted == "cpu" or (wanted == "cuda" and there):
         return torch.device(wanted)
     raise TrainingError(
-        f"training is to run on {wanted!r}",
+        f"the requested device is {wanted!r}",
         "torch sees " + ("a GPU and the CPU" if there else "no GPU, only the CPU"),
-        "Use device 'auto', which takes the GPU where there is one.",
+        "Use device 'auto', which uses a GPU if there is one.",
     )
 
 

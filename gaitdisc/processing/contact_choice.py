@@ -66,9 +66,9 @@ def chosen_contacts(
     """
     if not isinstance(detector, str) or detector not in ("auto", *PREFERRED):
         raise StrideError(
-            f"contacts are found by auto, {', '.join(PREFERRED)}",
+            f"the detector of contacts must be auto, {', '.join(PREFERRED)}",
             f"the detector is {str(detector)[:60]!r}",
-            "Name one of these; contacts that are known already go into cycles(..., contacts=times).",
+            "Name one of these. To use known contacts, call cycles(..., contacts=times).",
         )
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     seen, late = events_on_plates(seen, trial.name)
@@ -83,8 +83,8 @@ def chosen_contacts(
     taken = seen[chosen] if offset_s is None else _moved(seen[chosen], offset_s)
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     if chosen in SEEN_LATE:
-        by = "the median of the steps that " + ("a plate saw" if reference == "force" else "the file's events have")
-        spoils = "phase against a plate's by 3 to 5 % of the stride; not durations"
+        by = "the median of the steps that " + ("a plate recorded" if reference == "force" else "the events contain")
+        spoils = "phase, compared with a plate, by 3 to 5 % of the stride; durations are unaffected"
         findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
     return ContactChoice(taken, tuple(findings), offset_s)
 
@@ -129,15 +129,15 @@ def events_on_plates(
         return dict(seen), []
     lags = [_lag_ms(seen, "markers", name, SAME_STEP_S) for name in ("force", "events")]
     plates, marked = (np.inf if lag is None else abs(lag - EARLY_MS["markers"]) for lag in lags)
-    what = f"the file's events lie {abs(late):.0f} ms {'after' if late > 0 else 'before'} the steps that a plate saw, "
-    what += f"where {EVENTS_MS:g} ms is the most"
+    what = f"the file's events are {abs(late):.0f} ms {'after' if late > 0 else 'before'} the steps on a plate, "
+    what += f"more than the limit of {EVENTS_MS:g} ms"
     if marked < plates and plates > DISAGREEMENT_MS:
-        what += f"; the events are believed, since they lie {lags[1]:.0f} ms from the markers' contacts"
+        what += f"; the events are used, because they are {lags[1]:.0f} ms from the markers' contacts"
         return dict(seen), [Finding("warning", "events and plates", file, what, "moments; check the plates' clock")]
     moved = {
         side: replace(c, foot_off=c.foot_off - late / 1e3) for side, c in _moved(seen["events"], -late / 1e3).items()
     }
-    what += "; the plates are believed, and all events were moved onto them"
+    what += "; the plates are used, and all events are shifted onto them"
     return {**seen, "events": moved}, [Finding("warning", "events and plates", file, what, "phase; check the events")]
 
 
@@ -199,11 +199,14 @@ def _moved(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Conta
 def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
     """By how much contacts were moved and by what steps, in words; or that nothing shows it, and what is early then."""
     if offset_s is None:
-        what = f"contacts by {detector}, and no plate saw a step: they lie early by some {EARLY_MS[detector]:g} ms in "
+        what = (
+            f"contacts by {detector}, and no plate recorded a step: contacts are early by about "
+            f"{EARLY_MS[detector]:g} ms in "
+        )
         what += f"walking ({EARLY_RANGE[detector]} with a plate)"
         return Finding("note", "contact offset", file, what, spoils)
     way = "later" if offset_s >= 0 else "earlier"
-    what = f"contacts by {detector} moved {1e3 * abs(offset_s):.0f} ms {way}, {by} too"
+    what = f"contacts by {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by} too"
     return Finding("note", "contact offset", file, what, "")
 
 
@@ -275,7 +278,7 @@ def _findings(
                 continue
             findings.append(_compared(trial.name, (name, chosen, side), agreement, name == reference, name in refused))
     for name, error in refused.items():
-        reason = str(error) if error else "it finds no stride of both feet"
+        reason = str(error) if error else "it finds no strides of both feet"
         findings.append(Finding("note", "detector", trial.name, f"{name} is not used: {reason}", ""))
     return findings
 
@@ -288,13 +291,13 @@ def _compared(file: str, who: tuple[str, str, str], agreement: Agreement, correc
     spoils = []
     beyond = agreement.median_ms + EARLY_MS.get(name, 0.0) - EARLY_MS.get(chosen, 0.0)
     if abs(beyond) > DISAGREEMENT_MS and not corrected:
-        spoils.append(f"phase: they disagree by {DISAGREEMENT_MS:g} ms more than such detectors do")
+        spoils.append(f"phase: they disagree by {DISAGREEMENT_MS:g} ms more than such detectors usually do")
     if apart.any():
         counted = "1 contact" if apart.sum() == 1 else f"{apart.sum()} contacts"
         spoils.append(f"the strides of {counted}: {DISAGREEMENT_MS:g} ms or more from the usual difference")
     if not partial and len(agreement.missed) + len(agreement.extra):
         at = ", ".join(f"{time:.2f}" for time in sorted([*agreement.missed, *agreement.extra])[:5])
-        spoils.append(f"the strides about {at} s: one detector has a contact there, the other none")
+        spoils.append(f"the strides at about {at} s: one detector finds a contact there, the other does not")
     return Finding("warning" if spoils else "note", "detectors compared", file, what, "; ".join(spoils))
 
 
@@ -303,5 +306,5 @@ def nothing_found(trial: Trial, needed: str, reasons: Sequence[str]) -> StrideEr
     return StrideError(
         needed,
         f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
-        "Add the file that holds forces, markers or angles to the trial, or leave the trial out.",
+        "Add the file that contains forces, markers or angles to the trial, or remove the trial.",
     )

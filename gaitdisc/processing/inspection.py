@@ -29,20 +29,20 @@ SAID = ("contact offset",)  # kinds of notes that are always printed: percent st
 
 @dataclass(frozen=True)
 class Inspection:
-    """What was seen of one trial.
+    """The findings of one trial.
 
     Parameters
     ----------
     name : str
         File or files.
     participant, condition : str
-        As the study has them; empty for a file alone.
+        Names in the study; empty for a single file.
     streams : mapping of str to str
         Stream to channels, rate and length in words.
     strides : mapping of str to (int, int)
         Side to strides kept and dropped.
     findings : tuple of Finding
-        Everything, the severest first.
+        All findings, the most severe first.
     refusal : str
         Why the trial cannot be used, or empty.
     """
@@ -67,18 +67,18 @@ class Inspection:
 
     @property
     def light(self) -> str:
-        """`red` where the trial is refused, `amber` where channels or samples are spoiled, else `green`."""
+        """`red` if the trial is refused, `amber` if channels or samples are affected, otherwise `green`."""
         if self.refusal:
             return "red"
         return "amber" if any(finding.severity != "note" for finding in self.findings) else "green"
 
     def grouped(self, notes: bool = False) -> list[str]:
-        """Findings in a line for each kind: which channels, and the words of the first of them.
+        """Findings with one line per kind: the channels, and the text of the first one.
 
         Parameters
         ----------
         notes : bool
-            Notes as well as warnings; those about moved contacts are always there.
+            Whether notes are included; notes about shifted contacts always are.
         """
         kinds: dict[tuple[str, str], list[Finding]] = {}
         for finding in self.findings:
@@ -151,13 +151,7 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
             kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
             counts = {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
             found[places[id(planned)]] = Inspection(
-                _named(planned),
-                participant.id,
-                where,
-                streams.get(called, {}),
-                counts,
-                _sorted(own),
-                reason,
+                _named(planned), participant.id, where, streams.get(called, {}), counts, _sorted(own), reason
             )
         for reason in reasons.values():
             found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
@@ -226,7 +220,7 @@ def inspected_trial(trial: Trial, name: str) -> Inspection:
                 verify_walking(trial.stream("kinematics"), strides["r"])
     except StrideError as error:
         if "kinematics" in trial.streams:
-            refusal = f"not used as walking: {error}"
+            refusal = f"not used as a walk: {error}"
         else:
             findings.append(Finding("note", "no strides", trial.name, str(error), ""))
     return Inspection(
@@ -248,7 +242,7 @@ def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
         return first.line()
     channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
     where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
-    spoils = f"; spoils {first.spoils}" if first.spoils else ""
+    spoils = f"; affects {first.spoils}" if first.spoils else ""
     said = f"{first.channel}: {first.what}" if first.channel else first.what
     return f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
 

@@ -74,9 +74,9 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
     moved = float(np.ptp(np.nanpercentile(raw.values[:, 0], PERCENTILES)))
     if moved < LEAST_DEG:
         raise UnitError(
-            f"a joint that walks moves by more than {LEAST_DEG:g} deg",
-            f"{trial.name}: {name} moves by {moved:.2g} deg, as one in radians would that is said to be in degrees",
-            "State the file's unit (inDegrees=no), or choose a joint that is not held.",
+            f"a joint angle of a walk must vary by more than {LEAST_DEG:g} deg",
+            f"{trial.name}: {name} varies by {moved:.2g} deg, as if it were in radians and labelled as degrees",
+            "State the file's unit (inDegrees=no), or choose a joint that is not locked.",
         )
     smooth = lowpassed(raw, max(ANGLE_HZ, filters.kinematics_hz), filters.order, filters.gap_s)
     rate, speedup = (np.radians(differentiated(smooth.values, smooth.rate_hz, order)[:, 0]) for order in (1, 2))
@@ -114,8 +114,8 @@ def _moment(trial: Trial, name: str, mass_kg: float | None, time: NDArray[np.flo
     if unit == "N m/kg" and mass_kg is None:
         raise UnitError(
             "moments in N m need the person's body mass [kg]",
-            f"{trial.name} has {name}_moment in N m/kg, and no mass is stated",
-            "Give mass_kg of the participant in the study file.",
+            f"{trial.name} has {name}_moment in N m/kg, but no mass is stated",
+            "Write mass_kg of the participant in the study file.",
         )
     factor = mass_kg if unit == "N m/kg" and mass_kg is not None else 1.0
     smooth = lowpassed(own, MOMENT_HZ) if own.rate_hz > 3 * MOMENT_HZ else own
@@ -157,11 +157,11 @@ def _envelopes(
     own = own.selected([name for name in own.names if name not in lost])
     if not own.names:
         raise ChannelError(
-            f"a moment model driven by EMG needs living EMG of side {side!r}",
+            f"a moment model driven by EMG needs usable EMG of side {side!r}",
             f"{trial.name} has {', '.join(sorted(lost)) or 'none'}" + (" dead" if lost else ""),
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
     smooth = [envelope_of(own.selected([name]), study.filters) for name in own.names]
     values = np.hstack([interpolated(one.time, one.values, time) for one in smooth])
-    left_out = [replace(one, severity="warning", spoils="this muscle is left out") for one in dead]
+    left_out = [replace(one, severity="warning", spoils="this muscle, which is excluded") for one in dead]
     return np.maximum(values, 0.0), tuple(own.names), left_out

@@ -21,7 +21,10 @@ from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.processing.two_sources import MOVES_DEG, line_angles
 from gaitdisc.recording import Finding, Recording, Trial
 
-STAY = "lengths and widths of steps there; the file's own angles follow the right labels, and stay; correct the labels"
+STAY = (
+    "lengths and widths of steps there; the file's own angles follow the correct labels and are kept; correct the "
+    "labels"
+)
 BELOW = {  # angles that hang on a segment where a model is built from the pelvis down, all of them on the pelvis
     "thigh": r"(hip|knee|ankle|foot)_\w+_{0}|{1}(Hip|Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
     "shank": r"(knee|ankle|foot)_\w+_{0}|{1}(Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
@@ -62,12 +65,15 @@ def computed_trial(
     file = moved.angles.source.file or trial.name
     typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
     worst = max(typical, key=lambda name: typical[name])
-    what = f"markers lie {1e3 * float(np.median([*typical.values()])):.1f} mm from where the static trial has them, "
-    what += f"the median of {len(typical)} segments; farthest {worst}, {1e3 * typical[worst]:.1f} mm"
+    what = (
+        f"markers are {1000.0 * float(np.median([*typical.values()])):.1f} mm from their positions in the static "
+        "trial, "
+    )
+    what += f"the median of {len(typical)} segments; the largest distance is {worst}, {1000.0 * typical[worst]:.1f} mm"
     findings = [*trial.findings, *moved.findings, Finding("note", "residual", file, what, "")]
     steps = None
     if own:
-        what = f"{' and '.join(own)} that the file holds give way to those computed from its markers"
+        what = f"{' and '.join(own)} of the file are replaced by those computed from its markers"
         findings.append(Finding("note", "own model", file, what, ""))
     if person is not None and "forces" in trial.streams:
         try:

@@ -114,8 +114,8 @@ def _seen_trials(
                 whole.update(trial.stream(key).values.tobytes())
             twin = prints.setdefault(whole.hexdigest(), (name, number))
             if twin != (name, number):
-                needed = "a recording counts once, for one session and condition"
-                raise StrideError(needed, f"the samples are those of {twin[0]}", "Take one of the two out.")
+                needed = "a recording must be counted once, for one session and condition"
+                raise StrideError(needed, f"its samples are identical to those of {twin[0]}", "Remove one of the two.")
             seen.append(_seen(standing, planned, number, trial, shelved))
         except GaitdiscError as error:
             lost.append(Refusal(participant.id, where, str(error)))
@@ -221,10 +221,7 @@ def _pooled(
     findings = [finding for trial in seen for finding in trial.findings]
     if late:
         by = "the one step" if steps == 1 else f"the median of {steps} steps"
-        by, spoils = (
-            f"{by} that a plate or the file's events saw",
-            "phase by 3 to 5 % of the cycle, and stance by as much",
-        )
+        by, spoils = (f"{by} that a plate or the file's events recorded", "phase, and stance, by 3 to 5 % of the cycle")
         findings.append(offset_finding(where, late, offset_s, by, spoils))
     refusals = [*lost, *([Refusal(participant.id, where, too_few)] if too_few and (seen or not lost) else [])]
     return PooledCycles(
@@ -276,7 +273,7 @@ def _too_few(
     if max(kept.values(), default=0) >= needed:
         return ""
     left_out = [cycle.reason for own in cycles for cycle in own if cycle.reason]
-    first = f"; left out {len(left_out)}, the first: {left_out[0]}" if left_out else ""
+    first = f"; {len(left_out)} excluded, the first: {left_out[0]}" if left_out else ""
     causes = [
         f"; from {start:.2f} to {end:.2f} s {finding.what}"
         for trial, own in zip(seen, cycles, strict=True)
@@ -290,7 +287,7 @@ def _too_few(
     trials = "1 trial" if len(one.trials) == 1 else f"{len(one.trials)} trials"
     error = StrideError(
         f"{where} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
-        f"{trials} of it have {found}{first}{''.join(causes[:1])}",
+        f"{trials} trials of it have {found}{first}{''.join(causes[:1])}",
         f"{'Correct the labels, add' if causes else 'Add'} trials, or lower {key} in [quality].",
     )
     return str(error)

@@ -49,11 +49,7 @@ class Walk:
 
 
 def walk_summary(
-    trial: Trial,
-    states: Sequence[Recording],
-    strides: Mapping[str, Strides],
-    follow: str,
-    findings: Sequence[Finding],
+    trial: Trial, states: Sequence[Recording], strides: Mapping[str, Strides], follow: str, findings: Sequence[Finding]
 ) -> WalkSummary:
     """What is kept of a walk; channels of the other side are cut by the strides of their own foot, as the first are."""
     lead = [*states, *trial.streams.values()][0]
@@ -111,7 +107,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     side = study.strides.side
     if side not in choice.contacts:
         raise StrideError(
-            f"percent stride follows side {side!r}",
+            f"percent stride must follow a side with contacts; side {side!r} is requested",
             f"{trial.name}: {choice.detector} finds contacts of side {', '.join(choice.contacts)} only",
             "Change side in [strides].",
         )
@@ -129,9 +125,9 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     late = next((f for f in findings if f.kind == "late change" and f.severity == "warning"), None)
     if late is not None and study.quality.late_change == "refuse":
         raise StrideError(
-            f"trial {trial.name}: the gait must stay the same to the end, or the held-out part is another gait",
+            f"trial {trial.name}: the gait must not change late, or the held-out part differs from the training part",
             late.what,
-            'Look at the strides; set late_change = "report" in [quality] to use the trial nevertheless, or crop it.',
+            'Inspect the strides. Set late_change = "report" in [quality] to use the trial nevertheless, or crop it.',
         )
     return Walk(trial, state, strides, trajectory(state, strides[side]), tuple(findings), side)
 
@@ -172,13 +168,13 @@ def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     missing = [name for name in names if name not in recording.names]
     if missing:
         nearest = vocabulary().nearest(missing[0], among=recording.names)
-        said = "".join(f"; left out: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
+        said = "".join(f"; excluded: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",
             f"{recording.source.file or trial.name} has {len(recording.names)} channels without "
             f"{'it' if len(missing) == 1 else 'them'}" + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
             ("Correct the file" if said else "Map the file's own label in [channels]")
-            + ", or take the name out of [models].",
+            + ", or remove the name from [models].",
         )
     return recording.selected(names)
 
@@ -199,16 +195,16 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
     if dead:
         raise ChannelError(
-            f"the models need live EMG in {', '.join(f.channel for f in dead)}",
+            f"the models need usable EMG of {', '.join(f.channel for f in dead)}",
             f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
-            "Take the muscle out of [models], or leave the trial out.",
+            "Remove the muscle from [models], or remove the trial.",
         )
     envelope = envelope_of(emg, filters)
     values = interpolated(envelope.time, envelope.values, angles.time)
     marks = interpolated(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
     if not np.isfinite(values).any():
         raise SamplingError(
-            f"trial {trial.name}: EMG and kinematics need a span of time in common",
+            f"trial {trial.name}: EMG and kinematics must overlap in time",
             f"kinematics last from {angles.time[0]:.2f} to {angles.time[-1]:.2f} s, "
             f"EMG from {emg.time[0]:.2f} to {emg.time[-1]:.2f} s",
             "Check that the files belong to the same trial and clock.",
@@ -275,9 +271,9 @@ class ReadWalk:
         """Filtered walk, cut into strides, under the settings of a study."""
         if self.without_angles:
             raise ChannelError(
-                "models need joint angles, of the files or computed from markers and a static trial",
-                f"{self.trial.name} has markers and no angles: {self.without_angles}",
-                'Add the trial in which the person stands with condition = "static", or the file with the angles.',
+                "models need joint angles, from the files or computed from markers and a static trial",
+                f"{self.trial.name} has markers but no angles: {self.without_angles}",
+                'Add the standing trial with condition = "static", or the file with the angles.',
             )
         return processed(self.trial, study, self.body_weight_n)
 
@@ -305,7 +301,7 @@ class StudyWalks:
         if "kinematics" not in ready.streams and "markers" in ready.streams:
             why = next((one.what for one in ready.findings if one.kind == "no angles"), standing.unread)
             if self.study.kinematics and self.study.kinematics.angles == "file":
-                why = 'those of the file are wanted, angles = "file" in [kinematics]'
+                why = 'the study selects those of the file, angles = "file" in [kinematics]'
         return ReadWalk(ready, standing.body_weight_n(planned), why)
 
     def walk(self, planned: PlannedTrial) -> Walk:

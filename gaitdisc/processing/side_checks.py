@@ -63,7 +63,9 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
     heels, pelvis = named_markers(markers)
     if toes is None or "forces" not in trial.streams:
         raise ChannelError(
-            "plates are held against feet", f"{trial.name} has no toes or no forces", "Name the markers."
+            "plates are compared with the feet, which needs toe markers and forces",
+            f"{trial.name} has no toes or no forces",
+            "Name the markers.",
         )
     return foot_paths(markers, {"r": (heels["r"], toes[0]), "l": (heels["l"], toes[1])}), platforms(trial), pelvis
 
@@ -87,9 +89,9 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
         names = " and ".join(platform.name for platform in found)
         what = (
             f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in "
-            f"{sum(exchanged)} of {len(exchanged)} with the two exchanged: {names} are swapped"
+            f"{sum(exchanged)} of {len(exchanged)} if the two are exchanged: {names} are exchanged"
         )
-        spoils = "which foot is on which plate, moments and powers; exchange their channels"
+        spoils = "the assignment of feet to plates, moments and powers; exchange their channels"
         spans = tuple((step.start, step.end) for step in steps)
         return [Finding("warning", "swapped plates", file, what, spoils, names, spans)]
     said = []
@@ -120,10 +122,10 @@ def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> l
     off = abs(weighed_n / (mass_kg * GRAVITY) - 1) if weighed_n and mass_kg else 0.0
     if weighed_n is None or off <= NOTED:
         return []
-    what = f"the static trial weighs {weighed_n / GRAVITY:.1f} kg on the force plates, {mass_kg:.1f} kg are stated"
+    what = f"the force plates show {weighed_n / GRAVITY:.1f} kg in the static trial, but {mass_kg:.1f} kg are stated"
     if off > WRONG:
-        needed = f"moments per kg need the mass of the person, and plates of the right gain, within {100 * WRONG:.0f} %"
-        raise UnitError(needed, what, "Weigh again: correct the mass, or the gain of the plates.")
+        needed = f"moments per kg need a body mass and force plates that agree within {100 * WRONG:.0f} %"
+        raise UnitError(needed, what, "Weigh the person again: correct the mass, or the gain of the plates.")
     return [Finding("warning", "body weight", file, what, f"moments and powers, by {100 * off:.0f} %; weigh again")]
 
 

@@ -76,11 +76,12 @@ def person_findings(static: Recording, walk: Recording, file: str) -> list[Findi
     if apart[worst[1]] < LIMIT:
         return []
     said = " and ".join(
-        f"{one} to {other} {1e3 * standing[one, other]:.0f} mm in it, {1e3 * walking[one, other]:.0f} mm in the walk"
+        f"{one} to {other} {1000.0 * standing[one, other]:.0f} mm when standing, {1000.0 * walking[one, other]:.0f} "
+        "mm in the walk"
         for one, other in worst
     )
     what = f"the static trial is of another person, or its markers were moved: {said}"
-    return [Finding("warning", "static trial", file, what, "angles from these markers; name the right static trial")]
+    return [Finding("warning", "static trial", file, what, "angles from these markers; name the correct static trial")]
 
 
 Read = Callable[[PlannedTrial], Trial]

@@ -110,14 +110,14 @@ def step_events(
             counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
             reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
         by = "events, force, markers or joint angles" if detector == "auto" else detector
-        raise nothing_found(trial, f"a cycle needs two initial contacts of one foot, from {by}", reasons)
+        raise nothing_found(trial, f"a cycle needs two initial contacts of the same foot, from {by}", reasons)
     sure = {name: count for name, count in strides.items() if name != "angles"} or strides
     chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
     if chosen == "events":
         for side, at in exchanged_contacts(seen["events"], seen.get("markers", {})).items():
-            what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, where the "
-            what += "file's events have the other foot: the heels look exchanged; the events are used"
-            spoils = "lengths and widths of steps, left out for this trial; correct the labels"
+            what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, when the "
+            what += "file's events have the other foot: the heels seem to be exchanged; the events are used"
+            spoils = "lengths and widths of steps, excluded for this trial; correct the labels"
             findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
     contacts = {side: one.time for side, one in seen[chosen].items()}
     off_detector, offs = _seen_offs(trial, contacts, direction)
@@ -155,7 +155,7 @@ def walking_part(trial: Trial) -> Trial:
     cut += [f"{end:.1f} to {time[-1]:.1f} s"] if np.isfinite(end) else []
     if not cut:
         return trial
-    what = f"nobody walks from {' and from '.join(cut)} (standing, or turning on the spot); cut out"
+    what = f"nobody walks from {' and from '.join(cut)} (standing, or turning on the spot); this part is cut out"
     said = Finding("note", "standing", trial.name, what, "")
     streams = {key: part for key, one in trial.streams.items() if len((part := one.between(start, end)).time) > 1}
     events = tuple(event for event in trial.events if start <= event.time < end)

@@ -254,7 +254,7 @@ def cycle_channels(
     weighed = weighed_forces(trial)
     if weighed is not None and not any(set(weighed.names) & set(one.names) for one in states):
         states.append(weighed)
-        words.append("weighed forces as in the file")
+        words.append("forces in % of body weight as in the file")
     said = [Finding("note", "filter", trial.name, "; ".join(words), "")] if words else []
     return legs, tuple(states), (*findings, *said)
 

@@ -61,7 +61,7 @@ def without_contradicted(trial: Trial) -> Trial:
             continue
         recording = trial.stream(streams[0])
         found = list(check(*(trial.stream(key) for key in streams)))
-        file, spoils = recording.source.file, "the channel: it is left out; correct the file"
+        file, spoils = recording.source.file, "the channel, which is excluded; correct the file"
         said = [Finding("refused", KIND, file, what, spoils, list_names(names)) for names, what in found]
         lost = {name for names, _ in found for name in names}
         kept = [name for name in recording.names if name not in lost]
@@ -119,7 +119,7 @@ def _in_radians(angles: Recording) -> Contradictions:
     most = max((reach[name] for name in legs), default=0.0)
     whole = set(legs) <= set(found) and most >= WALKS_RAD
     if found and (whole or most >= WALKS_DEG):
-        what = f"{found[0]} moves by {reach[found[0]]:.2g} deg in a walk, less than skin does: it looks like radians"
+        what = f"{found[0]} varies by {reach[found[0]]:.2g} deg in a walk, less than the skin: it looks like radians"
         yield names if whole else found, what
 
 
@@ -135,15 +135,15 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         known = np.isfinite(angles[name]) & (np.abs(line - np.nanmedian(line)) < OTHER_PLACE_DEG)
         own, line = angles[name][known], line[known]
         moved, r = (_range(own), _range(line)), _correlation(own, line)
-        what = f"{name} moves by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
+        what = f"{name} varies by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
-            yield [name], f"{what}: its sign is turned, or two of the markers are exchanged"
+            yield [name], f"{what}: its sign is reversed, or two of the markers are exchanged"
         elif (
             moved[1] >= MOVES_DEG
             and r > ALIKE
             and not 1 / SCALE < median_abs_deviation(own) / median_abs_deviation(line) < SCALE
         ):
-            yield [name], f"{what}: its unit or scale is another"
+            yield [name], f"{what}: it has another unit or scale"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
             offsets[name] = np.array([np.median((own - line)[part]) for part in (bent, ~bent)])
@@ -152,7 +152,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         apart = np.subtract(*both.values()) if len(both) == 2 else np.zeros(2)
         if min(apart) > OFFSET_DEG or max(apart) < -OFFSET_DEG:
             far, near = sorted(both, key=lambda name: -abs(both[name].mean() - usual))
-            what = f"{far} lies {both[far].mean():+.0f} deg from the lines between its markers"
+            what = f"{far} is {both[far].mean():+.0f} deg from the lines between its markers"
             yield [far], f"{what}, {near} {both[near].mean():+.0f} deg: an offset that the markers do not show"
 
 
@@ -166,11 +166,11 @@ def _turned_hips(angles: Recording) -> Contradictions:
     swings = [_correlation(np.gradient(hip), knee) for hip, knee in zip((right, left), knees, strict=True)]
     if together > AGAINST and together - _correlation(*knees) > AGAINST:
         name = names[int(np.argmin(swings))]
-        what = f"{name} flexes with the other hip (r = {together:.2f}), as the knees do not, and extends while its knee"
-        yield [name], f"{what} swings: its sign is turned"
+        what = f"{name} flexes with the other hip (r = {together:.2f}), unlike the knees, and extends while its knee"
+        yield [name], f"{what} swings: its sign is reversed"
     elif together < -AGAINST and max(swings) < -AGAINST and max(np.nanmean(right), np.nanmean(left)) < 0:
         what = f"both hips extend while their knees swing (r = {max(swings):.2f})"
-        yield names[:2], f"{what}, and are never flexed on the mean: their sign is turned"
+        yield names[:2], f"{what}, and are extended on average: their sign is reversed"
 
 
 def _moment_sizes(moments: Recording) -> Contradictions:
@@ -180,9 +180,11 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     most = sorted(peaks, key=lambda name: -peaks[name])[:2][-1:]  # the second: the largest may be the wrong one
     if not most or not peaks[most[0]]:
         return
-    usual, unit, why = peaks[most[0]], units[most[0]], "the unit is another, as N mm under N m"
+    usual, unit, why = peaks[most[0]], units[most[0]], "it has another unit, such as N mm instead of N m"
     if usual < LEAST_MOMENT[unit]:
-        what = f"moments of the legs reach {usual:.2g} {unit}, where standing has {LEAST_MOMENT[unit]:g} {unit} or more"
+        what = (
+            f"moments of the legs reach {usual:.2g} {unit}, but standing needs at least {LEAST_MOMENT[unit]:g} {unit}"
+        )
         yield list(peaks), f"{what}: {why}"
     walks = _range(moments[most[0]]) > usual / 2  # who stands may have next to none about an axis
     for name, peak in peaks.items() if walks and usual >= LEAST_MOMENT[unit] else ():
@@ -208,9 +210,9 @@ def _powers(moments: Recording, angles: Recording) -> Contradictions:
         slope = float(given @ made / (made @ made))
         r = slope * float(np.sqrt((made @ made) / (given @ given)))
         if r < -AGAINST or (r > ALIKE and not 1 / POWER_SCALE <= slope <= POWER_SCALE):
-            what = f"{power} is {slope:.3g} times {moment} times the rate of {angle} (r = {r:.2f}), not once"
+            what = f"{power} is {slope:.3g} times {moment} times the rate of {angle} (r = {r:.2f}), instead of 1 times"
             names = [name for name in units if re.fullmatch(rf"{joint}_\w+_{side}_moment|{power}", name)]
-            yield names, f"{what}: sign or unit of one of them is another"
+            yield names, f"{what}: the sign or unit of one of them is wrong"
 
 
 def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
@@ -222,8 +224,8 @@ def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
         own = np.where(moments[moment] == 0, np.nan, moments[moment])
         r = _correlation(own, other)
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
-            what = f"{moment} goes with {beside} (r = {r:.2f}), which it opposes in walking"
-            yield [moment], f"{what}: its sign is turned"
+            what = f"{moment} correlates with {beside} (r = {r:.2f}), which it opposes in walking"
+            yield [moment], f"{what}: its sign is reversed"
 
 
 def _range(values: NDArray[np.float64]) -> float:

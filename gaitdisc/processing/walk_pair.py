@@ -61,7 +61,7 @@ def walk_pair(
     one, other = (
         _summary(trials[k], contacts[k], cutoff_hz, repeated=trials[k] is not given[k]) for k in range(len(given))
     )
-    what = f"percent stride counted by {chosen} in both, as it places contacts"
+    what = f"percent stride begins at the contacts by {chosen} in both walks"
     note = Finding("note", "detector", f"{first.name}, {second.name}", what, "")
     if len(contacts[0]) == 1:
         foot = {"r": "right", "l": "left"}[next(iter(contacts[0]))]
@@ -102,9 +102,10 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
         if all(serves) and min(most) and (sides := found[0][name].keys() & found[1][name].keys()):
             return name, [{side: here[name][side] for side in sides} for here in found]
     raise StrideError(
-        "two walks are compared over strides that one detector finds in both: force, events, markers or hip angles",
+        "two walks can be compared over strides that the same detector finds in both: force, events, markers or hip "
+        "angles",
         ". ".join(reasons),
-        "Give recordings of walking that both have hip flexion, or both forces, or both markers.",
+        "Use walks that both have hip flexion, or both forces, or both markers.",
     )
 
 
@@ -116,7 +117,7 @@ def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str,
     if joints is None:
         raise StrideError(
             "contacts from angles need hip flexion of one side in both recordings",
-            "the two have no hip in common",
+            "the two have no hip angle in common",
             "Map the columns in the study's [channels].",
         )
     sides = tuple(channel.side for channel in joints.channels if channel.name.startswith("hip_flexion"))
@@ -198,10 +199,10 @@ def repeated_stride(trial: Trial) -> Trial:
         if len(recording.time) == len(kinematics.time) and np.allclose(recording.time, kinematics.time, atol=1e-6)
     }
     left = sorted(set(trial.streams) - set(kept))
-    what = f"one stride of {count / kinematics.rate_hz:.3f} s that closes in itself, walked {TIMES} times"
+    what = f"one stride of {count / kinematics.rate_hz:.3f} s that closes on itself, repeated {TIMES} times"
     if left:
-        what += f"; {', '.join(left)} left out: on another time base"
-    spread = "a spread of its own: it is taken as a curve"
+        what += f"; {', '.join(left)} excluded: on another time base"
+    spread = "the spread, of which a single stride has none"
     note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
     return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
 
@@ -209,20 +210,20 @@ def repeated_stride(trial: Trial) -> Trial:
 def _period(kinematics: Recording, name: str) -> int:
     """Samples of the stride: all of them, or one less where the last repeats the first."""
     angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.name.startswith(LEGS))
-    needed = f"one stride of a periodic simulation lasts {MIN_S:g} to {MAX_S:g} s and ends where it began"
+    needed = f"one stride of a periodic simulation must last {MIN_S:g} to {MAX_S:g} s and end as it began"
     if not MIN_S <= kinematics.duration_s <= MAX_S or len(kinematics.time) < 8:
         found = f"{name} lasts {kinematics.duration_s:.2f} s in {len(kinematics.time)} samples"
-        raise StrideError(needed, found, "Give one whole stride, or a walk of several.")
+        raise StrideError(needed, found, "Use one complete stride, or a walk of several.")
     x = angles.values
     reach = np.ptp(x, axis=0)
     moving = np.isfinite(reach) & (reach > 1.0)
     if not moving.any():
-        raise StrideError(needed, f"{name} has no angle of the legs that moves", "Give joint angles in deg or rad.")
+        raise StrideError(needed, f"{name} has no leg angle that varies", "Provide joint angles in deg or rad.")
     apart = np.abs(x[-1] - x[0])[moving] / reach[moving]
     if np.median(apart) > CLOSES:
         worst = int(np.flatnonzero(moving)[np.argmax(apart)])
-        found = f"in {name} {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from where it began"
-        raise StrideError(needed, found, "Give a whole stride (two steps), or a walk of several.")
+        found = f"in {name}, {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from its start"
+        raise StrideError(needed, found, "Use a complete stride (two steps), or a walk of several.")
     step = np.abs(np.diff(x, axis=0)).mean(axis=0)[moving] / reach[moving]
     beside = np.abs(x[1] - x[-1])[moving] / reach[moving]
     closing = np.median(apart) < 0.25 * np.median(step) and np.median(beside) > np.median(apart)
@@ -231,7 +232,9 @@ def _period(kinematics: Recording, name: str) -> int:
 
 def _repeated(recording: Recording, count: int) -> Recording:
     if len(recording.time) < count:
-        raise SamplingError("a stride to repeat needs all its samples", f"found {len(recording.time)}", "Export again.")
+        raise SamplingError(
+            "a stride that is repeated must have all its samples", f"found {len(recording.time)}", "Export it again."
+        )
     time = recording.time[0] + np.arange(TIMES * count) / recording.rate_hz
     assert recording.suspect is not None  # set by Recording
     return replace(

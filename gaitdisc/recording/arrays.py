@@ -31,9 +31,9 @@ def real_array(values: Any) -> NDArray[np.float64]:
     array = np.asarray(values)
     if array.dtype.kind == "c":
         raise ShapeError(
-            "a recording holds real numbers",
-            f"found complex ones, {array.shape} of them",
-            "Give their magnitude or their real part: abs(x) or x.real.",
+            "a recording must contain real numbers",
+            f"the array of shape {array.shape} is complex",
+            "Use the magnitude, abs(x), or the real part, x.real.",
         )
     return np.asarray(array, float)
 

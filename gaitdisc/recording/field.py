@@ -24,14 +24,14 @@ class Axis:
     name : str
         `lat`, `lon`, `x`.
     coordinates : ndarray (node,) [unit]
-        Increasing or decreasing all along.
+        Increasing or decreasing throughout.
     unit : str
         As shown; never converted.
 
     Raises
     ------
     ShapeError
-        If the coordinates do not go one way.
+        If the coordinates neither increase nor decrease throughout.
 
     Examples
     --------
@@ -49,14 +49,14 @@ class Axis:
         steps = np.diff(self.coordinates)
         if self.coordinates.ndim != 1 or not len(self.coordinates) or not (np.all(steps > 0) or np.all(steps < 0)):
             raise ShapeError(
-                "an axis of a field needs coordinates that increase, or decrease, all along",
-                f"axis {self.name!r} has {np.size(self.coordinates)} that do not",
+                "the coordinates of a field's axis must increase or decrease throughout",
+                f"axis {self.name!r} has {np.size(self.coordinates)} coordinates that do not",
                 "Sort the grid along this axis.",
             )
 
     @property
     def step(self) -> float:
-        """Typical distance of two nodes [unit]; infinite for a single node."""
+        """Typical distance between two nodes [unit]; infinite for a single node."""
         return float(np.median(np.abs(np.diff(self.coordinates)))) if len(self.coordinates) > 1 else float("inf")
 
 
@@ -67,15 +67,15 @@ class Field:
     Parameters
     ----------
     time : ndarray (time,) [time_unit]
-        Of the snapshots, evenly spaced, increasing.
+        Times of the snapshots, evenly spaced, increasing.
     values : ndarray (time, point, quantity) [each quantity's unit]
-        At the points where `mask` holds, in the grid's order (last axis fastest); finite. Kept in single precision.
+        Values at the points where `mask` is true, in the grid's order (last axis fastest); finite, in single precision.
     axes : tuple of Axis
-        Of the grid.
+        Axes of the grid.
     mask : ndarray of bool, shape of the grid
         True at the points of the field, False outside it, as on land.
     quantities, units : tuple of str
-        What is measured, and in which unit.
+        Measured quantities and their units.
     time_unit : str
         `month`, `week`, `s`.
     source : Source
@@ -84,9 +84,9 @@ class Field:
     Raises
     ------
     ShapeError
-        If the arrays do not fit together, no point is left, or a value is missing.
+        If the arrays do not match, the mask is empty, or a value is missing.
     SamplingError
-        If time does not advance evenly (a step differs from the usual one by more than 1 %).
+        If time is not evenly spaced (a step differs from the median by more than 1 %).
 
     Examples
     --------
@@ -108,23 +108,20 @@ class Field:
 
     def __post_init__(self) -> None:
         """Check shapes, time and values once; nothing below checks them again."""
-        time, values, mask = (
-            read_only(self.time),
-            read_only(self.values, np.float32),
-            read_only(self.mask, bool),
-        )
+        time, values, mask = (read_only(self.time), read_only(self.values, np.float32), read_only(self.mask, bool))
         grid = tuple(len(axis.coordinates) for axis in self.axes)
         if mask.shape != grid or not mask.any():
             raise ShapeError(
-                f"a field needs a mask of the shape of its grid, {grid}, that leaves a point",
-                f"found {mask.shape} with {int(mask.sum())} points",
-                "Give one truth value a node of the grid.",
+                f"the mask of a field must have the shape of its grid, {grid}, and contain at least one point",
+                f"the mask has shape {mask.shape} and {int(mask.sum())} points",
+                "Give one truth value for each grid node.",
             )
         wanted = (len(time), int(mask.sum()), len(self.quantities))
         if values.shape != wanted or len(self.units) != len(self.quantities):
             raise ShapeError(
-                f"a field needs values of shape (time, point, quantity), here {wanted}, and a unit for each quantity",
-                f"found {values.shape} and {len(self.units)} units",
+                f"a field must have values of shape (time, point, quantity), here {wanted}, and one unit for each "
+                "quantity",
+                f"the values have shape {values.shape}, with {len(self.units)} units",
                 "Put time first, then the points of the mask, then the quantities.",
             )
         self._refuse_uneven(time)
@@ -139,10 +136,10 @@ class Field:
         if uneven.any():
             first = int(np.argmax(uneven))
             raise SamplingError(
-                "snapshots of a field need times that advance evenly, since windows count snapshots",
-                f"{self.source.file or 'the field'}: snapshot {first + 2} comes {steps[first]:g} {self.time_unit} "
-                f"after the one before, usually {usual:g}",
-                "Sort the snapshots, or fill what is missing in between.",
+                "the snapshots of a field must be evenly spaced in time",
+                f"{self.source.file or 'the field'}: snapshot {first + 2} follows the previous one after "
+                f"{steps[first]:g} {self.time_unit}; the usual step is {usual:g}",
+                "Sort the snapshots, or fill in the missing ones.",
             )
 
     def _refuse_missing(self) -> None:
@@ -150,10 +147,10 @@ class Field:
         if missing:
             snapshot, point, quantity = (int(k) for k in np.argwhere(~np.isfinite(self.values))[0])
             raise ShapeError(
-                "a field needs a finite value at each of its points",
-                f"{self.source.file or 'the field'} lacks {missing} values, the first of {self.quantities[quantity]} "
-                f"at {self.place_words(point)} in snapshot {snapshot + 1}",
-                "Mask the points that are not always measured, or fill them.",
+                "a field must have a finite value at each of its points",
+                f"{self.source.file or 'the field'} lacks {missing} values; the first is "
+                f"{self.quantities[quantity]} at {self.place_words(point)} in snapshot {snapshot + 1}",
+                "Mask the points that are not always measured, or fill them in.",
             )
 
     def __len__(self) -> int:
@@ -177,7 +174,7 @@ class Field:
 
     @property
     def number_at(self) -> NDArray[np.intp]:
-        """Number of the point at every node of the grid, -1 where the field is not."""
+        """Number of the point at every node of the grid, -1 outside the field."""
         numbers = np.full(self.mask.shape, -1)
         numbers[self.mask] = np.arange(self.points)
         return numbers
@@ -214,26 +211,26 @@ class Field:
         Raises
         ------
         ChannelError
-            If the field does not have one.
+            If the field lacks a quantity.
         """
         absent = [name for name in quantities if name not in self.quantities]
         if absent or not quantities:
             raise ChannelError(
                 f"the field has the quantities {', '.join(self.quantities)}",
                 f"requested: {', '.join(absent) or 'none'}",
-                "Name some of them.",
+                "Name one or more of these.",
             )
         columns = [self.quantities.index(name) for name in quantities]
         units = tuple(self.units[k] for k in columns)
         return replace(self, values=self.values[:, :, columns], quantities=tuple(quantities), units=units)
 
     def on_grid(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Values of one snapshot and quantity on the grid, NaN where the field is not.
+        """Values of one snapshot and quantity on the grid, NaN outside the field.
 
         Parameters
         ----------
         values : ndarray (point,)
-            Of one quantity.
+            Values of one quantity.
         """
         grid = np.full(self.mask.shape, np.nan)
         grid[self.mask] = values

@@ -14,24 +14,25 @@ class Finding:
     Parameters
     ----------
     severity : str
-        `note` (nothing is spoiled), `warning` (some samples or channels are), `refused` (the trial is not used).
+        `note` (nothing is affected), `warning` (some samples or channels are affected), `refused` (the trial is not
+        used).
     kind : str
         One word or two: `gap`, `dead`, `flat`, `clipped`, `plateau`, `late change`, ...
     file : str
-        Name of the file, or of the trial where there is no file.
+        Name of the file, or of the trial if there is no file.
     what : str
-        What was seen, with number and unit.
+        The observation, with number and unit.
     spoils : str
-        What it makes worthless, and what to do.
+        What is affected, and what to do.
     channel : str
-        Name of the channel, empty where the whole file is meant.
+        Name of the channel; empty for the entire file.
     spans : tuple of (float, float)
         Start and end of each affected part [s].
 
     Examples
     --------
     >>> Finding("warning", "gap", "walk.mot", "0.12 s missing", "accelerations within 0.15 s", "knee_angle_r").line()
-    'warning: walk.mot, knee_angle_r: gap: 0.12 s missing; spoils accelerations within 0.15 s'
+    'warning: walk.mot, knee_angle_r: gap: 0.12 s missing; affects accelerations within 0.15 s'
     """
 
     severity: str
@@ -45,15 +46,15 @@ class Finding:
     def __post_init__(self) -> None:
         """Refuse a severity that the traffic light does not know."""
         if self.severity not in SEVERITIES:
-            raise ValueError(f"severity is one of {SEVERITIES}, not {self.severity!r}")
+            raise ValueError(f"severity must be one of {SEVERITIES}, not {self.severity!r}")
 
     @property
     def rank(self) -> int:
-        """Place in a list that has the severest first: 0 for `refused`."""
+        """Rank of the severity: 0 for `refused`, the most severe."""
         return len(SEVERITIES) - 1 - SEVERITIES.index(self.severity)
 
     def line(self) -> str:
         """Return the finding as one line of text."""
         where = ", ".join(part for part in (self.file, self.channel) if part)
-        spoils = f"; spoils {self.spoils}" if self.spoils else ""
+        spoils = f"; affects {self.spoils}" if self.spoils else ""
         return f"{self.severity}: {where}: {self.kind}: {self.what}{spoils}"

@@ -40,22 +40,22 @@ class Recording:
     time : ndarray (time,) [s]
         Evenly spaced, increasing.
     values : ndarray (time, channel) [each channel's unit]
-        NaN where nothing was measured; never 0 in place of it.
+        NaN where nothing was measured, never 0.
     channels : sequence of Channel
-        One for each column; names differ.
+        One channel per column, with different names.
     subject, condition : str
         Pseudonym of the person; `nominal`, `exo` or the study's own word.
     source : Source
         File, hash and reader.
     suspect : ndarray of bool (time, channel), optional
-        True where a value stands but is not to be trusted (a filled gap, a filter's edge, a plateau).
+        True for unreliable values (a filled gap, a filter's edge, a plateau).
 
     Raises
     ------
     ShapeError
-        If times, values, channels and marks do not fit together.
+        If times, values, channels and marks do not match.
     SamplingError
-        If time does not advance evenly (a step differs from the mean by more than 0.1 %).
+        If time is not evenly spaced (a step differs from the mean by more than 0.1 %).
     ChannelError
         If two channels have one name.
 
@@ -82,22 +82,22 @@ class Recording:
         strange = next((one for one in channels if not isinstance(one, Channel)), None)
         if strange is not None:
             raise ChannelError(
-                "a recording's channels say name, quantity and unit, each a gaitdisc.Channel",
+                "each channel of a recording must be a gaitdisc.Channel with name, quantity and unit",
                 f"found {strange!r}",
                 'Write Channel("knee_angle_r", "angle", "deg", "r"), or read a DataFrame with gaitdisc.read.',
             )
         if time.ndim != 1 or values.shape != (len(time), len(channels)):
             raise ShapeError(
-                "a recording needs values of shape (time, channel)",
-                f"found {values.shape} with {len(time)} times and {len(channels)} channels",
-                "Put time first, one column a channel.",
+                "a recording must have values of shape (time, channel)",
+                f"the values have shape {values.shape}, for {len(time)} times and {len(channels)} channels",
+                "Put time first, with one column per channel.",
             )
         suspect = np.zeros(values.shape, bool) if self.suspect is None else self.suspect
         if np.shape(suspect) != values.shape:
             raise ShapeError(
-                "marks of suspect samples need the shape of the values",
-                f"found {np.shape(suspect)}, values {values.shape}",
-                "Give one mark a sample and channel.",
+                "the marks of suspect samples must have the shape of the values",
+                f"the marks have shape {np.shape(suspect)}, the values {values.shape}",
+                "Give one mark per sample and channel.",
             )
         _check_names(channels, self.source.file)
         _check_steps(time, self.source.file)
@@ -112,7 +112,7 @@ class Recording:
 
     @property
     def rate_hz(self) -> float:
-        """Samples a second; NaN for fewer than two samples."""
+        """Sampling rate; NaN for fewer than two samples."""
         if len(self.time) < 2:
             return float("nan")
         rate = (len(self.time) - 1) / (self.time[-1] - self.time[0])
@@ -134,13 +134,14 @@ class Recording:
         Raises
         ------
         ChannelError
-            If there is none of that name; the nearest one is named.
+            If no channel has this name; the message gives the nearest name.
         """
         if not isinstance(name, str):
             raise ChannelError(
-                "a channel is taken by its name",
+                "a channel is selected by its name",
                 f"found {type(name).__name__} {str(name)[:60]}",
-                "Give the name; several with recording.selected([...]), a stretch of time with recording.between(...).",
+                "Use the channel's name. For several channels use recording.selected([...]); for a period of time "
+                "use recording.between(...).",
             )
         if name not in self.names:
             axes = [own for own in self.names if own.rpartition(".")[0] == name]
@@ -148,9 +149,9 @@ class Recording:
             there = f"{', '.join(self.names[:SHOWN])}{', ...' * (len(self.names) > SHOWN)}" or "none"
             hint = f"the marker is {', '.join(axes)}" if axes else f"the nearest is {nearest!r}" if nearest else there
             raise ChannelError(
-                f"channel {name!r} is needed",
+                f"channel {name!r} is required",
                 f"{self.source.file or 'the recording'} has {len(self.names)} channels: {hint}",
-                "Take one of these, or say which column it is in the study's [channels] or read(..., channels=...).",
+                "Use one of these, or map the column in the study's [channels] or in read(..., channels=...).",
             )
         return self.names.index(name)
 
@@ -182,7 +183,7 @@ class Recording:
         Parameters
         ----------
         wanted : callable
-            Takes a Channel, answers True or False.
+            Function of a Channel that returns True or False.
         """
         return self.selected([channel.name for channel in self.channels if wanted(channel)])
 
@@ -206,7 +207,7 @@ class Recording:
         values : ndarray (time, channel)
             New values.
         suspect : ndarray of bool (time, channel), optional
-            Marks to add to those there are.
+            Marks that are added to the existing ones.
         """
         marks = self._suspect() if suspect is None else self._suspect() | suspect
         return replace(self, values=values, suspect=marks)
@@ -231,17 +232,19 @@ class Recording:
         return html_of("Recording", [row for row in rows if row[1] or row[0].startswith("and ")])
 
     def to_pandas(self, units: bool = False) -> pd.DataFrame:
-        """Table with one column a channel, indexed by time [s].
+        """Table with one column per channel, indexed by time [s]; `attrs["units"]` has the units.
 
         Parameters
         ----------
         units : bool
-            Columns are called `name [unit]`, which `gaitdisc.read` reads back, from the table or its CSV file.
+            Whether columns are called `name [unit]`, which `gaitdisc.read` reads back from the table or its CSV file.
         """
         import pandas as pd
 
         names = [f"{one.name} [{one.unit}]" if units else one.name for one in self.channels]
-        return pd.DataFrame(self.values, pd.Index(self.time, name="time"), names)
+        table = pd.DataFrame(self.values, pd.Index(self.time, name="time"), names)
+        table.attrs["units"] = {name: one.unit for name, one in zip(names, self.channels, strict=True)} | {"time": "s"}
+        return table
 
     def to_xarray(self) -> xr.DataArray:
         """Labelled array (time, channel) with the units as a coordinate; needs xarray installed."""
@@ -271,9 +274,9 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
         raise ChannelError(
-            "each channel needs a name of its own",
-            f"{file or 'the recording'} has {doubled[0]!r} {names.count(doubled[0])} times",
-            "Name them differently in the study's [channels].",
+            "each channel must have its own name",
+            f"{file or 'the recording'} contains {doubled[0]!r} {names.count(doubled[0])} times",
+            "Give the columns different names in the study's [channels].",
         )
 
 
@@ -286,8 +289,8 @@ def _check_steps(time: NDArray[np.float64], file: str) -> None:
     even = mean > 0 and abs(steps[worst] - mean) <= STEP_TOLERANCE * mean
     if not even:  # also where a time is NaN
         raise SamplingError(
-            "a recording needs a constant rate",
-            f"{file or 'the recording'} has a step of {steps[worst]:.6g} s after sample {worst} "
-            f"(t = {time[worst]:.6g} s) where the mean step is {mean:.6g} s",
-            "Export it at one rate, or resample it onto one before reading.",
+            "a recording must have a constant sampling rate",
+            f"{file or 'the recording'} has a step of {steps[worst]:.6g} s after sample {worst} (t = "
+            f"{time[worst]:.6g} s); the mean step is {mean:.6g} s",
+            "Export it at one rate, or resample it before reading.",
         )

@@ -81,7 +81,7 @@ class Samples:
     inputs, outputs : tuple of str
         Their names.
     time : ndarray (sample,) [s]
-        When each sample was taken; samples that were left away show as steps.
+        Time of each sample; excluded samples appear as larger steps.
     phi : ndarray (sample,) [% stride]
         Percent stride of each sample.
     subject : str
@@ -90,7 +90,7 @@ class Samples:
     Raises
     ------
     ShapeError
-        If the arrays and names do not fit together.
+        If the arrays and names do not match.
 
     Examples
     --------
@@ -110,17 +110,13 @@ class Samples:
     def __post_init__(self) -> None:
         """Check shapes once."""
         count = len(self.time)
-        wanted = {
-            "x": (count, len(self.inputs)),
-            "y": (count, len(self.outputs)),
-            "phi": (count,),
-        }
+        wanted = {"x": (count, len(self.inputs)), "y": (count, len(self.outputs)), "phi": (count,)}
         for name, shape in wanted.items():
             if np.shape(getattr(self, name)) != shape:
                 raise ShapeError(
-                    f"samples need {name} of shape {shape}",
+                    f"{name} of the samples must have shape {shape}",
                     f"found {np.shape(getattr(self, name))}",
-                    "Give one row a sample and one name a column.",
+                    "Give one row per sample and one name per column.",
                 )
         for name in ("x", "y", "time", "phi"):
             object.__setattr__(self, name, read_only(getattr(self, name)))
@@ -136,13 +132,7 @@ class Samples:
         chosen : slice or ndarray
             Samples to keep.
         """
-        return replace(
-            self,
-            x=self.x[chosen],
-            y=self.y[chosen],
-            time=self.time[chosen],
-            phi=self.phi[chosen],
-        )
+        return replace(self, x=self.x[chosen], y=self.y[chosen], time=self.time[chosen], phi=self.phi[chosen])
 
     def with_outputs(self, y: NDArray[np.float64]) -> Samples:
         """Return the same inputs with other outputs of the same names.
@@ -162,7 +152,7 @@ class Samples:
         share : float
             Share of the samples in the last part, between 0 and 1.
         seam_s : float
-            Length left away before the last part [s], over which zero-lag filters carry what they saw ahead.
+            Length excluded before the last part [s], because zero-lag filters use future samples.
 
         Returns
         -------
@@ -175,14 +165,14 @@ class Samples:
         return before, last
 
     def trainable(self, least: int, missing_inputs: bool = False) -> Samples:
-        """Return the same samples, or refuse to fit anything to them.
+        """Return the same samples, or refuse them if no model can be fitted.
 
         Parameters
         ----------
         least : int
-            Samples that the fit needs.
+            Minimum number of samples.
         missing_inputs : bool
-            Whether the fit can do with inputs that are NaN.
+            Whether the fit accepts inputs that are NaN.
 
         Raises
         ------
@@ -192,27 +182,27 @@ class Samples:
         who = self.subject or "the recording"
         if len(self) < least:
             raise TrainingError(
-                f"a fit of {len(self.inputs)} inputs to {len(self.outputs)} outputs needs {least} samples",
+                f"a fit of {len(self.inputs)} inputs to {len(self.outputs)} outputs needs at least {least} samples",
                 f"{who} has {len(self)} usable samples",
-                "Record longer, or use fewer channels; the findings say which samples were left away.",
+                "Record longer, or use fewer channels. The findings say which samples were excluded.",
             )
         for names, values in ((self.inputs, self.x), (self.outputs, self.y)):
             bad = np.isinf(values) if missing_inputs and values is self.x else ~np.isfinite(values)
             if bad.any():
                 row, column = (int(k) for k in np.argwhere(bad)[0])
                 raise TrainingError(
-                    "a fit needs finite numbers",
+                    "all samples of a fit must be finite",
                     f"{who}: {names[column]} has {int(bad[:, column].sum())} missing or infinite samples of "
                     f"{len(self)}, the first at {self.time[row]:.3f} s",
-                    "Mark them as not usable, so that they are left away.",
+                    "Mark these samples as not usable; the fit then excludes them.",
                 )
         still = scale_of(self.y).constant
         if still.any():
             column = int(np.argmax(still))
             raise TrainingError(
-                "a fit needs outputs that vary",
+                "the outputs of a fit must vary",
                 f"{who}: {self.outputs[column]} is {self.y[0, column]:.6g} in all {len(self)} samples",
-                "Leave this output away, or check whether its sensor was connected.",
+                "Remove this output, or check whether its sensor was connected.",
             )
         return self
 
@@ -244,15 +234,15 @@ class Trajectory:
             found = np.shape(getattr(self, name))
             if found != shape:
                 raise ShapeError(
-                    f"a trajectory needs {name} of shape (time, channel) = {shape}",
+                    f"{name} of a trajectory must have shape (time, channel) = {shape}",
                     f"found {found}",
-                    "Put time first, one column a channel.",
+                    "Put time first, with one column per channel.",
                 )
         if np.shape(self.phi) != shape[:1]:
             raise ShapeError(
-                f"a trajectory needs phi of shape (time,) = {shape[:1]}",
+                f"phi of a trajectory must have shape (time,) = {shape[:1]}",
                 f"found {np.shape(self.phi)}",
-                "Give one percent stride a sample.",
+                "Give one value in percent of the stride per sample.",
             )
         for name in ("time", "x", "xdot", "xddot", "phi"):
             object.__setattr__(self, name, read_only(getattr(self, name)))
@@ -294,8 +284,8 @@ class Trajectory:
         last = len(self.time) - held - round(seam_s * self.rate_hz)
         if held < 1 or last < 1:
             raise SamplingError(
-                f"holding out the last {held_out_s:g} s (and {seam_s:g} s before it) needs a longer trial",
+                f"the trial is too short to hold out its last {held_out_s:g} s, and the {seam_s:g} s before them",
                 f"{self.subject} {self.condition} lasts {len(self.time) / self.rate_hz:.2f} s",
-                "Shorten [held_out] in the study, or leave it out to hold back 12.5 %.",
+                "Shorten [held_out] in the study, or remove it to hold out 12.5 %.",
             )
         return self.rows(slice(0, last)), self.rows(slice(len(self.time) - held, None))

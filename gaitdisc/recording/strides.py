@@ -44,7 +44,7 @@ class Strides:
     detector : str
         What found the contacts: `force`, `markers`, `angles`, `events`, `oscillator`.
     dropped : tuple of DroppedStride
-        Strides that are not among the above, each with its reason.
+        Strides that are excluded, each with its reason.
 
     Raises
     ------
@@ -71,15 +71,15 @@ class Strides:
         start, end = read_only(self.start), read_only(self.end)
         if start.ndim != 1 or start.shape != end.shape:
             raise ShapeError(
-                "strides need as many ends as starts",
-                f"found {start.shape} starts and {end.shape} ends",
-                "Give one end a start.",
+                "strides must have as many ends as starts",
+                f"there are {start.shape} starts and {end.shape} ends",
+                "Give one end for each start.",
             )
         if not np.isfinite([start, end]).all() or np.any(end <= start) or np.any(start[1:] < end[:-1] - 1e-9):
             raise StrideError(
-                "strides need initial contacts in order",
-                f"one of the {len(start)} strides of side {self.side!r} ends before it starts or overlaps the next, or "
-                "has no time",
+                "the initial contacts of strides must be in order",
+                f"one of the {len(start)} strides of side {self.side!r} ends before it starts, overlaps the next, "
+                "or has no time",
                 "Check the events, or choose another detector.",
             )
         object.__setattr__(self, "start", start)
@@ -138,8 +138,8 @@ class Strides:
     def normalised(self, recording: Recording | pd.DataFrame) -> NDArray[np.float64]:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
 
-        Linear between samples; NaN where a sample beside the point is missing or the recording does not reach. A
-        heading that passes 180 deg goes on in its stride, and strides are brought into one turn.
+        Linear interpolation; NaN next to a missing sample or outside the recording. A heading that passes 180 deg
+        continues within its stride, and all strides are brought into one turn.
 
         Parameters
         ----------
@@ -158,7 +158,7 @@ class Strides:
         return curves
 
     def between(self, start_s: float, end_s: float) -> Strides:
-        """Strides that lie wholly between two times.
+        """Strides that lie completely between two times.
 
         Parameters
         ----------
@@ -175,9 +175,10 @@ def _of_table(table: Any) -> Recording:
         table = table.reset_index()
     if "time" not in getattr(table, "columns", ()):
         raise ShapeError(
-            "strides are cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
+            "strides can be cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
             f"found {type(table).__name__}" + (" without it" if hasattr(table, "columns") else ""),
-            "Give one stream of a trial, trial.stream('kinematics') for instance, or name the column of times so.",
+            "Give one stream of a trial, for instance trial.stream('kinematics'), or rename the column of times "
+            "to 'time'.",
         )
     known = {channel.name: channel for channel in vocabulary().channels}
     names = [name for name in table.columns if name != "time"]

@@ -75,7 +75,7 @@ class BodyMeasures:
 def _check(name: str, value: float | None, limits: tuple[float, float], unit: str) -> None:
     if value is not None and not limits[0] <= value <= limits[1]:
         raise UnitError(
-            f"a person's {name} is between {limits[0]:g} and {limits[1]:g} {unit}",
+            f"a person's {name} must be between {limits[0]:g} and {limits[1]:g} {unit}",
             f"found {value:g} {unit}",
             f"Give it in {unit}.",
         )
@@ -103,7 +103,7 @@ class Surface:
         sound = corners.shape == (4, 3) and np.isfinite(corners).all()
         if not sound or np.linalg.norm(np.cross(corners[2] - corners[0], corners[3] - corners[1])) < 1e-6:
             raise ShapeError(
-                "a surface needs four corners (4, 3) that span an area",
+                "the four corners (4, 3) of a force plate must span an area",
                 f"{self.name} has {np.array2string(corners, precision=3)}",
                 "Correct FORCE_PLATFORM:CORNERS.",
             )
@@ -134,7 +134,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that the file itself says happened.
+    """An event that is stored in the file.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ class Event:
     side : str
         `r`, `l` or empty.
     time : float
-        On the trial's clock, the clock of the recordings [s].
+        Time on the trial's clock, as in the recordings [s].
     """
 
     label: str
@@ -158,7 +158,7 @@ class Trial:
     Parameters
     ----------
     name : str
-        Name of the file without its ending, or what the study calls it.
+        Name of the file without its ending, or the trial's name in the study.
     streams : mapping of str to Recording
         Keys among `STREAMS`: `kinematics` (joint angles, pelvis translations), `markers`, `segments` (poses, as systems
         without markers give them), `emg`, `forces` (ground reactions), `moments` (joint moments and powers), `signals`
@@ -166,11 +166,11 @@ class Trial:
     events : tuple of Event
         Events of the file, in order of time.
     findings : tuple of Finding
-        What the reader saw that a user must know.
+        Findings of the reader.
     subject, condition : str
         Pseudonym and condition.
     surfaces : tuple of Surface
-        Where the force plates or belts of `forces` lie, as far as the file says it.
+        Positions of the force plates or belts of `forces`, if the file contains them.
 
     Raises
     ------
@@ -196,7 +196,7 @@ class Trial:
         unknown = set(self.streams) - set(STREAMS)
         if unknown:
             raise ChannelError(
-                f"a trial has streams among {', '.join(STREAMS)}",
+                f"the streams of a trial must be among {', '.join(STREAMS)}",
                 f"{self.name} has {sorted(unknown)[0]!r}",
                 "Put the channels into one of these streams.",
             )
@@ -227,21 +227,21 @@ class Trial:
         Raises
         ------
         ChannelError
-            If the trial has none of that kind.
+            If the trial lacks this stream.
         """
         if key not in self.streams:
             raise ChannelError(
-                f"trial {self.name} is read for its {key}",
-                f"it has {', '.join(self.streams) or 'no stream at all'}",
-                "Take one of these, or read the file that holds them together with it.",
+                f"trial {self.name} must have {key}",
+                f"it has {', '.join(self.streams) or 'no streams'}",
+                "Use one of these, or read the missing file together with the others.",
             )
         return self.streams[key]
 
     def on_one_base(self, rate_hz: float, keys: tuple[str, ...] | None = None) -> Recording:
-        """Bring streams to one time base, the span that all of them cover.
+        """Resample streams to one time base, the period that all of them cover.
 
-        Linear between samples: streams that are slower than `rate_hz` gain no information, and streams that are faster
-        must have been low-passed before (an EMG envelope at 10 Hz, kinematics at 6 Hz), or they alias.
+        Linear interpolation: streams slower than `rate_hz` gain no information, and faster streams must have been
+        low-passed before (an EMG envelope at 10 Hz, kinematics at 6 Hz), or they alias.
 
         Parameters
         ----------
@@ -253,7 +253,7 @@ class Trial:
         Returns
         -------
         Recording
-            Channels of all streams; samples that rest on a suspect one are suspect.
+            Channels of all streams; samples interpolated from a suspect sample are suspect.
 
         Raises
         ------
@@ -266,8 +266,8 @@ class Trial:
         count = int(np.floor((end - start) * rate_hz + 1e-6)) + 1
         if count < 2:
             raise SamplingError(
-                f"trial {self.name}: streams on one time base need a span in common",
-                f"the last to start begins at {start:.3f} s, the first to end stops at {end:.3f} s",
+                f"trial {self.name}: streams on one time base must overlap in time",
+                f"the last stream begins at {start:.3f} s, the first one ends at {end:.3f} s",
                 "Check that the files belong to the same trial and clock.",
             )
         time = start + np.arange(count) / rate_hz

@@ -15,14 +15,14 @@ systematic review. Gait Posture 29(3), 360-369.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.regression.muscle_moment import (
-    RESPECT,
+    GAIN_RIDGE,
     USUAL_HARMONICS,
     Driven,
     Form,
@@ -55,16 +55,6 @@ class Walk(NamedTuple):
     stride: NDArray[np.intp]
 
 
-def as_recorded(driven: Driven, _: float) -> Driven:
-    """Return what drives the muscles of a walk in which they are as they were."""
-    return driven
-
-
-def no_columns(driven: Driven, _: float) -> Values:
-    """Return the moments (sample, 0) of a change that adds none."""
-    return np.empty((len(driven.angle), 0))
-
-
 @dataclass(frozen=True, eq=False)
 class Change:
     """One way in which a walk may differ; `values` is the grid of the number that is not linear, else one value."""
@@ -73,8 +63,8 @@ class Change:
     place: str
     number: str  # whose estimate the change is known by
     values: Values
-    driven: Callable[[Driven, float], Driven] = as_recorded
-    columns: Callable[[Driven, float], Values] = no_columns
+    driven: Callable[[Driven, float], Driven] = field(default_factory=lambda: lambda driven, _: driven)
+    columns: Callable[[Driven, float], Values] = field(default_factory=lambda: lambda d, _: np.empty((len(d.angle), 0)))
     neutral: float = 0.0  # its number where nothing changed
     piece: str = ""  # with which the catalogue's expression begins, where two effects share a name
 
@@ -107,11 +97,9 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
     if held < CLOSES:
         return None
     found, number, draws = _drawn_anew(both, best, value, DRAWS)
-    errors = [
-        float(np.std(draws)),
-        _doubted(model.form, (nominal, device), best, value),
-        _coarseness(both, best, value),
-    ]
+    errors = [float(np.std(draws)), _doubted(model.form, (nominal, device), best, value)]
+    if len(best.values) > 1 and not best.columns(device.driven, value).shape[1]:  # known to a step of the finer grid
+        errors.append((FINER[1] - FINER[0]) * abs(best.values[1] - best.values[0]) / np.sqrt(12))
     spread = float(np.linalg.norm(errors))
     if abs(number - best.neutral) < NORMAL_95 * spread:
         return None
@@ -151,7 +139,7 @@ class _Both:
     device: Walk
     learned: Values  # (device stride,) 1 where learned from
     own: Form  # of the device walk, whose usual stride may be another one
-    respect: float = RESPECT
+    respect: float = GAIN_RIDGE
 
     @classmethod
     def of(cls, form: Form, nominal: Walk, device: Walk) -> _Both:
@@ -208,20 +196,9 @@ def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[
     return found, number, [best((first, second))[1] for first, second in drawn_blocks(both.once)[:draws]]
 
 
-def _coarseness(both: _Both, change: Change, about: float) -> float:
-    """Standard deviation of a number that is known to a step of the finer grid; 0 where it is linear."""
-    if len(change.values) < 2 or change.columns(both.device.driven, about).shape[1]:
-        return 0.0
-    return float((FINER[1] - FINER[0]) * abs(change.values[1] - change.values[0]) / np.sqrt(12))
-
-
 def drawn_blocks(once: Sequence[Values]) -> list[list[Values]]:
     """How often each stride of each walk is drawn, blocks of neighbours together; `DRAWS` times (Efron 1979)."""
-    rng = np.random.default_rng(0)
-    return [[_weights(rng, one) for one in once] for _ in range(DRAWS)]
-
-
-def _weights(rng: np.random.Generator, once: Values) -> Values:
-    """How often each stride is drawn, blocks of neighbours together."""
-    block = np.arange(len(once)) // BLOCK
-    return once * np.bincount(rng.integers(0, block[-1] + 1, block[-1] + 1), minlength=block[-1] + 1)[block]
+    rng, blocks = np.random.default_rng(0), [np.arange(len(one)) // BLOCK for one in once]
+    counts = [block[-1] + 1 for block in blocks]
+    drawn = ([np.bincount(rng.integers(0, n, n), minlength=n) for n in counts] for _ in range(DRAWS))
+    return [[one * each[block] for one, block, each in zip(once, blocks, times, strict=True)] for times in drawn]

@@ -62,8 +62,8 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
     training.trainable(LEAST_SAMPLES)
     if not len(check):
         raise TrainingError(
-            "ridge regression needs a check part, by which its penalty is chosen",
-            "the check part has no samples",
+            "ridge regression needs a validation part to choose its penalty",
+            "the validation part has no samples",
             "Record longer, or give validation a larger share.",
         )
     x_scale, y_scale = scale_of(training.x), scale_of(training.y)
@@ -172,7 +172,7 @@ def load_ridge(path: Path) -> FourierRidge:
             arrays = {name: file[name] for name in file.files}
         names = json.loads(str(arrays["names"]))
         if names["format"] != FORMAT:
-            raise ValueError(f"it has format {names['format']}, this version reads {FORMAT}")
+            raise ValueError(f"it has format {names['format']}; this version reads {FORMAT}")
         return FourierRidge(
             tuple(names["inputs"]),
             tuple(names["outputs"]),
@@ -186,5 +186,5 @@ def load_ridge(path: Path) -> FourierRidge:
         )
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise SchemaError(
-            f"{path.name} is to be read as a ridge regression of gaitdisc", str(error), "Fit the model again."
+            f"{path.name} must be a ridge regression saved by gaitdisc", str(error), "Fit the model again."
         ) from error

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 DELAYS_S = np.arange(0.0, 0.11, 0.02)
 LAGS_S = (0.015, 0.03, 0.05)
-RESPECT = 0.3  # ridge that pulls the two gains of a muscle together, of the mean squared regressor
+GAIN_RIDGE = 0.3  # ridge that pulls the two gains of a muscle together, of the mean squared regressor
 HARMONICS, USUAL_HARMONICS = 6, 8  # of the curve that no electrode sees, and of the usual angle
 EDGES = (0.01, 0.99)  # quantiles of the angle between which a gain varies
 # joint's speed at which its muscles give nothing [rad/s]: ten fibre lengths a second (Zajac), 5 to 10 cm long on arms
@@ -198,7 +198,7 @@ def sums_of(columns: Values, moment: Values, pieces: NDArray[np.intp], count: in
     return Sums(*(np.array(one, np.float64) for one in zip(*parts, strict=True)))
 
 
-def solved(total: Sums, muscles: int, respect: float = RESPECT) -> Values:
+def solved(total: Sums, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     """Return coefficients of summed normal equations, then the waves of what these leave.
 
     Gains and firmness are not negative, the two gains of a muscle are pulled together; columns behind the waves (what a
@@ -216,7 +216,7 @@ def solved(total: Sums, muscles: int, respect: float = RESPECT) -> Values:
     return found
 
 
-def tied(squares: Values, muscles: int, respect: float = RESPECT) -> Values:
+def tied(squares: Values, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     """Normal equations in which the two gains of each muscle, the first columns, are pulled together by a ridge."""
     normal = squares.copy()
     for number in range(muscles):

@@ -53,9 +53,9 @@ def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -
     """
     if not 0 < inner_share < 1:
         raise TrainingError(
-            "ridge needs an inner_share between 0 and 1",
+            "inner_share of ridge must lie between 0 and 1",
             f"it is {inner_share}",
-            "Give the share of the training part on which the penalty is chosen.",
+            "Give the fraction of the training data on which the penalty is chosen.",
         )
     samples.trainable(LEAST_SAMPLES)
     harmonics = harmonics if PHASE in samples.inputs else 0

@@ -133,10 +133,10 @@ def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
         word = run.nominal if walk == "nominal" else run.exo
         counts.append(f"{low if low == high else f'{low}-{high}'} strides ({word})")
     return (
-        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, "
-        f"n = {', '.join(counts)}; whole walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo}, in red "
-        f"for the left side, blue for the right, black where there is no side. 0 %: initial contact of the channel's "
-        f"own foot. The arrow says what upwards means; left and right of one joint share a scale."
+        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, n = "
+        f"{', '.join(counts)}; entire walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
+        "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
+        "direction; left and right of one joint share a scale."
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.kept_parts import figure_again, hash_cycles, keep_part, read_part
 from gaitdisc.report.curves import sides_together
 from gaitdisc.report.cycles_tables import (
     all_cycles,
@@ -37,25 +39,25 @@ if TYPE_CHECKING:
 MOST_HERE = 2  # people whose figures are drawn one after the other
 FEW = 3  # cycles of a foot below which no spread is spoken of
 METHOD = (
-    "Contacts: the file's events, else force, else markers (heel farthest in front of the pelvis, each step along its "
-    "own direction), else joint angles; none that sees fewer than 80 % of the strides that another sees. Where a plate "
-    "or an event has a step that markers or angles have too, its own time is taken, and all others are moved by the "
-    "median difference of the person's session.",
-    "Foot off: events, else force where markers agree within 0.15 s, else the toe farthest behind the pelvis, else the "
-    "ankle's largest plantarflexion. From angles alone contacts lie some 30 ms early and foot off some 30 ms late, so "
-    "that stance is some 6 % of a stride too long.",
-    "A cycle is left out where it is too short or too long, differs from the person's other cycles by more than 15 % "
-    "and 6 robust standard deviations, has not one contact of the other foot inside, or lacks an angle of its own leg. "
-    "Cycles never cross a trial.",
-    "Moments are shown for cycles of which one plate carried the whole stance, with this foot alone on it.",
-    "Speed and lengths are those of the heels from contact to contact; on a treadmill the belt is added where the "
-    "study has its speed.",
+    "Contacts come from the file's events, otherwise from force, markers (heel farthest in front of the pelvis, each "
+    "step along its own direction) or joint angles, in this order. A detector is skipped if it finds fewer than 80 % "
+    "of the strides of another. If a plate or event records a step that markers or angles also find, its time is "
+    "used. All other contacts are shifted by the median difference of the person's session.",
+    "Foot off comes from events, otherwise from force if markers agree within 0.15 s, the toe farthest behind the "
+    "pelvis, or the ankle's largest plantarflexion. With angles only, contacts are about 30 ms early and foot off "
+    "about 30 ms late, so stance is about 6 % of a stride too long.",
+    "A cycle is excluded if it is too short or too long, differs from the person's other cycles by more than 15 % "
+    "and 6 robust standard deviations, does not contain exactly one contact of the other foot, or lacks an angle of "
+    "its own leg. Cycles never cross trials.",
+    "Moments are shown for cycles in which one plate carried the entire stance, with this foot alone on it.",
+    "Speed and lengths are measured at the heels from contact to contact. On a treadmill the belt speed is added if "
+    "the study states it.",
 )
 COMPUTED = (
-    "Joint angles are computed from markers, calibrated by the person's static trial; which marker set, how far the "
-    "markers lie from where the static trial has them, what was bridged and how the forces balance stands under "
-    "“Findings”. Moments and powers of these trials are shown for cycles whose stance is a step of this foot alone, "
-    "seen whole, with centre of pressure, heel and toes on the plate."
+    "Joint angles are computed from markers, calibrated with the person's static trial. “Findings” lists the marker "
+    "set, the distance of the markers from their static positions, bridged gaps and the force balance. Moments and "
+    "powers of these trials are shown for cycles whose stance is a complete step of this foot alone, with centre of "
+    "pressure, heel and toes on the plate."
 )
 COLUMNS, MOST_PANELS = 4, 20
 MOST_FAINT = 25  # cycles that are drawn one by one
@@ -64,11 +66,7 @@ MOST_FAINT = 25  # cycles that are drawn one by one
 def write_cycles_page(run: StudyRun, folder: Path) -> Path:
     """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
     computed = any(finding.kind == "residual" for one in run.of(CYCLES) for finding in one.findings)
-    tables = {
-        "refusals": refusals_table(run),
-        "findings": findings_table(run),
-        **provenance_tables(run.provenance),
-    }
+    tables = {"refusals": refusals_table(run), "findings": findings_table(run), **provenance_tables(run.provenance)}
     save_tables(tables.values(), folder)
     shown = {
         "run": run,
@@ -83,41 +81,38 @@ def write_cycles_page(run: StudyRun, folder: Path) -> Path:
 
 def write_lone_cycles(one: PooledCycles, folder: Path) -> Path:
     """Write the page of cycles that stand alone, as a run of nothing else has it."""
-    created = "in the run that they come from, whose run.json has settings and date,"
+    created = "in the original run, whose run.json contains settings and date,"
     made = Provenance({}, 0, one.files, {"gaitdisc": "of the version named there"}, "gait cycles", created)
     return write_cycles_page(StudyRun(one.name, "", "", one.refusals, made, {CYCLES.file: (one,)}), folder)
 
 
 def save_cycle_tables(run: StudyRun, folder: Path) -> None:
     """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables."""
-    save_table(all_cycles(run.of(CYCLES)), folder / "tables" / "cycles.csv")
-    save_table(all_means(run.of(CYCLES)), folder / "tables" / "means.csv")
-    save_table(all_spatiotemporal(run.of(CYCLES)), folder / "tables" / "spatiotemporal.csv")
+    for name, table in (("cycles", all_cycles), ("means", all_means), ("spatiotemporal", all_spatiotemporal)):
+        save_table(table(run.of(CYCLES)), folder / "tables" / f"{name}.csv")
 
 
 def cycles_sentences(run: StudyRun) -> list[str]:
     """Who is reported, with how many cycles; who is not, and what the numbers do not carry."""
     kept = [one for one in run.of(CYCLES) if len(one.kept)]
     if not kept:
-        return ["No cycle could be kept: see “Left out”."]
+        return ["No cycle could be kept; see “Left out”."]
     people = list(dict.fromkeys(one.subject for one in kept))
     left = sum(one.counted("l") for one in kept)
     right = sum(one.counted("r") for one in kept)
     out = sum(len(one.left_out) for one in run.of(CYCLES))
     sentences = [
         f"{counted(len(people), 'participant')}: {counted(left, 'left cycle')} and {counted(right, 'right cycle')} of "
-        f"{counted(sum(one.trials for one in kept), 'trial')} are kept, {out} left out, each with its reason."
+        f"{counted(sum(one.trials for one in kept), 'trial')} are kept; {out} are left out, each with its reason."
     ]
-    few = sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW})
-    if few:
+    if few := sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW}):
         sentences.append(
-            f"Fewer than {FEW} cycles of a foot in a session and condition: {listed(few)}. Such curves are single "
-            f"steps, and say nothing of how steadily somebody walks."
+            f"Fewer than {FEW} cycles of a foot in a session and condition: {listed(few)}. Such curves show single "
+            "steps, not how steadily a person walks."
         )
-    moved = [one for one in kept if one.contact_offset_s is not None]
-    if moved:
+    if moved := [one for one in kept if one.contact_offset_s is not None]:
         said = [f"{one.name} {offset_words(one)}" for one in moved]
-        sentences.append(f"Contacts from markers or angles were moved: {'; '.join(said)}.")
+        sentences.append(f"Contacts from markers or angles were shifted: {'; '.join(said)}.")
     return sentences
 
 
@@ -126,33 +121,39 @@ def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[SavedBlock]:
     if not run.of(CYCLES):
         return []
     unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
-    device = "" if run.exo else " The study compares no device, so no models are fitted."
-    windows = f"Every cycle lies in one trial; nothing is joined across trials.{device}"
+    device = "" if run.exo else " The study does not compare a device, so no models are fitted."
+    windows = f"Every cycle lies within one trial; cycles are not joined across trials.{device}"
     first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.of(CYCLES)),))
     people = list(dict.fromkeys(one.subject for one in run.of(CYCLES)))
-    names = file_names(people)
-    each = [
-        ([one for one in run.of(CYCLES) if one.subject == person], names[person], folder, len(run.of(CYCLES)))
-        for person in people
-    ]
-    return [save_block(first, folder), *drawn_side_by_side(_saved, each, MOST_HERE)]
+    names, count = file_names(people), len(run.of(CYCLES))
+    each = [([one for one in run.of(CYCLES) if one.subject == who], names[who], folder, count) for who in people]
+    drawn_side_by_side(_saved, [one for one in each if read_part(folder, *_part(*one)) is None], MOST_HERE)
+    return [save_block(first, folder), *(_saved(*one) for one in each)]  # all stand by now
 
 
-def person_block(sets: Sequence[PooledCycles], name: str) -> Block:
-    """Part of the page for one person: counts, figures of each session and condition, and tables."""
+def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) -> Block:
+    """Part of the page for one person: counts, figures of each session and condition unless they stand, and tables."""
     kept = [one for one in sets if len(one.kept)]
     left_out = left_out_cycles(sets, name)
     places = file_names([one.where for one in kept])
-    figures = [figure for one in kept for figure in cycles_figures(one, f"{name}-{places[one.where]}")]
-    tables = [spatiotemporal_table(kept, name)] if kept else []
-    tables += [left_out] if left_out is not None else []
+    figures = [one for own in kept if drawn for one in cycles_figures(own, f"{name}-{places[own.where]}")]
+    tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
     return Block(f"cycles-{name}", sets[0].subject, (_person(sets),), tuple(figures), tuple(tables))
 
 
+def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str]:
+    return f"cycles-{name}", hash_cycles(sets, name)
+
+
 def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> SavedBlock:
-    block = person_block(sets, name)
+    part, key = _part(sets, name)
+    block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
     save_tables(block.tables, folder)
-    figures = save_figures(block.figures, folder, largest_inline(count))
+    here, most = folder / "figures", largest_inline(count)
+    figures = [figure_again(one, here, most) for one in kept or ()] or save_figures(block.figures, folder, most)
+    if kept is None:
+        files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
+        keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
     return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 
@@ -161,11 +162,8 @@ def _person(sets: Sequence[PooledCycles]) -> str:
     for one in sets:
         counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in ("l", "r"))
         ground = "over ground" if one.over_ground else "on a treadmill"
-        parts.append(
-            f"{one.where}: {counts} cycles of {counted(one.trials, 'trial')} {ground}"
-            if len(one.kept)
-            else f"{one.where}: no cycle, see “Left out”"
-        )
+        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
+        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
     return f"{'; '.join(parts)}."
 
 
@@ -175,9 +173,7 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
     numbers = pooled.mean_curves()
     if not len(numbers):
         return []
-    joints = list(
-        dict.fromkeys(sideless(channel) for channel in sides_together(list(dict.fromkeys(numbers["channel"]))))
-    )
+    joints = list(dict.fromkeys(map(sideless, sides_together(list(dict.fromkeys(numbers["channel"]))))))
     order = {kind: place for place, kind in enumerate(("angle", "translation", "moment", "power"))}
     kinds = {sideless(channel.name): order.get(channel.quantity, len(order)) for channel in pooled.channels}
     joints.sort(key=lambda joint: kinds[joint])
@@ -236,11 +232,11 @@ def _caption(pooled: PooledCycles) -> str:
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
     plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
-    moments = f" Moments only where a plate carried this foot alone: {plates}." if len(kinetic) else ""
+    moments = f" Moments are shown only where a plate carried this foot alone: {plates}." if len(kinetic) else ""
     filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
     return (
-        f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean, from three "
-        f"cycles on ± standard deviation, and single cycles (the first {MOST_FAINT}), left red, right blue. 0 %: "
+        f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean ± standard "
+        f"deviation (from three cycles on) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 %: "
         f"initial contact of the channel's own foot; dotted: mean foot off.{moments}"
         + "".join(f" Filters: {words}." for words in filters)
     )

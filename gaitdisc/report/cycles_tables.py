@@ -114,7 +114,7 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
         plates = {side: int((kinetic["side"] == side).sum()) for side in FEET}
         muscles = emg_counts(one)
         live = [count for count in muscles.values() if count]
-        emg = f"{len(live)} live, {sum(live)} cycles" if live else NONE
+        emg = f"{len(live)} usable, {sum(live)} cycles" if live else NONE
         by = ", ".join(f"{name} ({count})" if len(one.detectors) > 1 else name for name, count in one.detectors.items())
         rows.append((
             one.subject, one.group or NONE, one.where, str(one.trials),
@@ -132,11 +132,11 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
         })  # fmt: skip
     columns = (
         "participant", "group", "session, condition", "trials", "left: kept / dropped", "right: kept / dropped",
-        "on a plate (left, right)", "EMG", "contacts by", "contacts moved",
+        "on a plate (left, right)", "EMG", "contacts by", "shift of contacts",
     )  # fmt: skip
     caption = (
-        f"Cycles pooled over trials, n = {len(cycles)} sessions and conditions. On a plate: cycles whose whole stance "
-        f"one plate carried, with this foot alone on it. EMG: live channels, and cycles of all of them."
+        f"Cycles pooled over trials, n = {len(cycles)} sessions and conditions. On a plate: cycles in which one plate "
+        "carried the entire stance, with this foot alone on it. EMG: usable channels, and cycles with all of them."
     )
     return Table("cycle_counts", caption, columns, tuple(rows), pd.DataFrame(records))
 
@@ -160,9 +160,9 @@ def offset_words(one: PooledCycles) -> str:
     if not late:
         return NONE
     if one.contact_offset_s is None:
-        return "not moved: no plate saw a step"
+        return "not shifted: no plate recorded a step"
     steps = "1 step" if one.offset_steps == 1 else f"{one.offset_steps} steps"
-    return f"{1e3 * one.contact_offset_s:+.0f} ms ({steps} that a plate or an event has too)"
+    return f"{1000.0 * one.contact_offset_s:+.0f} ms ({steps} that a plate or an event also recorded)"
 
 
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
@@ -203,7 +203,7 @@ def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
         for row in numbers.itertuples(index=False)
     )
     headings = ("session, condition", "trial", "side", "from, to [s]", "why")
-    caption = f"{sets[0].subject}: cycles that are left out, n = {len(rows)}."
+    caption = f"{sets[0].subject}: cycles left out, n = {len(rows)}."
     return Table(f"left_out-{name}", caption, headings, rows, numbers)
 
 

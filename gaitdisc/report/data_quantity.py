@@ -22,7 +22,7 @@ GROUPS = {"angles": "joint angles", "EMG": "EMG envelopes"}
 HEIGHT = 2.3  # of a panel [inch]
 APART = 1.4  # least ratio of two lengths that are both written at the axis
 ENOUGH = 0.01  # as near to the whole training part as this
-_GROUPS = (("", 2), ("(i) Augmented to Exo, same length", 3), ("(ii) Exo to Exo of the whole training part", 3))
+_GROUPS = (("", 2), ("(i) Augmented to Exo, same length", 3), ("(ii) Exo to Exo of the entire training part", 3))
 _COLUMNS = ("training [s]", "n", "different", "which", "largest shift", "different", "which", "largest shift")
 
 
@@ -62,17 +62,17 @@ def quantity_sentences(run: ResponseRun) -> list[str]:
         return []
     near = pd.DataFrame([_near(quantity) for quantity in run.quantities], columns=pd.Index(["from", "whole", "r2"]))
     who = run.quantities[0].participant if len(near) == 1 else f"Over {counted(len(near), 'participant')}"
-    reach = f"from {_seconds(near['from'])} on" if (near["from"] < near["whole"]).any() else "only with all of it"
+    reach = f"from {_seconds(near['from'])} on" if (near["from"] < near["whole"]).any() else "only with all data"
     middle = "" if len(near) == 1 else ", medians and ranges over participants"
     said = [
-        f"{f'In {who}' if len(near) == 1 else who}, the Exo model comes within {ENOUGH:g} of what all "
-        f"{_seconds(near['whole'])} of training give (R² {number(near['r2'].median())}, median over variables) "
+        f"{f'In {who}' if len(near) == 1 else who}, the Exo model comes within {ENOUGH:g} of the R² with all "
+        f"{_seconds(near['whole'])} of training ({number(near['r2'].median())}, median over variables) "
         f"{reach}{middle}."
     ]
     lengths = sorted({length for quantity in run.quantities for length in quantity.left_away})
     if lengths:
         shown = ", ".join(f"{length:g} s" for length in lengths)
-        said.append(f"Lengths left away, because a walk is too short for them or too few samples are left: {shown}.")
+        said.append(f"Lengths left out because a walk is too short or has too few samples: {shown}.")
     return said
 
 
@@ -116,15 +116,15 @@ def _caption(run: ResponseRun, low: float) -> str:
     edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
     return (
         f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
-        f"length of the training part (its {' or '.join(sorted(parts))} seconds), "
-        f"n = {counted(len(run.quantities), 'participant')}; split: last {held_out_text(run)} s of each walk held out "
-        f"for every length alike. Thick: median over participants; thin: each participant; networks only.{edge} After "
-        f"Fig. 4.4 of the dissertation."
+        f"length of the training part (its {' or '.join(sorted(parts))} seconds), n = "
+        f"{counted(len(run.quantities), 'participant')}; split: last {held_out_text(run)} s of each walk held out for "
+        f"all lengths. Thick: median over participants; thin: each participant; networks only.{edge} After Fig. 4.4 "
+        "of the dissertation."
     )
 
 
 def _alt(run: ResponseRun) -> str:
-    return f"R² of three models rising with the training length, for {counted(len(run.quantities), 'participant')}."
+    return f"R² of three models against the training length, for {counted(len(run.quantities), 'participant')}."
 
 
 def length_table(run: ResponseRun) -> Table | None:
@@ -137,10 +137,10 @@ def length_table(run: ResponseRun) -> Table | None:
         parts = [_cells(found[found["second"] == second]) for second in ("exo", WHOLE)]
         rows.append((f"{length:g}", str(int(found["n"].max())), *parts[0], *parts[1]))
     caption = (
-        f"R² [1] on the same held-out device walking by training length, paired over n = "
-        f"{counted(len(run.quantities), 'participant')}: exact two-sided signed rank, Holm-Sidak over the variables of "
-        f"one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann, of the variable that moves most, "
-        f"second minus first. The CSV holds every test with its interval."
+        "R² [1] on the same held-out device walking by training length, paired over n = "
+        f"{counted(len(run.quantities), 'participant')}: exact two-sided signed rank, Holm-Sidak over the variables "
+        "of one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann, of the variable with the largest "
+        "change, second minus first. The CSV contains every test with its interval."
     )
     return Table("lengths", caption, _COLUMNS, tuple(rows), tests, _GROUPS)
 
@@ -159,16 +159,17 @@ def length_sentences(run: ResponseRun) -> list[str]:
     apart = (over.lengths["second"] == "exo") & over.lengths["different"].astype(bool)
     exceptions = sorted(set(over.lengths.loc[apart, "length_s"]))
     return [
-        f"(i) Augmented against Exo at the same length: a difference is shown at "
+        "(i) Augmented against Exo at the same length: they differ significantly at "
         f"{', '.join(f'{x:g}' for x in exceptions)} s."
         if exceptions
-        else "(i) Augmented against Exo at the same length: no difference is shown at any length.",
-        f"From {same:g} s on none is shown." if same is not None and exceptions else "",
-        f"(ii) Exo against the Exo of the whole training part: from {whole:g} s on no variable is shown to differ."
+        else "(i) Augmented against Exo at the same length: they do not differ significantly at any length.",
+        f"From {same:g} s on they do not differ significantly." if same is not None and exceptions else "",
+        f"(ii) Exo against Exo with the entire training part: from {whole:g} s on no variable differs significantly."
         if whole is not None
-        else f"(ii) Exo against the Exo of the whole training part: at {longest:g} s, the longest but the whole, some "
-        f"variable still differs.",
-        f"n = {counted(int(over.lengths['n'].max()), 'participant')}: that no difference is shown is no equality.",
+        else f"(ii) Exo against Exo with the entire training part: at {longest:g} s, the longest shorter part, at "
+        "least one variable differs.",
+        f"n = {counted(int(over.lengths['n'].max()), 'participant')}: a non-significant difference does not show "
+        "equality.",
     ]
 
 

@@ -56,8 +56,8 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
     cells[0].set_ylabel(f"[{unit}]", labelpad=1)
     columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(explanations, 1)}
     caption = (
-        f"What each explanation of the table leaves of {channel}: measured minus its run, over the first held-out run. "
-        "Grey band: two standard deviations of the noise."
+        f"Residual of each explanation in the table, for {channel}: measured minus simulated, over the first held-out "
+        "run. Grey band: two standard deviations of the noise."
     )
     table = pd.DataFrame({"time": explanations[0].time} | columns)
     return [Figure("explanations", caption, caption, table, drawn)]
@@ -107,11 +107,6 @@ def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> 
     _models(axes, time, seen - simulated, seen - augmented)
 
 
-def within_bounds(discovery: Discovery) -> str:
-    """Say that the simulation as read has numbers that were fitted, where it has."""
-    return ", its numbers fitted within their bounds" if discovery.corrections else ""
-
-
 def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
     """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
 
@@ -159,16 +154,16 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
         left.set_title(channel)
         left.set_ylabel(f"[{unit}]", labelpad=1)
         draw_left(right, numbers, channel, floor)
-        right.set_title(f"{channel}: what is left")
+        right.set_title(f"{channel}: residual")
         right.set_ylabel(f"[{unit}]", labelpad=1)
     for axes in grid[-1]:
         axes.set_xlabel("time [s]", labelpad=1)
     legend(drawn, discovery_key(measured=True))
+    fitted = ", its parameters fitted within their bounds" if discovery.corrections else ""
     caption = (
-        f"Trial {trial}, {method_of(discovery).held_out}. Left: measured "
-        f"(black), simulated as read{within_bounds(discovery)} (orange, dashed), with what was found (green); "
-        "the gap is shaded. Right: measured "
-        f"minus each; grey band: two standard deviations of the noise. Typical stretch, {len(numbers)} samples."
+        f"Trial {trial}, {method_of(discovery).held_out}. Left: measured (black), initial model{fitted} (orange, "
+        "dashed), with the identified effect (green); the gap is shaded. Right: measured minus each; grey band: two "
+        f"standard deviations of the noise. Typical section, {len(numbers)} samples."
     )
     return Figure("held_out", caption, _alt(discovery), numbers, drawn)
 
@@ -193,11 +188,15 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
             right.fill_between(gap["at"], low, high, color=look.colour, alpha=0.15, linewidth=0)
         right.axhline(0.0, color="#888888", linewidth=0.6)
         _models(right, at, gaps[0]["mean"].to_numpy(), gaps[1]["mean"].to_numpy())
-        for axes, title in ((left, channel), (right, f"{channel}: what is left")):
+        for axes, title in ((left, channel), (right, f"{channel}: residual")):
             axes.set_title(title)
             axes.set_ylabel(f"[{unit}]", labelpad=1)
             axes.set_xlim(0, 100)
-            _mark_stride(axes, discovery)
+            for one in discovery.where:
+                if one.phase:  # a bar at the foot
+                    ends, across = [100 * share for share in one.phase], axes.get_xaxis_transform()
+                    look = {"color": "#b06f00", "linewidth": 2.2, "solid_capstyle": "butt"}
+                    axes.plot(ends, [0.02, 0.02], transform=across, **look)
         kept += [
             one.assign(channel=channel, unit=unit, what=word)
             for one, word in zip([*curves.values(), *gaps], [*WORDS, "gap_before", "gap_after"], strict=True)
@@ -206,8 +205,8 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, discovery_key(measured=True))
     caption = (
-        f"The same over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: standard deviation "
-        "in a bin. Bar at the foot: where what was found is at least half as strong as at its strongest."
+        f"The same over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: standard "
+        "deviation in a bin. Bar at the foot: where the identified effect reaches at least half of its maximum."
     )
     return Figure("over_stride", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 
@@ -227,7 +226,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
                 at, gap["mean"], error, color=look.colour, marker=look.mark, markersize=3, linewidth=0.9, elinewidth=0.6
             )
         axes.axhline(0.0, color="#888888", linewidth=0.6)
-        axes.set_title(f"{channel}: what is left")
+        axes.set_title(f"{channel}: residual")
         axes.set_xlabel(f"{channel} [{unit}]", labelpad=1)
         axes.set_ylabel(f"[{unit}]", labelpad=1)
         words = ("gap_before", "gap_after")
@@ -235,7 +234,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
     legend(drawn, discovery_key(measured=False))
     caption = (
         f"Measured minus simulated against the measured channel, all {len(table)} held-out samples; mean and standard "
-        "deviation in a bin. What is left of a complete model has no shape."
+        "deviation in a bin. The residual of a complete model has no shape."
     )
     return Figure("against_state", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 
@@ -247,14 +246,6 @@ def _models(
         axes.plot(at, values, color=look.colour, linestyle=look.line, linewidth=1.1, zorder=3)
 
 
-def _mark_stride(axes: Axes, discovery: Discovery) -> None:
-    for one in discovery.where:
-        if one.phase:
-            ends = [100 * share for share in one.phase]
-            across = axes.get_xaxis_transform()
-            axes.plot(ends, [0.02, 0.02], color="#b06f00", linewidth=2.2, transform=across, solid_capstyle="butt")
-
-
 def discovery_key(measured: bool) -> list[Artist]:
     """Handles of the legend.
 
@@ -262,7 +253,7 @@ def discovery_key(measured: bool) -> list[Artist]:
     """
     from matplotlib.patches import Patch
 
-    looks = {"simulated as read": MODELS["nominal"], "with what was found": MODELS["augmented"]}
+    looks = {"initial model": MODELS["nominal"], "with the effect": MODELS["augmented"]}
     if not measured:
         return lines_of(looks)
     return [*lines_of({"measured": MEASURED} | looks), Patch(color=SHADE, alpha=0.55, label="gap")]

@@ -30,13 +30,13 @@ from gaitdisc.words import NONE, counted, p_cell
 VERDICTS = {
     "no_gap": "no gap: nothing is added to the simulation",
     "missing_physics": "missing physics: a term is missing in the dynamics",
-    "wrong_parameter": "wrong parameter: the structure is right, a number is not",
+    "wrong_parameter": "wrong parameter: the structure is correct, the value of a parameter is not",
     "input_error": "input error: a driving signal is late or scaled",
-    "sensor_error": "sensor error: the state is right, its measurement is not",
-    "wrong_initial_condition": "wrong initial condition: only the start is wrong",
-    "process_noise": "process noise: something random pushes the system",
+    "sensor_error": "sensor error: the state is correct, its measurement is not",
+    "wrong_initial_condition": "wrong initial condition: only the initial state is wrong",
+    "process_noise": "process noise: a random input acts on the system",
     "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
-    "unexplained": "unexplained: more than noise is left, and neither a known effect nor a fitted shape closes it",
+    "unexplained": "unexplained: the residual exceeds the noise, and no known effect or fitted shape explains it",
 }
 
 
@@ -52,7 +52,7 @@ def estimates_table(discovery: Discovery) -> Table:
             records.append(
                 (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
             )
-    caption = "What was found, in the units of the simulation file; low and high: 95 % interval."
+    caption = "The identified effect, in the units of the simulation file; low and high: 95 % interval."
     headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
     if not any(row[-1] for row in rows):
         headings, rows = headings[:-1], [row[:-1] for row in rows]
@@ -74,12 +74,11 @@ def gap_table(discovery: Discovery) -> Table:
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
     caption = (
-        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
-        "would leave. Closed: of the squared gap above the noise. p: one-sided test that what was added goes along "
-        "with what was left, each sample by its size, with its autocorrelation (Newey and West 1987); all channels "
-        f"together (held out: {held}, fitted: {fitted}). A name needs a p on held-out data below "
-        f"{discovery.held_out.alpha:g}, the rate of false finds that is allowed."
-        f"{_unproven(discovery)}"
+        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, compared with noise "
+        "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
+        "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
+        f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
+        f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate.{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
@@ -92,8 +91,8 @@ def models_table(discovery: Discovery) -> Table:
     rows = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
     caption = (
         f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
-        "Augmented: Nominal, and a plain regression of what it leaves. Exo: calibrated on the device walk itself. Both "
-        "learn from the device walk's other strides."
+        "Augmented: Nominal, plus a plain regression of its residual. Exo: calibrated on the device walk itself. The "
+        "latter two are trained on the device walk's other strides."
     )
     return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
 
@@ -112,15 +111,15 @@ def trials_table(discovery: Discovery) -> Table:
             rows.append((name, channel, *amounts))
             records.append((name, channel, before, after, unit))
     caption = (
-        "Root mean square of measured minus simulated, before and after, trial by trial of what was held out "
-        f"({counted(len(runs.trial), 'run')}, each from its own start)."
+        "Root mean square of measured minus simulated, before and after, for each held-out trial "
+        f"({counted(len(runs.trial), 'run')}, each with its own initial state)."
     )
     columns = ("trial", "channel", "before", "after", "unit")
     return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
 
 
 def _before(discovery: Discovery) -> str:
-    return " (as read, numbers with bounds fitted within these)" if discovery.corrections else ""
+    return " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
 
 
 def _unproven(discovery: Discovery) -> str:
@@ -128,7 +127,7 @@ def _unproven(discovery: Discovery) -> str:
     if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
         return ""
     first = discovery.rivals[0]
-    return f" Where nothing is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
+    return f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
 
 
 def where_table(discovery: Discovery) -> Table:
@@ -139,7 +138,7 @@ def where_table(discovery: Discovery) -> Table:
         rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
         begin, end = one.phase or (math.nan, math.nan)
         records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
-    caption = "Where the gap arises. Share: of the mean squared gap that goes when the effect is added there."
+    caption = "Where the gap arises. Share: of the mean squared gap that an effect at this place removes."
     columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
     return Table(
         "where", caption, ("place", "share of the gap", "stride", "region"), tuple(rows), _frame(records, columns)
@@ -156,8 +155,8 @@ def corrections_table(discovery: Discovery) -> Table:
         rows.append((one.parameter, f"{one.given:.6g} {unit}".strip(), *written))
         records.append((one.parameter, one.given, found.value, found.low, found.high, found.unit))
     caption = (
-        "Numbers of the file that moved within the bounds that it gives them. They are no finding: every explanation "
-        "was fitted with them, and the simulation before as well. Low and high: 95 % interval."
+        "Parameters of the file that changed within their bounds. These are not effects: every explanation, and the "
+        "initial model, was fitted with them. Low and high: 95 % interval."
     )
     headings = ("parameter", "in the file", "fitted", "low", "high")
     columns = ("parameter", "from", "to", "low", "high", "unit")
@@ -180,19 +179,20 @@ def explanations_table(discovery: Discovery) -> Table:
         rows.append((str(number), one.as_given, numbers, _percent(closed), _bic(first.bic), tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
-        f"What explains the gap, {counted(len(rows), 'explanation')}. Closed: of the squared gap above the noise, on "
-        "held-out data. Evidence: fall of the Bayesian criterion from the simulation as read; the larger the better. "
-        "Tied: these data cannot distinguish it from what was named; small: it closes too little to be named. To take "
-        'another one, search nothing and give it: gaitdisc discover ... --effects "effect@place, effect@place".'
+        f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
+        "noise, on held-out data. Evidence: reduction of the Bayesian criterion compared with the initial model; "
+        "larger is better. Tied: these data cannot distinguish it from the named effect; small: it closes too little "
+        "to be named. To use another explanation, fit it without a search: gaitdisc discover ... --effects "
+        '"effect@place, effect@place".'
     )
-    headings = ("", "effect@place", "its numbers", "closed", "evidence", "tied", "what would distinguish them")
+    headings = ("", "effect@place", "its parameters", "closed", "evidence", "tied", "what would distinguish them")
     columns = ("number", "effects", "closed", "p", "evidence", "tied", "what_would_distinguish_them")
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
 
 
 def data_findings(discovery: Discovery) -> Table:
     """What was seen in the files on the way."""
-    return seen_table(discovery.findings, f"Seen in the files, n = {len(discovery.findings)}.")
+    return seen_table(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}.")
 
 
 def closed_share(before: float, after: float, floor: float) -> float:

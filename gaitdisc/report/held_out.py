@@ -117,13 +117,12 @@ def _title(variable: str, r2: pd.DataFrame) -> str:
 
 
 def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
-    models, held = listed_models(rows), f"last {response.held_out_s:.4g} s held out, seen by no model"
+    models, held = listed_models(rows), f"last {response.held_out_s:.4g} s held out, used by no model"
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
-        f"{counted(len(rows), 'sample')} drawn of {len(response.held_out.time)}; split: {held}. "
-        f"Black: measured second derivative; {models}; shaded: the gap that each leaves to "
-        f"the measurement. {_band_words(response)}R² (Nominal → Augmented) is over all held-out samples. Each panel "
-        f"has its unit; titles in red: left; in blue: right."
+        f"{counted(len(rows), 'sample')} shown of {len(response.held_out.time)}; split: {held}. Black: measured "
+        f"second derivative; {models}; shaded: the residual of each model. {_band_words(response)}R² (Nominal → "
+        "Augmented) is over all held-out samples. Each panel has its own unit; titles in red: left; in blue: right."
     )
 
 
@@ -257,16 +256,16 @@ def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str
 def _residual_caption(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
     count = len([column for column in numbers.columns if column.startswith("stride_")])
     interval = (
-        f"shaded: its {100 * CONFIDENCE:.0f} % interval at each point by itself (Student's t over strides, allowing "
-        f"for the likeness of neighbouring strides)"
+        f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
+        "correlation of neighbouring strides)"
         if count >= LEAST_STRIDES
-        else f"no interval, which needs {LEAST_STRIDES} whole strides"
+        else f"no interval, which needs {LEAST_STRIDES} complete strides"
     )
     return (
         f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
         f"held-out device walk, n = {counted(count, 'stride')}; split: last {response.held_out_s:.4g} s held out. "
-        f"Black: mean; {interval}; faint: every stride. A model that misses nothing leaves a mean of zero. Rows share "
-        f"one scale; each row has its unit. Titles in red: left; in blue: right."
+        f"Black: mean; {interval}; faint: every stride. A perfect model has a mean of zero. Each row has one scale "
+        "and one unit. Titles in red: left; in blue: right."
     )
 
 
@@ -275,7 +274,7 @@ def _residual_alt(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
         f"Residuals over the stride of {response.participant}, {counted(numbers['variable'].nunique(), 'variable')}. "
     )
     if not numbers["low"].notna().any():
-        return f"{start}Too few strides for an interval of the mean."
+        return f"{start}There are too few strides for an interval of the mean."
     parts = [
         f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"
         for model, curves in numbers.groupby("model", sort=False)

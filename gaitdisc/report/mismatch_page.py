@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Draw = Callable[["Axes", pd.DataFrame, list[dict[str, Any]], str], None]
 COLUMNS, MOST_ROWS = 3, 4
 SHADE = "#f2b632"  # a gap; no side and no model has this colour
-HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in sd", "p")
+HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in SD", "p")
 
 
 @in_style
@@ -139,8 +139,8 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
     if done.unit == "participant":
         n = f"n = {done.first} participants, {n}"
     shaded = (
-        f"Shaded, with a bar at the foot: where the permutation test says more than chance, p < {done.alpha:g} for all "
-        f"points and channels together, and the gap reaches the smallest difference that is named."
+        f"Shaded, with a bar at the foot: the permutation test gives p < {done.alpha:g} for all points and channels "
+        "together, and the gap reaches the smallest difference that is named."
     )
     if mismatch.alignment.applied:
         moved = f"{mismatch.alignment.percent:+.1f} % of the stride"
@@ -152,8 +152,8 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
         )
     return (
         f"Mean curves over the stride, {counted(count, 'channel')}, {n}. Grey, dashed: {mismatch.second}, mean ± "
-        f"standard deviation from stride to stride; solid: {mismatch.first}, red on the left, blue on the right, black "
-        f"where there is no side. 0 %: initial contact of the channel's own foot. {shaded}"
+        f"standard deviation over strides; solid: {mismatch.first} (red: left, blue: right, black: no side). 0 %: "
+        f"initial contact of the channel's own foot. {shaded}"
     )
 
 
@@ -164,7 +164,7 @@ def _alt(mismatch: Mismatch, names: list[str]) -> str:
         spans = ", ".join(f"{row['from_percent']:.0f}-{row['to_percent']:.0f} %" for row in regions)
         largest = mismatch.curves["gap"][:, mismatch.names.index(name)]
         size = f"{largest[np.argmax(np.abs(largest))]:.3g}"
-        parts.append(f"{spoken(name)} {size}" + (f", differs at {spans}" if spans else ", no gap seen"))
+        parts.append(f"{spoken(name)} {size}" + (f", differs at {spans}" if spans else ", no significant gap"))
     return f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(parts)}."
 
 
@@ -173,9 +173,9 @@ def regions_table(mismatch: Mismatch) -> Table:
     rows = [row for name in mismatch.ordered() for row in _rows(mismatch, name)]
     caption = (
         f"Where they differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.second} minus "
-        f"{mismatch.first}; first the channel whose gap is the most times the smallest difference named. Gap: the "
-        f"largest in that part, and in stride-to-stride standard deviations of {mismatch.second} there; p: of that "
-        f"part, corrected for all points and channels. {smallest_p_sentence(mismatch)}"
+        f"{mismatch.first}; sorted by the gap in multiples of the smallest difference named. Gap: the largest in that "
+        f"part, also in stride-to-stride standard deviations of {mismatch.second}; p: of that part, corrected for all "
+        f"points and channels. {smallest_p_sentence(mismatch)}"
     )
     return Table("regions", caption, HEADINGS, tuple(rows), mismatch.regions)
 
@@ -207,24 +207,23 @@ def channels_table(mismatch: Mismatch) -> Table:
     )
     caption = (
         f"All {counted(len(rows), 'channel')}. rms: root mean square over the stride, of the gap and of the "
-        f"stride-to-stride sd of {mismatch.second}; p: of the largest |t|, corrected for all points and channels; "
-        f"agrees within: what the band of the gap allows at its worst point; visible: the gap that four such "
-        f"comparisons of five would have seen at a typical point; shift: how much later the curve of "
-        f"{mismatch.first} fits best, and the rms gap that is left then; offset: the mean gap; shape: the largest gap "
-        f"without it; named from: the smallest difference that is called one; last column: the largest gap {other_way} "
-        f"the common shift of {mismatch.first}, {found.percent:+.1f} % of the stride, which was "
-        f"{'' if found.applied else 'not '}applied."
+        f"stride-to-stride SD of {mismatch.second}; p: of the largest |t|, corrected for all points and channels; "
+        "agrees within: largest half-width of the gap's band; visible: the gap that four of five such comparisons "
+        f"would detect at a typical point; shift: the best-fitting delay of {mismatch.first}, and the rms gap after "
+        "it; offset: the mean gap; shape: the largest gap without the offset; named from: the smallest difference "
+        f"that is named; last column: the largest gap {other_way} the common shift of {mismatch.first}, "
+        f"{found.percent:+.1f} % of the stride, which was {'' if found.applied else 'not '}applied."
     )
     headings = (
-        "channel", "differs", "largest gap", "at [%]", "rms gap", "rms sd", "p", "agrees within", "visible",
-        "shift [%]", "rms left", "offset", "shape", "named from", f"gap {other_way} shift",
+        "channel", "differs", "largest gap", "at [%]", "rms gap", "rms SD", "p", "agrees within", "visible",
+        "shift [%]", "rms after shift", "offset", "shape", "named from", f"gap {other_way} shift",
     )  # fmt: skip
     return Table("channels", caption, headings, rows, mismatch.summary)
 
 
 def findings_of(mismatch: Mismatch) -> Table:
     """What was seen on the way, the severest first."""
-    return seen_table(mismatch.findings, f"Seen on the way, n = {len(mismatch.findings)}.")
+    return seen_table(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}.")
 
 
 def mismatch_text(mismatch: Mismatch) -> rich.table.Table:

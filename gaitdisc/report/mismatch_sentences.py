@@ -7,17 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gaitdisc.results.mismatch import Exchange, Mismatch
-from gaitdisc.words import (
-    amount,
-    counted,
-    direction_words,
-    listed,
-    number,
-    p_words,
-    region_words,
-    spoken,
-    with_unit,
-)
+from gaitdisc.words import amount, counted, direction_words, listed, number, p_words, region_words, spoken, with_unit
 
 MOST_NAMED = 3
 MOST_LISTED = 8
@@ -56,11 +46,11 @@ def alignment_sentences(mismatch: Mismatch) -> list[str]:
         return []
     size = f"{number(abs(found.percent), 1)} % of the stride {'later' if found.percent > 0 else 'earlier'}"
     narrower = f"the gap of {found.agreeing} of {counted(found.channels, 'channel')} narrows"
-    said = f"{mismatch.first} was not moved: {size}, {narrower}, but only slightly."
+    said = f"{mismatch.first} was not shifted: with a shift of {size}, {narrower}, but only slightly."
     if found.applied:
         said = (
-            f"All curves of {mismatch.first} were moved {size} before the test, by which {narrower}: the marks of "
-            f"initial contact lie that far apart, or every joint turns at another time."
+            f"All curves of {mismatch.first} were shifted {size} before the test; with this shift {narrower}. Either "
+            "the initial contacts differ by this time, or all joints move at another time."
         )
     if found.otherwise:  # not in a folder of an earlier version
         name = (mismatch.ordered() or mismatch.names)[0]
@@ -84,13 +74,13 @@ def smallest_p_sentence(mismatch: Mismatch) -> str:
 def _nothing_named(mismatch: Mismatch, small: list[str]) -> str:
     limits = _by_unit(mismatch, small, "limit")
     return (
-        f"No difference worth naming: {mismatch.first} and {mismatch.second} differ by more than chance in "
-        f"{_shortened(small)}, but by less than {limits} at every such point."
+        f"No difference exceeds the smallest one that is named: {mismatch.first} and {mismatch.second} differ "
+        f"significantly in {_shortened(small)}, but by less than {limits} at every such point."
     )
 
 
 def _too_small(mismatch: Mismatch, small: list[str]) -> str:
-    return f"More than chance, but less than {_by_unit(mismatch, small, 'limit')} and not named: {_shortened(small)}."
+    return f"Significant, but less than {_by_unit(mismatch, small, 'limit')} and not named: {_shortened(small)}."
 
 
 def _kind(mismatch: Mismatch, name: str) -> str:
@@ -101,7 +91,7 @@ def _kind(mismatch: Mismatch, name: str) -> str:
     if abs(offset) < limit:
         return ""
     if shape < limit:
-        return f": an offset, for without its mean the shape agrees to within {with_unit(amount(shape), unit)}"
+        return f": an offset, because without its mean the shape agrees to within {with_unit(amount(shape), unit)}"
     return f"; {with_unit(amount(abs(offset)), unit)} of the gap are an offset of the whole curve"
 
 
@@ -110,32 +100,32 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
     done = mismatch.exchange
     named_from = _by_unit(mismatch, list(mismatch.names), "limit", smallest=True)
     band = f"{100 * (1 - done.alpha):g} %"
-    all_of = "all that there are" if done.exact else "drawn at random"
+    all_of = "all possible ones" if done.exact else "drawn at random"
     if done.unit == "participant":
         units = (
-            f"Participants are the units, paired (n = {done.first}): under the null the sign of each one's mean "
-            f"difference is by chance."
+            f"Participants are the units, paired (n = {done.first}): under the null hypothesis the sign of each mean "
+            "difference is random."
         )
-        about = "p speaks of people like these."
+        about = "p refers to people like these."
     else:
         about = (
-            "p speaks of these two recordings alone: another day, other markers or other people are not in it, and "
-            "two walks of one person often differ by more than their strides do."
+            "p refers to these two recordings only, not to other days, marker placements or people. Two walks of one "
+            "person often differ by more than their strides do."
         )
         units = _units(mismatch)
     return [
-        f"Gap: mean curve of {mismatch.second} minus that of {mismatch.first}, each channel over the strides of its "
-        f"own foot, on 101 points of the stride.",
+        f"The gap is the mean curve of {mismatch.second} minus that of {mismatch.first}, each channel over the "
+        "strides of its own foot, on 101 points of the stride.",
         units,
-        f"A t at every point is held against the largest |t| over all points and all "
-        f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}); the "
-        f"gap is shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of them exceed anywhere. The p "
-        f"of a stretch is that of its integral above this threshold. {smallest_p_sentence(mismatch)}",
-        f"A difference is named where its gap reaches {named_from}; the one that is the most times that comes first. A "
-        f"shift along the stride that most channels share is taken off before the test.",
-        f"The band of the gap holds {band} for all points and channels together, and widens where successive strides "
-        f"depend on each other.",
-        f"Standard deviations are those of {mismatch.second} from stride to stride at the same point. {about}",
+        "The t at every point is compared with the largest |t| over all points and all "
+        f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}). The gap is "
+        f"shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of the permutations exceed at some "
+        f"point. The p of a region is that of its integral above this threshold. {smallest_p_sentence(mismatch)}",
+        f"A difference is named if its gap reaches {named_from}; differences are sorted by the multiple of that "
+        "limit. A shift along the stride that most channels share is removed before the test.",
+        f"The band of the gap contains {band} for all points and channels together, and is wider if successive "
+        "strides are correlated.",
+        f"Standard deviations are those of {mismatch.second} over strides at the same point. {about}",
     ]
 
 
@@ -143,21 +133,22 @@ def _units(mismatch: Mismatch) -> str:
     done = mismatch.exchange
     if done.first == 1:
         return (
-            f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was taken as a curve without spread; "
+            f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was treated as a curve without spread; "
             f"{counted(done.strides_second, 'stride')} of {mismatch.second}{_blocks(done, str(done.second))} were "
-            f"tested against it: under the null the sign of each one's difference is by chance."
+            "tested against it. Under the null hypothesis the sign of each difference is random."
         )
     return (
-        f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of {mismatch.second}"
-        f"{_blocks(done, f'{done.first} and {done.second}')} are the units: under the null the sign of each one's "
-        f"departure from its walk's mean is by chance, which allows the two to differ in spread."
+        f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of "
+        f"{mismatch.second}{_blocks(done, f'{done.first} and {done.second}')} are the units. Under the null "
+        "hypothesis the sign of each deviation from its walk's mean is random, so that the two walks may differ in "
+        "spread."
     )
 
 
 def _blocks(done: Exchange, counts: str) -> str:
     if done.unit == "stride":
         return ""
-    return f", in {counts} blocks{done.unit.removeprefix('block')} because successive strides depend on each other,"
+    return f", in {counts} blocks{done.unit.removeprefix('block')} because successive strides are correlated,"
 
 
 def _shortened(names: list[str]) -> str:
@@ -173,7 +164,7 @@ def _largest(mismatch: Mismatch, name: str) -> dict[str, Any]:
 
 def _size(row: Mapping[str, Any]) -> str:
     sd = float(row["gap_sd"])
-    in_sd = f"{amount(abs(sd))} stride-to-stride sd, " if math.isfinite(sd) else ""
+    in_sd = f"{amount(abs(sd))} stride-to-stride SD, " if math.isfinite(sd) else ""
     return f"{region_words(row)} ({in_sd}{p_words(float(row['p']))})"
 
 
@@ -196,8 +187,8 @@ def _timing(mismatch: Mismatch, name: str) -> str:
         return ""
     way = f"{abs(shift):.0f} % of the stride {'later' if shift > 0 else 'earlier'}"
     return (
-        f"Much of the largest gap is timing: moved {way}, the curve of {mismatch.first} is {number(after, 1)} instead "
-        f"of {with_unit(number(before, 1), str(row['unit']))} away (rms)."
+        f"Much of the largest gap is timing: after a shift {way}, the curve of {mismatch.first} differs by "
+        f"{number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
     )
 
 
@@ -205,7 +196,7 @@ def _agreeing(mismatch: Mismatch, names: list[str]) -> str:
     words = _shortened(names)
     bounds = _by_unit(mismatch, names, "within")
     sure = f"{100 * (1 - mismatch.exchange.alpha):g} %"
-    return f"No gap is seen in {words}: with {sure} confidence they agree to within {bounds} at every point."
+    return f"No significant gap in {words}: with {sure} confidence they agree to within {bounds} at every point."
 
 
 def _no_gap(mismatch: Mismatch) -> str:
@@ -217,14 +208,17 @@ def _no_gap(mismatch: Mismatch) -> str:
         if done.unit == "participant"
         else f"{done.strides_first} and {done.strides_second} strides"
     )
-    return f"No gap: {mismatch.first} and {mismatch.second} cannot be distinguished in {count} ({n}, {p_words(p)})."
+    return (
+        f"There is no significant gap: {mismatch.first} and {mismatch.second} cannot be distinguished in {count} "
+        f"({n}, {p_words(p)})."
+    )
 
 
 def _visible(mismatch: Mismatch, names: list[str]) -> str:
     seen = _by_unit(mismatch, names, "visible", smallest=True)
     return (
-        f"That is no proof of none: a gap would have been seen, in four such comparisons of five, from {seen} on; and "
-        f"gaps of up to {_by_unit(mismatch, names, 'within')} at some point are not excluded."
+        f"This does not prove equality: four of five such comparisons would detect a gap from {seen} on, and gaps of "
+        f"up to {_by_unit(mismatch, names, 'within')} at some point are not excluded."
     )
 
 

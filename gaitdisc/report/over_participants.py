@@ -27,7 +27,7 @@ LOWEST = -100.0  # percent; what a model makes more than twice as large stands a
 BASELINE_WORDS = {
     "ridge": "ridge with phase harmonics",
     "linear": "ridge on the network’s inputs",
-    "null": "the null of the filters",
+    "null": "null of the filters",
 }
 _COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
 
@@ -35,9 +35,9 @@ _COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE
 def over_blocks(run: ResponseRun) -> list[Block]:
     """Parts of the page that have something to say, in their order."""
     blocks = [
-        Block("reduced", "What the models leave over the stride", tuple(reduction_sentences(run)),
+        Block("reduced", "Residuals of the models over the stride", tuple(reduction_sentences(run)),
               _there(reduction_figure(run)), _there(reduction_table(run))),
-        Block("baselines", "Where a network is worth its trouble", tuple(baseline_sentences(run)),
+        Block("baselines", "Networks compared with simpler baselines", tuple(baseline_sentences(run)),
               (), _there(baseline_table(run))),
         Block("quantity", "How much data is enough", (*quantity_sentences(run), *length_sentences(run)),
               _there(quantity_figure(run)), _there(length_table(run))),
@@ -54,7 +54,7 @@ def responder_sentences(run: ResponseRun) -> tuple[str, ...]:
     if len(run.over.responders) and not run.over.responders["group"].any():
         return (
             verdict,
-            "That none is found is no proof of one kind: so few people show only kinds that differ grossly.",
+            "This does not prove homogeneity: so few people show only large differences.",
         )
     return (verdict,)
 
@@ -66,7 +66,7 @@ def responder_table(run: ResponseRun) -> Table | None:
     found = run.over.responders
     rows = tuple((str(group), ", ".join(map(str, own["participant"]))) for group, own in found.groupby("group"))
     caption = (
-        f"Sub-groups by the shape over the stride of what the Nominal model leaves on the device walk, all outputs "
+        "Sub-groups by the shape over the stride of the Nominal model's residual on the device walk, all outputs "
         f"together, n = {len(found)}."
     )
     return Table("responders", caption, ("group", "participants"), rows, found)
@@ -93,7 +93,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
         axes.set_ylim(len(names) - 0.5, -0.5)
         axes.set_yticks(range(len(names)), [label(variable) for variable in names])
         axes.tick_params(labelleft=axes is row[0])
-        axes.set_xlabel("smaller than Nominal’s by [%]")
+        axes.set_xlabel("reduction relative to Nominal [%]")
         axes.set_title(words)
     legend(drawn, _key(len(tests) > 0))
     return Figure("reduction", _caption(run), " ".join(reduction_sentences(run)), reductions, drawn)
@@ -114,11 +114,12 @@ def reduction_table(run: ResponseRun) -> Table | None:
         "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed rank, Holm-Sidak "
         "over the variables, alpha = 0.05"
         if len(tests)
-        else "median over participants, no test with so few"
+        else "median over participants; too few for a test"
     )
     caption = (
-        f"By how much the stride-averaged residual on the held-out device walk is smaller than the Nominal model’s "
-        f"[%], n = {counted(reductions['participant'].nunique(), 'participant')}: {interval}. Negative: larger."
+        "Reduction of the stride-averaged residual on the held-out device walk relative to the Nominal model [%], n "
+        f"= {counted(reductions['participant'].nunique(), 'participant')}: {interval}. Negative: the residual is "
+        "larger."
     )
     groups = (("", 2), *((words, 2) for words in MEASURES.values()))
     columns = ("variable", "n", *(MODEL_WORDS[model] for _ in MEASURES for model in OFFSETS))
@@ -137,7 +138,7 @@ def reduction_sentences(run: ResponseRun) -> list[str]:
         if len(medians):
             least, most = (label(str(name)) for name in (medians.idxmin(), medians.idxmax()))
             said.append(
-                f"Measured as {words}, the Augmented model makes the stride-averaged residual smaller by "
+                f"Measured as {words}, the Augmented model reduces the stride-averaged residual by "
                 f"{100 * medians.min():.0f} % ({least}) to {100 * medians.max():.0f} % ({most}), medians over "
                 f"{counted(own['participant'].nunique(), 'participant')}."
             )
@@ -184,11 +185,11 @@ def _caption(run: ResponseRun) -> str:
     over = run.over
     people = 0 if over is None else over.reductions["participant"].nunique()
     return (
-        f"Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
+        "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
         f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
         f"square over the stride; n = {counted(people, 'participant')}; split: last {held_out_text(run)} s held out. "
-        f"Marks: participants; values below {number(LOWEST, 0)} % stand at the edge. After Fig. 4.3 of the "
-        f"dissertation, which gives one number: 52.8 %, hip, one participant, the measure not said."
+        f"Marks: participants; values below {number(LOWEST, 0)} % are at the edge. After Fig. 4.3 of the "
+        "dissertation, which gives one number: 52.8 %, hip, one participant, without the measure."
     )
 
 
@@ -204,10 +205,10 @@ def baseline_table(run: ResponseRun) -> Table | None:
     order = list(dict.fromkeys(tests["variable"]))
     rows.sort(key=lambda row: [label(str(variable)) for variable in order].index(row[0]))
     caption = (
-        f"R² [1] of the network minus R² of what needs no network, on the held-out device walk, n = "
-        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher or "
-        f"lower: exact two-sided signed rank, Holm-Sidak over the variables of one model and baseline, alpha = 0.05. "
-        f"The ridge regression of the other tables is the one with phase harmonics."
+        "R² [1] of the network minus R² of a baseline without a network, on the held-out device walk, n = "
+        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher "
+        "or lower: exact two-sided signed rank, Holm-Sidak over the variables of one model and baseline, alpha = "
+        "0.05. The ridge regression of the other tables is the one with phase harmonics."
     )
     groups = (("", 3), ("network minus baseline", 3))
     return Table("baselines", caption, _COLUMNS, tuple(rows), tests, groups)
@@ -230,7 +231,9 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
                 parts.append(f"{words} (in {which})")
         network = f"The {MODEL_WORDS[str(model)]} network"
         said.append(
-            f"{network} is not shown to beat {listed(parts)}." if parts else f"{network} beats every baseline in all."
+            f"{network} does not significantly exceed {listed(parts)}."
+            if parts
+            else f"{network} exceeds every baseline in all variables."
         )
     return said
 
@@ -238,5 +241,5 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
 def _cell_baseline(row: pd.Series) -> str:
     if not math.isfinite(row["p"]):
         return "not tested"
-    verdict = ("higher" if row["rank_biserial"] > 0 else "lower") if row["different"] else "not shown"
+    verdict = ("higher" if row["rank_biserial"] > 0 else "lower") if row["different"] else "not significant"
     return f"{number(row['shift'], 3)} {verdict}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"

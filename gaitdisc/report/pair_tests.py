@@ -52,17 +52,17 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
     if tests is None or len(run.responses) < 2:
         return []
     if tests.too_few:
-        return [f"{tests.too_few}. The numbers describe these participants and nobody else."]
+        return [f"{tests.too_few}. The numbers describe these participants only."]
     counts = tests.families.groupby("family")["different"].sum()
     total = int((tests.families["family"] == "pair").sum())
     said = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
     every = counted(total, "test")
     return [
         *(_verdict(tests, first, second) for first, second in PAIRS[:3]),
-        "A difference that is not shown is not an equality: the interval of the shift says how large it may be.",
+        "A non-significant difference does not show equality: the interval of the shift says how large it may be.",
         _floor(tests),
         _left_over(tests),
-        f"Of {every} of the three pairs, a difference is shown by {listed(said)} (families; the first is used).",
+        f"For {every} of the three pairs, {listed(said)} show a difference (families; the first is used).",
     ]
 
 
@@ -83,10 +83,9 @@ def _pair_table(tests: PairTests, first: str, second: str) -> Table:
     count = int(numbers["p"].notna().sum())
     missing = [f"{label(str(row.variable))}: {row.left_out}" for row in numbers.itertuples() if row.left_out]
     explained = (
-        f"n: pairs ranked, without those whose difference is zero; W: smaller sum of ranks; p: exact, two-sided; "
-        f"level: what p is held against in its step; median: of the differences; shift: Hodges-Lehmann with its "
-        f"interval of {100 * tests.level:.0f} %, not corrected for the number of tests; rank-biserial: −1 all lower, "
-        f"1 all higher"
+        "n: pairs with a non-zero difference; W: smaller sum of ranks; p: exact, two-sided; level: the threshold for "
+        f"p in its step; median: of the differences; shift: Hodges-Lehmann with its {100 * tests.level:.0f} % "
+        "interval, not corrected for the number of tests; rank-biserial: −1 all lower, 1 all higher"
         if (first, second) == PAIRS[0]
         else f"columns as for {_WORDS[PAIRS[0][0]]} and {_WORDS[PAIRS[0][1]]}"
     )
@@ -115,7 +114,7 @@ def _cells(row: pd.Series) -> tuple[str, ...]:
         p_text(row["p"]),
         f"{row['step_level']:.4f}",
         p_text(row["p_adjusted"]),
-        direction if row["different"] else "not shown",
+        direction if row["different"] else "not significant",
         number(row["median_difference"], 4),
         f"{number(row['shift'], 4)}\n[{_bound(row['low'])}, {_bound(row['high'])}]",
         "–" if math.isnan(row["rank_biserial"]) else number(row["rank_biserial"]),
@@ -138,10 +137,10 @@ def _families_table(tests: PairTests) -> Table:
                 ", ".join(named) if named else "none",
             ))  # fmt: skip
     caption = (
-        f"The same tests under other families, n = {counted(tests.participants, 'participant')}, alpha = "
-        f"{tests.alpha:g} in each. Level: where the step-down procedure stopped, which is what the dissertation prints "
-        f"as “Sidak α = 0.013”: with eight variables a pair and four rejected it is 0.0127, with three pairs a "
-        f"variable it cannot be."
+        f"The same tests with other families, n = {counted(tests.participants, 'participant')}, alpha = "
+        f"{tests.alpha:g} in each. Level: the level at which the step-down procedure stopped, printed in the "
+        "dissertation as “Sidak α = 0.013”. With eight variables per pair and four rejected it is 0.0127; with three "
+        "pairs per variable it cannot be."
     )
     columns = ("family", "pair", "tests in it", "level at the stop", "different", "which")
     return Table("tests-families", caption, columns, tuple(rows), tests.families)
@@ -161,7 +160,7 @@ def _verdict(tests: PairTests, first: str, second: str) -> str:
     if not len(tested):
         return f"{start}: no variable has enough participants for a test."
     if not parts:
-        return f"{start}: no difference is shown in any of {counted(len(tested), 'variable')}."
+        return f"{start}: there is no significant difference in any of {counted(len(tested), 'variable')}."
     largest = tested["shift"].abs().max()
     return f"{start}: it explains {listed(parts)}; the largest shift of R² is {number(float(largest), 3)}."
 
@@ -169,12 +168,13 @@ def _verdict(tests: PairTests, first: str, second: str) -> str:
 def _floor(tests: PairTests) -> str:
     rows = tests.tests[tests.tests["p"].notna()]
     if not len(rows):
-        return "Nothing was tested."
+        return "No test was made."
     n, count = int(rows["n"].max()), int(rows["tests"].max())
     smallest = 2.0 ** (1 - n)
     return (
-        f"With n = {n} the smallest p is {p_text(smallest)}, and adjusted over {counted(count, 'test')} "
-        f"{p_text(1 - (1 - smallest) ** count)}: a table full of it says that all participants agree, not more."
+        f"With n = {n} the smallest possible p is {p_text(smallest)}, and {p_text(1 - (1 - smallest) ** count)} after "
+        f"adjustment for {counted(count, 'test')}. If many tests have this p, they show only that all participants "
+        "agree."
     )
 
 
@@ -182,11 +182,11 @@ def _left_over(tests: PairTests) -> str:
     rows = tests.of_pair("exo", "perfect")
     left = 1 - rows["median_first"].dropna()
     if not len(left):
-        return "What the Exo model leaves unexplained was not computed."
+        return "The unexplained variance of the Exo model was not computed."
     return (
-        f"The Exo model, the upper limit of what these inputs carry, leaves {number(float(left.min()))} to "
-        f"{number(float(left.max()))} of the variance unexplained (medians of the variables); that it is below R² = 1 "
-        f"no measurement could contradict, so its p carries no news."
+        f"The Exo model, the upper limit for these inputs, leaves {number(float(left.min()))} to "
+        f"{number(float(left.max()))} of the variance unexplained (medians of the variables). Every model has R² "
+        "below 1, so the p-value of this comparison carries no information."
     )
 
 
@@ -262,8 +262,8 @@ def _caption(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, low: flo
     return (
         f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}) over participants, "
         f"n = {counted(tests.participants, 'participant')}; split: last {held_out_text(run)} s of the walk held out. "
-        f"Boxes: quartiles, thick line: median, whiskers: all, marks: participants; networks only. A bar joins two "
-        f"models that differ: exact two-sided Wilcoxon signed-rank test, Holm-Sidak over the variables of the pair, "
+        "Boxes: quartiles, thick line: median, whiskers: range, marks: participants; networks only. A bar joins two "
+        "models that differ: exact two-sided Wilcoxon signed-rank test, Holm-Sidak over the variables of the pair, "
         f"alpha = {tests.alpha:g}.{below} After Fig. 4.2 of the dissertation."
     )
 

@@ -237,13 +237,13 @@ def _caption(run: ResponseRun, low: float, null: bool) -> str:
     marks = (
         "Filled marks: networks; hollow marks of the same shape: ridge regression with phase harmonics"
         if people == 1
-        else f"Small filled marks: networks, one a participant, with a box of quartiles from {FEWEST_FOR_BOXES} "
-        "participants on (thick line: median, whiskers: all); hollow marks: median of ridge regression with phase "
-        "harmonics"
+        else f"Small filled marks: networks, one per participant, with a box of quartiles from {FEWEST_FOR_BOXES} "
+        "participants on (thick line: median, whiskers: range); hollow marks: median of ridge regression with "
+        "phase harmonics"
     )
     samples = _samples(run)
-    noise = "dashed: what band-limited noise alone would reach" if null else "what noise would reach was not computed"
-    edge = f" R² below {number(low)} stands at the left edge with its value." if low == LOWEST else ""
+    noise = "dashed: R² of band-limited noise alone" if null else "R² of band-limited noise was not computed"
+    edge = f" R² below {number(low)} is shown at the left edge with its value." if low == LOWEST else ""
     start = f" The axis starts at {number(low, 1)}." if low > 0 else ""
     return (
         f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}), "
@@ -282,11 +282,11 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
     rows.append(("median", *(number(x, 3) for x in medians(table).to_numpy())))
     samples, without = sample_counts(response), sample_counts(response, "nominal")
     caption = (
-        f"{response.participant}: R² [1] of the second derivative of each variable (its unit in brackets) on held-out "
-        f"device walking, but for the columns that say “no device”; n = {samples} samples of the device walk and "
-        f"{without} of the walk without; split: last {response.held_out_s:.4g} s of each walk held out, seen by no "
-        f"model. Ridge: with harmonics of percent stride beside the network’s inputs, and on these inputs alone. Null: "
-        f"what band-limited noise alone would reach."
+        f"{response.participant}: R² [1] of the second derivative of each variable (unit in brackets) on held-out "
+        f"device walking; columns marked “no device”: the walk without it; n = {samples} samples of the device walk "
+        f"and {without} of the walk without; split: last {response.held_out_s:.4g} s of each walk held out, used by "
+        "no model. Ridge: with harmonics of percent stride in addition to the network's inputs, and on these inputs "
+        "alone. Null: R² of band-limited noise alone."
     )
     numbers = table.reset_index()
     numbers.insert(1, "unit", list(response.units))
@@ -329,9 +329,9 @@ def participants_table(run: ResponseRun) -> Table:
     numbers = people.reset_index()
     numbers.insert(1, "samples", counts)
     caption = (
-        f"R² [1] on held-out walking, median over variables of each participant, n = "
+        "R² [1] on held-out walking, median over variables of each participant, n = "
         f"{counted(len(people), 'participant')} (column n: held-out samples of the device walk); split: last "
-        f"{held_out_text(run)} s of each walk held out, seen by no model."
+        f"{held_out_text(run)} s of each walk held out, used by no model."
     )
     columns = ("participant", "n", *(column.title for column in R2_TABLE))
     return Table("participants", caption, columns, tuple(rows), numbers, (("", 2), *_R2_GROUPS[1:]), summary=True)
@@ -350,7 +350,7 @@ def not_computed(run: ResponseRun, response: ParticipantResponse) -> list[str]:
         elif len(rows) and (rows["n"] == 0).all():
             reasons.append(f"{label(variable)}: no usable sample in the held-out part (n = 0)")
         else:
-            reasons.append(f"{label(variable)}: the run holds no number and no reason for it")
+            reasons.append(f"{label(variable)}: the run contains neither a number nor a reason")
     return reasons
 
 

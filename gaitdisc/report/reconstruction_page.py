@@ -25,10 +25,11 @@ BESIDE = ("shred", "fourier ridge", "delay ridge", "linear", *FLOORS)
 MOST_PANELS = 16
 MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
 NOT_MSE = (
-    "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
-    "prints it in degrees; it has no unit. It is compared with the relative L2 here, and with no number in degrees."
+    "The dissertation calls the norm of the error divided by the norm of the measured values “MSE” (Eq. 2.21, Table "
+    "5.2) and prints it in degrees, but it has no unit. Compare it with the relative L2 here, not with numbers in "
+    "degrees."
 )
-FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used as they are."
+FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used unchanged."
 
 
 def models_table(done: Reconstruction) -> Table:
@@ -47,14 +48,14 @@ def models_table(done: Reconstruction) -> Table:
         )
         for _, row in numbers.iterrows()
     )
-    with_sensors = "“with sensors”: the sensors counted as states without error, as Table 5.2 does; " if angles else ""
+    with_sensors = "“with sensors”: sensors are included as states without error, as in Table 5.2; " if angles else ""
     people = counted(len(done.participants), "participant")
     caption = (
         f"Models on the test windows: mean over n = {people} [95 % interval of the mean], {_what_is_tested(done)}. "
-        f"Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
-        f"{with_sensors}R²: median over what is reconstructed; "
-        f"coverage: share inside an interval that was made for 90 %; seconds: processor time of a fit. * recommended: "
-        f"the cheapest within 2 % of the least error on the windows that models are chosen by."
+        f"Split: {done.split}. Relative L2: norm of the error divided by norm of the measured values about zero; "
+        f"{with_sensors}R²: median over reconstructed channels; coverage: share inside the 90 % interval; seconds: "
+        "processor time of a fit. * recommended: the cheapest within 2 % of the smallest error on the validation "
+        "windows."
     )
     columns = (
         "model",
@@ -95,7 +96,7 @@ def participants_table(done: Reconstruction) -> Table:
         (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2 if angles else 3) for value in row[1:]))
         for row in wide.itertuples()
     )
-    what = f"RMSE of {_what_is_tested(done)} [deg]" if angles else "Relative L2 of all that is reconstructed [1]"
+    what = f"RMSE of {_what_is_tested(done)} [deg]" if angles else "Relative L2 of all reconstructed channels [1]"
     caption = f"{what}, by participant; strides: those of the test part."
     return Table("participants", caption, ("participant", "strides", *done.models), rows, done.summary)
 
@@ -114,20 +115,20 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     sentences = [
         f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
-        f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended.",
+        f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended."
     ]
     compared = [kind for kind in BESIDE if kind in kinds and kind != best]
     if compared:
         measure, digits, unit = ("rmse_deg", 2, " deg") if angles else ("relative_l2", 3, "")
         words = [f"{kind} {_plain(over.loc[kind, measure], digits)}{unit}" for kind in compared]
-        sentences.append(f"Beside it: {listed(words)}.")
+        sentences.append(f"For comparison: {listed(words)}.")
     sentences += _won(done, best, "rmse_deg" if angles else "relative_l2")
     sentences += _after_calibration(done, best) if angles else []
     sentences += search_sentences(done.search) if done.search is not None else []
     if "leaks" in done.split:
-        sentences.append("The split leaks: these errors say how well windows are interpolated in time, not more.")
+        sentences.append("The split leaks: these errors show only how well windows are interpolated in time.")
     if len(done.participants) < 3:
-        sentences.append("The numbers describe these participants and nobody else.")
+        sentences.append("The numbers describe these participants only.")
     return [*sentences, NOT_MSE] if angles else sentences
 
 
@@ -139,10 +140,10 @@ def _won(done: Reconstruction, best: str, measure: str) -> list[str]:
     if people < 2:
         return []
     if own == people:
-        return [f"It errs least in every one of {people} participants."]
+        return [f"It has the smallest error in all {people} participants."]
     counts = least[least != best].value_counts(sort=False).sort_values(ascending=False, kind="stable")
     others = [f"{model} in {count}" for model, count in counts.items()]
-    return [f"It errs least in {own} of {people} participants, {listed(others)}."]
+    return [f"It has the smallest error in {own} of {people} participants, {listed(others)}."]
 
 
 def _after_calibration(done: Reconstruction, best: str) -> list[str]:
@@ -151,8 +152,8 @@ def _after_calibration(done: Reconstruction, best: str) -> list[str]:
     over: Any = done.over_participants()["rmse_deg"]
     before, after = float(over[best]), float(over[CALIBRATED.format(best)])
     return [
-        f"Corrected by a few strides of the person whose states are known, it errs by {_plain(after, 2)} instead of "
-        f"{_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
+        f"After correction with a few strides of the person whose states are known, its error is {_plain(after, 2)} "
+        f"instead of {_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
     ]
 
 
@@ -181,7 +182,7 @@ def _ahead(done: Reconstruction) -> bool:
 
 def _what_is_tested(done: Reconstruction) -> str:
     if not _has_angles(done):
-        return "all that is reconstructed"
+        return "all reconstructed channels"
     return "all angles" if _ahead(done) else "the angles that no sensor measures"
 
 
@@ -241,9 +242,9 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
     legend(drawn, states_key(models))
     strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])
     caption = (
-        f"{participant}: states measured and reconstructed over the stride, test windows alone, n = "
-        f"{counted(strides, 'stride')}. Band: measured, mean ± standard deviation; lines: mean of what each model "
-        f"estimates from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
+        f"{participant}: states measured and reconstructed over the stride, test windows only, n = "
+        f"{counted(strides, 'stride')}. Band: measured, mean ± standard deviation; lines: mean of the estimates of "
+        f"each model from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
     )
     by = ", ".join(models)
     alt = f"{counted(len(states), 'state')} of {participant} over the stride, measured, and reconstructed by {by}."
@@ -275,10 +276,11 @@ def search_table(found: pd.DataFrame) -> Table:
         for k, row in found.reset_index(drop=True).iterrows()
     )
     caption = (
-        "Best set of sensors of every size, by ridge regression on their history, all participants together: all sets "
-        "of up to three, then the sensor that helps most. Chosen by the RMSE of all angles on the checked windows, "
-        "sensors counted as exact; beside it that of the angles that no sensor measures, on the test windows. * the "
-        f"smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; without one, the largest."
+        "Best set of sensors of every size, by ridge regression on their history, all participants together: all "
+        "sets of up to three, then the sensor with the largest gain. Chosen by the RMSE of all angles on the "
+        "validation windows, with exact sensors; the other column: RMSE of the unmeasured angles on the test "
+        f"windows. * the smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; otherwise the "
+        "largest."
     )
     columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")
     return Table("search", caption, columns, rows, found)
@@ -292,12 +294,10 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
     size = int(row["sensors"])
     if chosen + 1 < len(found):
         less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
-        said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}; one more "
-        said += f"takes {100 * less:.0f} % off the error of all angles"
+        said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}. One more "
+        said += f"reduces the error of all angles by {100 * less:.0f} %"
     else:
-        said = (
-            f"The best set of {counted(size, 'sensor')} is {names}; whether it is enough is not known, no larger one "
-        )
+        said = f"The best set of {counted(size, 'sensor')} is {names}; it may not be enough, because no larger one "
         said += "was tried"
     cost = f"{counted(int(found['fits'].sum()), 'regression')}, {found['seconds'].sum():.1f} s"
     return [f"{said} (search: {cost})."]
@@ -311,7 +311,7 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
         **({"search": search_table(done.search)} if done.search is not None else {}),
         "participants": participants_table(done),
         "left_out": left_out_table(done.refusals, "left-out", f"Left out, n = {len(done.refusals)}."),
-        "findings": seen_table(done.findings, FINDINGS.format(len(done.findings)), "what was seen"),
+        "findings": seen_table(done.findings, FINDINGS.format(len(done.findings)), "finding"),
         **provenance_tables(done.provenance),
     }
     save_tables(tables.values(), folder)
@@ -331,14 +331,13 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
 def method_sentences(done: Reconstruction) -> list[str]:
     """How the numbers were made."""
     return [
-        f"A window holds {done.history} (Eqs. 5.1-5.7). No window reaches over a missing value, or from "
-        "one trial into another.",
-        f"Windows are parted by {done.split}. Scales and weights come from the fitted windows alone; penalties, widths "
-        f"and the epoch whose weights are kept are chosen on the checked ones; errors are of the test windows, from "
-        f"which the others lie apart by the length of a window and 0.3 s.",
-        "All recordings were low-passed by a filter without lag, which looks ahead: reconstructed live, states would "
-        "come later by the filter's reach, or be noisier.",
-        "RMSE is in the state's own unit, its interval by drawing strides with replacement (1,000 times, 95 %); "
-        "angles and positions are never averaged together.",
+        f"A window contains {done.history} (Eqs. 5.1-5.7). A window contains no missing values and only one trial.",
+        f"Windows are split by {done.split}. Scales and weights come from the training windows only. Penalties, "
+        "widths and the epoch of the weights are chosen on the validation windows. Errors are those of the test "
+        "windows, which are separated from the others by the length of a window and 0.3 s.",
+        "All recordings were low-passed by a zero-lag filter, which uses future samples. A live reconstruction would "
+        "be delayed by the filter's length, or noisier.",
+        "RMSE is in the state's own unit. Its interval comes from resampled strides (1,000 times, 95 %). Angles and "
+        "positions are never averaged together.",
         *(f"{name}: {words}." for name, words in done.models.items()),
     ]

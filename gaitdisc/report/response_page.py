@@ -123,17 +123,17 @@ def method_sentences(run: ResponseRun) -> list[str]:
     held_out = held_out_text(run)
     return [
         *_markers_sentence(run),
-        "The state X holds joint angles and, where there are any, EMG envelopes (Eq. 4.1); each model sees X, its "
-        "first derivative and percent stride φ, and predicts second derivatives of the outputs.",
-        f"The Nominal model f is fitted to the walk without the device effect ({run.nominal}; Eq. 4.2), the Exo model "
-        f"Y to the device walk ({run.exo}; Eq. 4.3), which makes it the upper limit of what these inputs can carry.",
-        "The Discrepancy model g is fitted to what the Nominal model leaves on the device walk, the measured second "
-        "derivative minus f (Eq. 4.4), and the Augmented model is the sum f + g (Eq. 4.5).",
-        f"The last {f'{held_out} s' if held_out else 'part'} of each walk is held out before anything is fitted; R² = "
-        f"1 − (sum of squared residuals) / (sum of squares about the mean) on these samples, so 1 is all of the "
-        f"variance, 0 no better than the mean, and a negative number worse.",
-        f"{_filter_sentence(run)} A filter alone makes part of a second derivative predictable "
-        f"from the signal itself; the null says how much: R² of band-limited noise that was filtered in the same way.",
+        "The state X contains joint angles and, if available, EMG envelopes (Eq. 4.1). Each model uses X, its first "
+        "derivative and percent stride φ, and predicts second derivatives of the outputs.",
+        f"The Nominal model f is fitted to the walk without the device effect ({run.nominal}; Eq. 4.2). The Exo model "
+        f"Y is fitted to the device walk ({run.exo}; Eq. 4.3), which makes it the upper limit for these inputs.",
+        "The Discrepancy model g is fitted to the residual of the Nominal model on the device walk, the measured "
+        "second derivative minus f (Eq. 4.4). The Augmented model is the sum f + g (Eq. 4.5).",
+        f"The last {f'{held_out} s' if held_out else 'part'} of each walk is held out before any fit. R² = 1 − (sum "
+        "of squared residuals) / (sum of squares about the mean) on these samples: 1 is all of the variance, 0 no "
+        "better than the mean, and a negative number worse.",
+        f"{_filter_sentence(run)} A filter alone makes part of a second derivative predictable from the signal "
+        "itself. The null gives this part: R² of band-limited noise that was filtered in the same way.",
     ]
 
 
@@ -143,9 +143,9 @@ def _markers_sentence(run: ResponseRun) -> list[str]:
         return []
     walks = "the one walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
     return [
-        f"Joint angles of {walks} are computed from markers, calibrated by the person's static trial, before they are "
-        "filtered; which marker set, how far the markers lie from where the static trial has them and what was bridged "
-        "stands under “Findings”."
+        f"Joint angles of {walks} are computed from markers, calibrated with the person's static trial, before they "
+        "are filtered. “Findings” lists the marker set, the distance of the markers from their static positions and "
+        "bridged gaps."
     ]
 
 
@@ -157,7 +157,7 @@ def _filter_sentence(run: ResponseRun) -> str:
     if not isinstance(filters, Mapping) or not {"kinematics_hz", "order"} <= set(filters):
         rows = [(k, v) for k, v in flattened(settings) if any(word in k.lower() for word in _FILTER_WORDS)]
         said = ", ".join(f"{key} = {value}" for key, value in rows)
-        return f"Filters as the settings state them: {said}." if said else "The settings of the run name no filter."
+        return f"Filters in the settings: {said}." if said else "The settings of the run do not name a filter."
     order, cutoff = int(filters["order"]), float(filters["kinematics_hz"])
     rates = sorted({walk.rate_hz for walk in run.walks})
     together = " or ".join(f"{effective_cutoff_hz(cutoff, rate, order):.2f} Hz at {rate:g} samples/s" for rate in rates)
@@ -170,6 +170,7 @@ def _filter_sentence(run: ResponseRun) -> str:
             f"{filters['emg_lowpass_hz']:g} Hz with the same order"
         )
     return (
-        f"Angles were low-passed by a Butterworth filter of order {order} a pass, forwards and backwards, so without "
-        f"lag, {cutoff:g} Hz at −3 dB of one pass{f' (both passes: {together})' if together else ''}{emg}."
+        f"Angles were low-passed by a Butterworth filter of order {order} per pass, forwards and backwards and "
+        f"therefore without lag, {cutoff:g} Hz at −3 dB of one "
+        f"pass{f' (both passes: {together})' if together else ''}{emg}."
     )

@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.r2 import (
-    R2_TABLE,
-    held_out_text,
-    medians,
-    participant_medians,
-    r2_by_variable,
-    sample_counts,
-)
+from gaitdisc.report.r2 import R2_TABLE, held_out_text, medians, participant_medians, r2_by_variable, sample_counts
 from gaitdisc.results.participant_response import ParticipantResponse, ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number, plain
 
@@ -33,30 +26,30 @@ _SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
 def study_sentences(run: ResponseRun) -> list[str]:
     """What the study as a whole says: who was analysed, and what the models explain over participants."""
     refused = sorted({refusal.participant for refusal in run.refusals})
-    left_out = f"; left out in whole or in part: {listed(refused)} (see “Left out”)" if refused else ""
+    left_out = f"; left out entirely or in part: {listed(refused)} (see “Left out”)" if refused else ""
     if not run.responses:
         if refused:
-            return [f"No participant could be analysed{left_out}. There is no result to show."]
-        return ["No participant could be analysed: the study holds none. There is no result to show."]
+            return [f"No participant could be analysed{left_out}. There are no results."]
+        return ["No participant could be analysed: the study contains none. There are no results."]
     analysed = len(run.responses)
     who = f"{counted(analysed, 'participant')} {'was' if analysed == 1 else 'were'} analysed{left_out}."
     if analysed == 1:
-        return [f"{who} One participant carries no test: what follows describes this participant only."]
+        return [f"{who} One participant is not enough for a test: the results describe this participant only."]
     table = participant_medians(run)
     parts = [f"{MODEL_WORDS[model]} {_median_iqr(table[column])}" for model, column in _ON_EXO.items()]
     sentences = [
         who,
-        f"Of the variance of held-out device walking ({run.exo}) the models explain, as median [quartiles] over "
-        f"participants of each participant's median over variables: {', '.join(parts)}.",
+        f"The models explain the following shares of the variance of held-out device walking ({run.exo}), median "
+        f"[quartiles] over participants of each participant's median over variables: {', '.join(parts)}.",
         _study_verdict(table["augmented_on_exo"] - table["nominal_on_exo"]),
     ]
     ridge = (table["ridge_augmented_on_exo"] - table["augmented_on_exo"]).dropna()
     if len(ridge):
         wins = int((ridge >= MARGIN).sum())
         sentences.append(
-            f"Ridge regression with phase harmonics in place of the networks gives Augmented "
-            f"{_median_iqr(table['ridge_augmented_on_exo'])} "
-            f"and beats the network in {wins} of {counted(len(ridge), 'participant')}."
+            "Ridge regression with phase harmonics instead of the networks gives Augmented "
+            f"{_median_iqr(table['ridge_augmented_on_exo'])} and exceeds the network in {wins} of "
+            f"{counted(len(ridge), 'participant')}."
         )
     if table["null_on_exo"].notna().any():
         sentences.append(f"Band-limited noise alone would reach {_median_iqr(table['null_on_exo'])}.")
@@ -80,8 +73,8 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     ]
     if np.isfinite(middle["nominal_on_nominal"]):
         sentences.append(
-            f"On held-out walking without the device, for which it was trained, the Nominal model "
-            f"reaches {number(middle['nominal_on_nominal'])}."
+            "On held-out walking without the device, on which it was trained, the Nominal model reaches "
+            f"{number(middle['nominal_on_nominal'])}."
         )
     sentences.append(_verdict(table, middle))
     for sentence in (_ridge(middle), _null(table, middle)):
@@ -92,31 +85,31 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
 
 def _explains(r2: float) -> str:
     if not np.isfinite(r2):
-        return "explains an amount that was not computed"
+        return "explains a share that was not computed"
     if r2 < 0:
-        return f"does worse than the mean would and explains nothing (R² {number(r2)})"
+        return f"is worse than the mean and explains nothing (R² {number(r2)})"
     return f"explains {number(r2)}"
 
 
 def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:
     gain = (table["augmented_on_exo"] - table["nominal_on_exo"]).dropna()
     if not len(gain):
-        return "Whether the Discrepancy model helps was not computed."
+        return "It was not computed whether the Discrepancy model helps."
     median = float(gain.median())
     better = f"better in {int((gain > 0).sum())} of {counted(len(gain), 'variable')}"
     if median >= MARGIN:
         return (
-            f"Adding the Discrepancy model helps: R² rises by {number(median)} (median of the differences; "
+            f"The Discrepancy model helps: R² rises by {number(median)} (median of the differences; "
             f"{better}){_closed(middle)}."
         )
     if median <= -MARGIN:
         return (
-            f"Adding the Discrepancy model makes it worse: R² falls by {number(-median)} "
-            f"(median of the differences; {better})."
+            f"The Discrepancy model makes the prediction worse: R² falls by {number(-median)} (median of the "
+            f"differences; {better})."
         )
     return (
-        f"Adding the Discrepancy model does not help: the Augmented model is no better than the Nominal model "
-        f"(median of the differences {number(median, 3)}; {better})."
+        "The Discrepancy model does not help: the Augmented model is no better than the Nominal model (median of the "
+        f"differences {number(median, 3)}; {better})."
     )
 
 
@@ -126,7 +119,7 @@ def _closed(middle: pd.Series) -> str:
         return ""
     share = (augmented - nominal) / (exo - nominal)
     if share >= 1:
-        return ", level with the Exo model or above it"
+        return ", equal to the Exo model or above it"
     if share <= 0:
         return ""
     return f", {100 * share:.0f}\u00a0% of the way from the Nominal to the Exo model"
@@ -142,7 +135,7 @@ def _ridge(middle: pd.Series) -> str:
     wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
     if wins:
         beaten = listed([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])
-        return f"{start}: ridge beats the network for {beaten}, where the network earns nothing."
+        return f"{start}: ridge exceeds the network for {beaten}, so the network has no advantage there."
     if "augmented" not in ridge or not np.isfinite(middle["augmented_on_exo"]):
         return f"{start}."
     gain = float(middle["augmented_on_exo"]) - ridge["augmented"]
@@ -158,7 +151,7 @@ def _null(table: pd.DataFrame, middle: pd.Series) -> str:
     start = f"Band-limited noise alone would reach {number(null)}"
     below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
     if below:
-        return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not rise above that."
+        return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not exceed it."
     lost = [str(v) for v in table.index[table["augmented_on_exo"] <= table["null_on_exo"] + MARGIN]]
     if not lost:
         return f"{start}."
@@ -169,16 +162,16 @@ def _null(table: pd.DataFrame, middle: pd.Series) -> str:
 def _study_verdict(gains: pd.Series) -> str:
     gains = gains.dropna()
     if not len(gains):
-        return "Whether the Discrepancy model helps was not computed."
+        return "It was not computed whether the Discrepancy model helps."
     median = float(gains.median())
     better = f"better in {int((gains >= MARGIN).sum())} of {counted(len(gains), 'participant')}"
     if median >= MARGIN:
-        return f"Adding the Discrepancy model raises R² by {number(median)} (median over participants; {better})."
+        return f"The Discrepancy model raises R² by {number(median)} (median over participants; {better})."
     if median <= -MARGIN:
-        return f"Adding the Discrepancy model lowers R² by {number(-median)} (median over participants; {better})."
+        return f"The Discrepancy model lowers R² by {number(-median)} (median over participants; {better})."
     return (
-        f"Adding the Discrepancy model does not help: the Augmented model is no better than the Nominal model "
-        f"(median difference {number(median, 3)}; {better})."
+        "The Discrepancy model does not help: the Augmented model is no better than the Nominal model (median "
+        f"difference {number(median, 3)}; {better})."
     )
 
 
@@ -194,7 +187,7 @@ def _median_iqr(values: pd.Series) -> str:
 def r2_text(run: ResponseRun) -> rich.table.Table:
     """R2 of one participant by variable, of several by person (medians over variables), or who was refused, and why."""
     if not run.responses:
-        table = _empty(f"Nobody could be analysed; left out: n = {len(run.refusals)}.")
+        table = _empty(f"No participant could be analysed; left out: n = {len(run.refusals)}.")
         for heading in ("participant", "walk", "reason"):
             table.add_column(heading)
         for refusal in run.refusals:

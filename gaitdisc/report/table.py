@@ -87,7 +87,7 @@ def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Tabl
 
 def refusals_table(run: StudyRun) -> Table:
     """Everybody and everything left out, with the reason."""
-    return left_out_table(run.refusals, "refusals", f"Left out, n = {len(run.refusals)}, and why.")
+    return left_out_table(run.refusals, "refusals", f"Participants and walks left out, n = {len(run.refusals)}.")
 
 
 def findings_table(run: StudyRun) -> Table:
@@ -103,8 +103,8 @@ def findings_table(run: StudyRun) -> Table:
         )
         for row in numbers.itertuples(index=False)
     )
-    headings = ("severity", "walk", "where", "what was seen", "spoils")
-    caption = f"Findings of the reader and of the quality checks, n = {len(rows)}; none is left away."
+    headings = ("severity", "walk", "where", "finding", "affects")
+    caption = f"Findings of the reader and of the quality checks, n = {len(rows)} (all)."
     return Table("findings", caption, headings, rows, numbers)
 
 
@@ -113,7 +113,7 @@ def provenance_tables(made: Provenance) -> dict[str, Table]:
     files = sorted(made.files.items())
     return {
         "settings": words_table(
-            "settings", "Settings, with all defaults.", ("setting", "value"), flattened(made.settings)
+            "settings", "Settings, including all defaults.", ("setting", "value"), flattened(made.settings)
         ),
         "versions": words_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
         "files": words_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),

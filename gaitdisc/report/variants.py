@@ -20,10 +20,7 @@ SHOWN = ("augmented", "exo")
 ROW = 0.19  # inch
 FARTHEST = 1.0  # a fall beyond it is drawn at the edge
 HEADINGS = ("Nominal", "Augmented", "Exo", "null")
-TITLES = {
-    "modalities": "Which inputs carry the response",
-    "sensitivity": "Other cut-offs and training lengths",
-}
+TITLES = {"modalities": "Effect of the inputs", "sensitivity": "Other cut-offs and training lengths"}
 
 
 @in_style
@@ -83,9 +80,9 @@ def modalities_table(run: VariantRun) -> Table:
         rows.append((family_words(str(family)), *shown))
     caption = (
         f"Hodges-Lehmann shift of R² [1] of the Augmented model on the held-out device walk ({run.exo}) when the "
-        f"Discrepancy model lacks a family of inputs, n = {counted(len(run.people), 'participant')}; negative: "
-        "R² falls. Star: exact two-sided signed rank test, Holm-Sidak over the variables of a row, alpha = 0.05. The "
-        "CSV has both models, W, p, adjusted p and intervals."
+        f"Discrepancy model lacks a family of inputs, n = {counted(len(run.people), 'participant')}; negative: R² "
+        "falls. Star: exact two-sided signed rank test, Holm-Sidak over the variables of a row, alpha = 0.05. The "
+        "CSV contains both models, W, p, adjusted p and intervals."
     )
     return Table("modalities", caption, ("without", *map(label, variables)), tuple(rows), run.tests)
 
@@ -94,7 +91,7 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
     """What the others cannot replace, and what the numbers cannot say."""
     numbers = falls(run)
     if not len(numbers):
-        return ("Nobody's models could be fitted.",)
+        return ("No participant's models could be fitted.",)
     said = []
     for group, words in (("angles", "joint angles"), ("EMG", "EMG")):
         own = numbers[(numbers["variables"] == group) & (numbers["model"] == "augmented")]
@@ -105,10 +102,10 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
             f"{family_words(str(name))} ({number(fall, 3)})"
             for name, fall in zip(middle.index[:3], middle.to_numpy(float), strict=False)
         ]
-        said.append(f"Of {words}, the Augmented model loses most R² (medians) without {listed(most)}.")
+        said.append(f"Among {words}, the Augmented model loses most R² (medians) without {listed(most)}.")
     said.append(
-        "A fall says what the other inputs cannot replace. Joint angles and EMG of one walk go together, so a family "
-        "whose absence costs nothing may carry the response as well as those that stand in for it; the falls of two "
+        "A fall shows information that the other inputs cannot replace. Joint angles and EMG of one walk are "
+        "correlated, so an input family may be informative even if R² does not fall without it. The falls of two "
         "families do not add up."
     )
     return tuple(said)
@@ -138,7 +135,7 @@ def _caption(run: VariantRun) -> str:
     held = f"{low:.1f}" + (f" to {high:.1f}" if high - low >= 0.05 else "")
     return (
         f"Fall of R² [1] on the held-out device walk ({run.exo}) when a family of inputs (both sides; a joint or "
-        f"muscle with its velocity) is left away, median over variables; n = "
+        "muscle with its velocity) is left out, median over variables; n = "
         f"{counted(len(run.people), 'participant')}; split: last {held} s of the walk held out. Augmented: only the "
         "Discrepancy model lacks the inputs. Small marks: participants. Linear within 0.01, logarithmic beyond. "
         "Networks only. For section 6.2.2 of the dissertation."
@@ -147,7 +144,7 @@ def _caption(run: VariantRun) -> str:
 
 def _alt(numbers: pd.DataFrame) -> str:
     own = numbers[numbers["model"] == "augmented"].groupby("without", sort=False)["fall"].median()
-    return f"Fall of R² without each of {len(own)} families of inputs; the largest is without {own.idxmax()}."
+    return f"Fall of R² without each of {len(own)} families of inputs; the largest fall is without {own.idxmax()}."
 
 
 def setting_medians(run: VariantRun) -> pd.DataFrame:
@@ -203,11 +200,12 @@ def sensitivity_table(run: VariantRun) -> Table:
         shown = "not tested" if np.isnan(different) else f"{different:.0f} of {variables:.0f}"
         rows.append((str(variant), *cells, f"{holds:.0f} of {people:.0f}", shown))
     caption = (
-        f"R² [1] on the held-out device walk ({run.exo}), medians over participants of medians over variables, "
-        f"n = {counted(len(run.people), 'participant')}; one setting changed at a time. R² of two settings are not of "
-        "the same thing, for the filter makes what is predicted as well: compare the models, and each with its null. "
-        "People: in whom Nominal < Augmented in the median over variables; variables: in which Augmented is shown to "
-        "be higher (exact signed rank, Holm-Sidak over the variables of a setting, alpha = 0.05)."
+        f"R² [1] on the held-out device walk ({run.exo}), medians over participants of medians over variables, n = "
+        f"{counted(len(run.people), 'participant')}; one setting changed at a time. R² of two settings refer to "
+        "different targets, because the filter changes the predicted signal: compare the models, and each with its "
+        "null. People: number with Nominal < Augmented in the median over variables; variables: number with a "
+        "significantly higher Augmented model (exact signed rank, Holm-Sidak over the variables of a setting, alpha "
+        "= 0.05)."
     )
     heads = (("", 1), *((group, len(HEADINGS)) for group in groups), ("Nominal < Augmented", 2))
     columns = ("setting", *(HEADINGS * len(groups)), "people", "variables")
@@ -224,12 +222,12 @@ def sensitivity_table(run: VariantRun) -> Table:
 def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     """Whether the order of the models holds under every setting, and what was left away."""
     if not run.people:
-        return ("Nobody's models could be fitted.",)
+        return ("No participant's models could be fitted.",)
     medians = setting_medians(run)
     failing = medians[~(medians["nominal"] < medians["augmented"])]
     cases = counted(len(medians), "case")
     said = [
-        f"In the medians, Nominal < Augmented holds in all of {cases} (a setting and a group of variables)."
+        f"In the medians, Nominal < Augmented holds in all {cases} (a setting and a group of variables)."
         if not len(failing)
         else f"In the medians, Nominal < Augmented fails in {len(failing)} of {cases}: "
         + ", ".join(f"{row.variant} ({row.variables})" for row in failing.itertuples())
@@ -238,12 +236,12 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     low = medians[medians["augmented"] <= medians["null"]]
     if len(low):
         where = ", ".join(f"{row.variant} ({row.variables})" for row in low.itertuples())
-        said.append(f"Augmented does not rise above what noise reaches through the same filters in: {where}.")
+        said.append(f"The Augmented model does not exceed the noise null with the same filters in: {where}.")
     lost = sorted({name for each in run.people for name in each.left_away})
     for name in lost:
         whom = [each for each in run.people if name in each.left_away]
         who, why = ", ".join(each.participant for each in whom), whom[0].left_away[name]
-        said.append(f"{name} is left away for {who}: {why}")
+        said.append(f"{name} is left out for {who}: {why}")
     return tuple(said)
 
 

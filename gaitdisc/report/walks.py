@@ -119,15 +119,15 @@ def _key() -> list[Artist]:
 
 def _caption(participant: str, numbers: pd.DataFrame) -> str:
     parts = [
-        f"{counted(len(rows), 'stride')} ({condition}: {int(rows['kept'].sum())} kept, "
-        f"{int((~rows['kept']).sum())} dropped)"
+        f"{counted(len(rows), 'stride')} ({condition}: {int(rows['kept'].sum())} kept, {int((~rows['kept']).sum())} "
+        "dropped)"
         for condition, rows in numbers.groupby("condition", sort=False)
     ]
     return (
         f"{participant}: every stride of each walk, from initial contact to the next of the same foot, n = "
-        f"{' and '.join(parts)}; whole walks, no split. Light: kept; black, taller: dropped, with the letter of its "
-        f"reason in the table below. Under each strip: duration of every stride [s] over time; left red triangles, "
-        f"right blue discs, dropped crosses."
+        f"{' and '.join(parts)}; entire walks, no split. Light: kept; black, taller: dropped, with the letter of its "
+        "reason in the table below. Under each strip: duration of every stride [s] over time; left red triangles, "
+        "right blue discs, dropped crosses."
     )
 
 
@@ -170,8 +170,8 @@ def walks_table(run: ResponseRun) -> Table:
         "findings",
     )
     caption = (
-        f"Walks that could be processed, n = {len(run.walks)}. Green: nothing, or notes only; amber: warnings, some "
-        f"samples or channels are spoiled; red: the trial is refused."
+        f"Processed walks, n = {len(run.walks)}. Green: nothing, or notes only; amber: warnings, some samples or "
+        "channels are affected; red: the trial is refused."
     )
     return Table("walks", caption, columns, tuple(rows), pd.DataFrame(records))
 
@@ -190,7 +190,7 @@ def dropped_table(run: ResponseRun, participant: str, name: str) -> Table | None
         ))  # fmt: skip
     rows.sort()
     caption = f"{participant}: dropped strides by reason, n = {len(dropped)} of {len(strides)}."
-    columns = ("letter", "walk", "side", "strides", "kind of reason", "the first of them")
+    columns = ("letter", "walk", "side", "strides", "kind of reason", "first example")
     return Table(f"dropped-{name}", caption, columns, tuple(rows), dropped)
 
 
@@ -209,7 +209,7 @@ def fits_table(run: ResponseRun) -> Table:
     )  # fmt: skip
     caption = (
         f"Fits, n = {len(rows)}; decay: strength of the regularisation, chosen on inner samples, a contiguous last "
-        f"part of the training samples; no held-out sample was used."
+        "part of the training samples, without held-out samples."
     )
     return Table("fits", caption, headings, tuple(rows), numbers)
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ChannelError, TrainingError
+from gaitdisc.errors import LOG, ChannelError, TrainingError
 from gaitdisc.model import Augmented, Model, augment
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Samples, Trajectory
@@ -76,7 +76,7 @@ def fit_response(
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
     on_nominal, on_exo = (held_out_samples(held, settings) for held in (held_nominal, held_exo))
     parts = training_samples(nominal, exo, settings)
-    fitted = fit_both(*parts, settings, progress)
+    fitted = fit_both(*parts, settings, progress or _log_tenths())
     kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
     scored = [_scored(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
     predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
@@ -94,6 +94,19 @@ def fit_response(
     )
 
 
+def _log_tenths() -> Callable[[float], None]:
+    """Return a callback that logs each tenth of the fit once."""
+    logged: set[int] = set()
+
+    def progress(share: float) -> None:
+        tenth = int(10 * share)
+        if tenth not in logged:
+            logged.add(tenth)
+            LOG.info("fitting the models: %d %%", 10 * tenth)
+
+    return progress
+
+
 def training_samples(nominal: Trajectory, exo: Trajectory, settings: ResponseSettings) -> tuple[Samples, Samples]:
     """Samples of the training parts of both walks; the held-out parts are not looked at."""
     first, second = (gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo))
@@ -101,10 +114,7 @@ def training_samples(nominal: Trajectory, exo: Trajectory, settings: ResponseSet
 
 
 def fit_both(
-    nominal: Samples,
-    exo: Samples,
-    settings: ResponseSettings,
-    progress: Callable[[float], None] | None = None,
+    nominal: Samples, exo: Samples, settings: ResponseSettings, progress: Callable[[float], None] | None = None
 ) -> FittedResponse:
     """Fit networks and ridge regressions to the samples of the training parts."""
     ridge = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, settings.harmonics))
@@ -126,9 +136,9 @@ def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Sample
     samples, dropped = gait_samples(held_out, settings.outputs)
     if len(samples) < LEAST_HELD_OUT:
         raise TrainingError(
-            f"a model is tested on {LEAST_HELD_OUT} held-out samples at least",
+            f"a model must be tested on at least {LEAST_HELD_OUT} held-out samples",
             f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {dropped.finding().line()}",
-            "Hold out a longer part, or mend or leave away the channels named.",
+            "Hold out a longer part, or correct or remove the channels named.",
         )
     return samples
 
@@ -169,17 +179,17 @@ def _check_pair(nominal: Trajectory, exo: Trajectory) -> None:
     if nominal.subject and exo.subject and nominal.subject != exo.subject:
         raise ChannelError(
             "a response needs two walks of one participant",
-            f"found {nominal.subject} and {exo.subject}",
+            f"the walks are of {nominal.subject} and {exo.subject}",
             "Pair the trials by participant in the study.",
         )
     if nominal.channels != exo.channels:
         apart = sorted(set(nominal.names) ^ set(exo.names))
-        found = f"apart in {', '.join(apart[:5])}" if apart else "they differ in order or unit"
+        found = f"they differ in {', '.join(apart[:5])}" if apart else "they differ in order or unit"
         raise ChannelError(
             "a response needs the same channels in both walks",
             f"{nominal.subject}: {len(nominal.names)} channels in {nominal.condition or 'nominal'}, "
             f"{len(exo.names)} in {exo.condition or 'exo'}, {found}",
-            "Leave away what one walk lacks.",
+            "Remove channels that one walk lacks.",
         )
 
 
@@ -318,9 +328,7 @@ def report_share(progress: Callable[[float], None], done: int, count: int, fract
 
 
 def fit_network(
-    samples: Samples,
-    settings: TrainingSettings | None = None,
-    progress: Callable[[float], None] | None = None,
+    samples: Samples, settings: TrainingSettings | None = None, progress: Callable[[float], None] | None = None
 ) -> Fit:
     """Fit the dissertation's feed-forward network."""
     from gaitdisc.networks.feedforward import FeedForward  # brings torch, which takes two seconds

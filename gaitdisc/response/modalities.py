@@ -70,10 +70,7 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
 
 
 def fit_without(
-    nominal: Trajectory,
-    exo: Trajectory,
-    settings: ResponseSettings,
-    progress: Callable[[float], None] | None = None,
+    nominal: Trajectory, exo: Trajectory, settings: ResponseSettings, progress: Callable[[float], None] | None = None
 ) -> pd.DataFrame:
     """Fit Discrepancy and Exo without one family of inputs at a time, and score them on held-out device walking.
 
@@ -98,10 +95,7 @@ def fit_without(
         fewer, scored = _without(training[1], left_away), _without(held, left_away)
         for kind, fit in kinds.items():
             missed = fewer.with_outputs(training[1].y - known[kind](training[1].x))
-            predicted = {
-                "augmented": known[kind](held.x) + fit(missed)(scored.x),
-                "exo": fit(fewer)(scored.x),
-            }
+            predicted = {"augmented": known[kind](held.x) + fit(missed)(scored.x), "exo": fit(fewer)(scored.x)}
             for model, values in predicted.items():
                 found = zip(settings.outputs, r2(held.y, values), strict=True)
                 rows += [(family, variable, model, kind, value, len(held)) for variable, value in found]
@@ -150,7 +144,7 @@ def _without(samples: Samples, left_away: Sequence[str]) -> Samples:
 ANGLES_HZ = (4.0, 6.0, 8.0, 10.0, 12.0)
 EMG_HZ = (4.0, 6.0, 10.0, 15.0, 20.0)
 SHARES = (0.25, 0.5)
-AS_STUDIED = "as the study has it"
+AS_STUDIED = "as in the study"
 
 
 @dataclass(frozen=True)
@@ -158,7 +152,7 @@ class Setting:
     """Filters and training length under which a study is fitted again.
 
     >>> [setting.name for setting in settings_around(6.0, 10.0, emg=False)][:3]
-    ['as the study has it', 'angles 4 Hz', 'angles 8 Hz']
+    ['as in the study', 'angles 4 Hz', 'angles 8 Hz']
     """
 
     name: str
@@ -194,13 +188,15 @@ def fit_data_quantity(
     Source: Ebers 2023, section 4.2.4 and Fig. 4.4.
     """
     if part not in PARTS:
-        raise SamplingError("the training part is taken from its first or last seconds", f"found {part!r}", "Name one.")
+        raise SamplingError(
+            "the training part must be taken from its first or last seconds", f"found {part!r}", "Write first or last."
+        )
     progress = progress or (lambda _: None)
     training = {"nominal": held_out_part(nominal, settings)[0], "exo": held_out_part(exo, settings)[0]}
     whole_s = min(len(walk.time) / walk.rate_hz for walk in training.values())
     wanted = sorted({length for length in lengths_s if length < whole_s})
     left_away = {
-        length: f"the training part has {whole_s:.1f} s" for length in sorted(set(lengths_s)) if length >= whole_s
+        length: f"the training part is {whole_s:.1f} s long" for length in sorted(set(lengths_s)) if length >= whole_s
     }
     tables = []
     for number, length in enumerate(wanted if whole else [*wanted, whole_s]):

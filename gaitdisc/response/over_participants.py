@@ -167,15 +167,15 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
     whole = [bool(np.isfinite(each.residuals["nominal"]).any(axis=0).all()) for each in responses]
     complete = [each for each, has_all in zip(responses, whole, strict=True) if has_all]
     absent = [each.participant for each, has_all in zip(responses, whole, strict=True) if not has_all]
-    left_out = f"; left out, for strides with missing points: {', '.join(absent)}" if absent else ""
+    left_out = f"; excluded because of strides with missing points: {', '.join(absent)}" if absent else ""
     who = f"n = {len(complete)} participants{left_out}"
     if len(complete) < FEWEST_GROUPED:
-        said = f"Sub-groups were not looked for, which takes {FEWEST_GROUPED} participants ({who})"
+        said = f"Sub-groups were not tested, because this needs {FEWEST_GROUPED} participants ({who})"
         return no_rows("responders"), said
     try:
         groups = find_responders(complete, seed)
     except ComparisonError as error:
-        return no_rows("responders"), f"Sub-groups were not looked for: {error}"
+        return no_rows("responders"), f"Sub-groups were not tested: {error}"
     numbers = (groups.count, groups.silhouette, groups.p, groups.stability)
     rows = [
         (response.participant, int(group), *numbers) for response, group in zip(complete, groups.labels, strict=True)
@@ -193,9 +193,9 @@ def discrepancy_curves(responses: Sequence[ParticipantResponse]) -> NDArray[np.f
     outputs = {response.outputs for response in responses}
     if len(outputs) != 1:
         raise ComparisonError(
-            "discrepancies are compared over the same outputs of all participants",
-            f"found {len(outputs)} sets of outputs in {len(responses)} participants",
-            "Leave out whoever lacks an output.",
+            "discrepancies can be compared only for the same outputs of all participants",
+            f"there are {len(outputs)} sets of outputs in {len(responses)} participants",
+            "Exclude participants who lack an output.",
         )
     means = np.stack([np.nanmean(response.residuals["nominal"], axis=0) for response in responses])
     size = np.sqrt(np.mean(means**2, axis=(0, 1)))
@@ -297,13 +297,13 @@ def too_few(participants: int) -> str:
     """Why so few participants are not tested.
 
     >>> too_few(5)
-    '5 participants are too few for a test: the smallest p is 0.0625, not below 0.05 even if all of them agree'
+    '5 participants are too few for a test: the smallest possible p is 0.0625, not below 0.05 even if all agree'
     """
     if participants < 2:
-        return "One participant carries no test" if participants else "No participant, no test"
+        return "One participant is not enough for a test" if participants else "There is no participant, and no test"
     return (
-        f"{participants} participants are too few for a test: the smallest p is {smallest_p(participants):g}, "
-        f"not below {ALPHA:g} even if all of them agree"
+        f"{participants} participants are too few for a test: the smallest possible p is "
+        f"{smallest_p(participants):g}, not below {ALPHA:g} even if all agree"
     )
 
 

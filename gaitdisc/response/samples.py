@@ -19,7 +19,7 @@ class DroppedSamples:
     """Samples of a trajectory that no model sees, and why.
 
     >>> DroppedSamples(100, 80, 15, {"knee_angle_r": 5}, "P01 exo").finding().what
-    '20 of 100 samples left away: 15 outside of strides, 5 of knee_angle_r not usable'
+    '20 of 100 samples excluded: 15 outside strides, 5 of knee_angle_r not usable'
     """
 
     total: int  # samples there are
@@ -32,12 +32,12 @@ class DroppedSamples:
     def finding(self) -> Finding:
         """Say it: a note, or a warning where a fifth of the walk is lost."""
         lost = self.total - self.kept
-        reasons = [f"{self.outside_strides} outside of strides"] if self.outside_strides else []
+        reasons = [f"{self.outside_strides} outside strides"] if self.outside_strides else []
         worst = sorted(self.unusable.items(), key=lambda item: -item[1])
         reasons += [f"{count} of {channel} not usable" for channel, count in worst[:3]]
         if len(worst) > 3:
             reasons.append(f"and {len(worst) - 3} more channels")
-        what = f"{lost} of {self.total} samples left away" + (": " + ", ".join(reasons) if reasons else "")
+        what = f"{lost} of {self.total} samples excluded" + (": " + ", ".join(reasons) if reasons else "")
         spoils = "a fifth or more of the walk; see the channels named" if lost >= 0.2 * self.total else ""
         return Finding("warning" if spoils else "note", "samples left away", self.walk, what, spoils)
 
@@ -73,15 +73,13 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
 def _check_outputs(trajectory: Trajectory, outputs: Sequence[str], walk: str) -> None:
     if not outputs:
         raise ChannelError(
-            "a response needs at least one channel to predict",
-            f"none is named for {walk}",
-            "Name the channels in the study's outputs.",
+            "a response must predict at least one channel", f"none is named for {walk}", "Name them in outputs."
         )
     for name in outputs:
         if name not in trajectory.names:
             nearest = vocabulary().nearest(name, among=trajectory.names)
             raise ChannelError(
-                f"the acceleration of {name!r} is to be predicted",
+                f"{name!r}, whose acceleration is predicted, must be among the channels",
                 f"{walk} has {len(trajectory.names)} channels" + (f", the nearest is {nearest!r}" if nearest else ""),
                 "Correct the study's outputs, or map the channel in [channels].",
             )

@@ -24,6 +24,8 @@ FORM = f"a published reference is a CSV with {', '.join(COLUMNS)}, after a line 
 FILE, FORMAT = "reference.json", 1
 PUBLISHED = "published.csv"
 DIGITS = 4
+FEW = 3  # cycles of a leg below which a mean is that of single steps: no sentence is made of it
+SCORE_LEAST = 1.6  # [deg] of the gait profile score, the smallest difference that matters (Baker et al. 2012)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,9 +193,14 @@ class Limits:
 
     low: float  # prediction limit for one more healthy leg, corrected for all rules of the page
     high: float  # the upper one
-    mean: float  # over the legs of the reference
-    sd: float  # over the legs of the reference
+    mean: float  # over the legs of the reference, at the person's speed where limits follow it
+    sd: float  # over the legs of the reference, at the person's speed where limits follow it
     people: int
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Mean less and more two standard deviations: what an eye takes for usual."""
+        return self.mean - 2 * self.sd, self.mean + 2 * self.sd
 
 
 @dataclass(frozen=True)
@@ -209,6 +216,8 @@ class Noted:
     limits: Limits
     cycles: int
     excess: float  # distance from the reference's mean over that of the limit; beyond 1 outside
+    tier: int = 0  # 2 beyond the prediction limits, 1 outside two standard deviations of the reference, 0 within
+    group: str = ""  # what else says the same thing, and in which direction
 
 
 @dataclass(frozen=True)
@@ -268,7 +277,7 @@ class ClinicalReading:
     @property
     def noted(self) -> tuple[Noted, ...]:
         """What stands out, the farthest first."""
-        return tuple(one for one in self.numbers if one.words)
+        return tuple(one for one in self.numbers if one.tier)
 
 
 @dataclass(frozen=True)
@@ -302,3 +311,8 @@ class PersonSession:
     title: str  # pseudonym, and session where there are sessions
     readings: tuple[ClinicalReading, ...]
     contrasts: tuple[Contrast, ...] = ()
+
+    @property
+    def before_after(self) -> Contrast | None:
+        """Comparison with what came before, which the first sheet shows; None where conditions are compared."""
+        return next((one for one in self.contrasts if one.second is self.readings[0]), None)

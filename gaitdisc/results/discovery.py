@@ -177,39 +177,39 @@ class Runs:
 
 @dataclass(frozen=True)
 class Discovery(Saved, file="discovery.json"):
-    """What was found that a simulation lacks.
+    """The effects that a simulation lacks.
 
     Parameters
     ----------
     verdict : str
-        One of nine.
+        One of nine words.
     sentence : str
-        The answer, for a person.
+        The answer in words.
     where : tuple of Whereabouts
-        Where the gap arises, the greatest share first.
+        Where the gap arises, the largest share first.
     effects : tuple of FoundEffect
         What was found.
     rivals : tuple of FoundEffect
-        What else was weighed, best first.
+        Other tested explanations, best first.
     train, held_out : GapSize
-        How far the gap shrank on data that were fitted, and on data that were not.
+        Reduction of the gap on training data and on held-out data.
     channels, units : tuple of str
         Observed channels and their units.
     runs : Runs
-        Of the held-out trials.
+        Runs of the held-out trials.
     findings : tuple of Finding
-        What the reader must know of the data.
+        Findings about the data.
     provenance : Provenance, optional
         Settings, files and versions.
     corrections : tuple of Correction
-        Numbers that moved within their own bounds.
+        Parameters that changed within their bounds.
     beside : mapping of str to float
-        Of a device walk: model -> its held-out error [unit of the last channel].
+        For a device walk: model -> held-out error [unit of the last channel].
     explanations : tuple of Explanation
-        The first five explanations of the whole gap, sets among them: what was named, then what closes most on held-out
-        data.
+        The first five explanations of the entire gap (single effects or sets): the named one, then those that close
+        most on held-out data.
     given : str
-        Whether held-out data made effects that a person gave ``proven`` or ``refuted``; empty after a search.
+        ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
     """
 
     verdict: str
@@ -232,7 +232,7 @@ class Discovery(Saved, file="discovery.json"):
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
         if self.verdict not in VERDICTS:
-            raise ValueError(f"verdict is one of {VERDICTS}, not {self.verdict!r}")
+            raise ValueError(f"verdict must be one of {VERDICTS}, not {self.verdict!r}")
 
     def to_frame(self) -> pd.DataFrame:
         """Held-out runs as a table: run, trial, time [s], and each channel measured, simulated and augmented."""
@@ -257,12 +257,22 @@ class Discovery(Saved, file="discovery.json"):
         return html_of(self.sentence, rows)
 
     def to_json(self) -> dict[str, Any]:
-        """Return what `discovery.json` holds."""
+        """Return the content of `discovery.json`."""
         return {
             "verdict": self.verdict,
             "where": [_where(one) for one in self.where],
             "effects": [_effect(one) | ({"small": True} if one.small else {}) for one in self.effects],
-            "corrections": [_correction(one) for one in self.corrections],
+            "corrections": [
+                {
+                    "parameter": one.parameter,
+                    "from": _number(one.given),
+                    "to": _number(one.found.value),
+                    "low": _number(one.found.low),
+                    "high": _number(one.found.high),
+                    "unit": one.found.unit,
+                }
+                for one in self.corrections
+            ],
             "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
             "explanations": [
@@ -302,17 +312,6 @@ def _effect(one: FoundEffect) -> dict[str, Any]:
     if one.reads_as:
         some["reads_as"] = {"expression": one.reads_as, "effect": one.reads_as_effect or None}
     return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence} | some
-
-
-def _correction(one: Correction) -> dict[str, Any]:
-    return {
-        "parameter": one.parameter,
-        "from": _number(one.given),
-        "to": _number(one.found.value),
-        "low": _number(one.found.low),
-        "high": _number(one.found.high),
-        "unit": one.found.unit,
-    }
 
 
 def _gap(one: GapSize) -> dict[str, Any]:

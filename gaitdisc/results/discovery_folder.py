@@ -78,7 +78,7 @@ def load_discovery(folder: Path) -> Discovery:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own
             raise
-        raise damaged(folder / NAME, f"not of the agreed form ({type(error).__name__}: {error})") from error
+        raise damaged(folder / NAME, f"not in the expected form ({type(error).__name__}: {error})") from error
 
 
 def _number(value: float | None, absent: float = float("nan")) -> float:

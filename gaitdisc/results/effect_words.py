@@ -29,26 +29,26 @@ STEADY = frozenset({"constant_load", "sensor_offset", "sensor_drift", "linear_st
 # from the narrowest; both names must be in a group, or one in each of two
 WITHIN = (
     (STEADY, "a recording at rest in two known positions"),
-    (SPRINGS, "movement through a wider range, to both sides of rest"),
+    (SPRINGS, "movement through a wider range, in both directions from rest"),
     (LOSSES, "the same movement at clearly different speeds"),
     (REMEMBERING, "the same movement at clearly different speeds: hysteresis does not depend on them"),
-    (CLOCKED, "the same movement at another cadence, or begun at another time"),
-    (LATE, "a sharp push that both the drive and the sensor see, or a second sensor of the same movement"),
+    (CLOCKED, "the same movement at another cadence, or started at another time"),
+    (LATE, "a sharp push that both the drive and the sensor record, or a second sensor of the same movement"),
     (SENSORS, "a calibration of the sensor against a known movement"),
 )
 BETWEEN = (
     (
         frozenset({"wrong_parameter"}),
         SPRINGS | LOSSES | {"linear_coupling", "constant_load"},
-        "a measurement of the parameter itself, since both may write the same term",
+        "a separate measurement of the parameter, because both candidates may produce the same term",
     ),
     (
         REMEMBERING,
         SPRINGS,
-        "movement held still after a step: what remembers relaxes or stays bent, a spring does neither",
+        "a step that is then held still: an effect with memory relaxes or stays deflected, a spring does neither",
     ),
-    (REMEMBERING, LOSSES, "slow and fast movement of several amplitudes, turned back half-way"),
-    (SPRINGS, LOSSES, "slow movement through the whole range, where only a spring is left"),
+    (REMEMBERING, LOSSES, "slow and fast movement of several amplitudes, reversed half-way"),
+    (SPRINGS, LOSSES, "slow movement through the entire range, in which only a spring acts"),
     (CLOCKED, SPRINGS | LOSSES | LATE, "the same movement at another cadence"),
     (SENSORS, frozenset({"wrong_parameter", "input_gain"}), "a calibration of the sensor against a known movement"),
     (SENSORS, SPRINGS | LOSSES | {"constant_load", "linear_coupling"}, "a second sensor of the same movement"),
@@ -165,7 +165,7 @@ def would_distinguish(name: str, other: str) -> str:
     'the same movement at clearly different speeds'
     """
     if name == other:
-        return "movement in which what the two places see differs"
+        return "movement in which the inputs of the two places differ"
     pair = {name, other}
     for group, recording in WITHIN:
         if pair <= group:

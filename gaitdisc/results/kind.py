@@ -141,16 +141,16 @@ def find_kind(folder: Path, drawn: bool = False) -> Kind[Any]:
     if not file:
         held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
         raise SchemaError(
-            f"a saved result is a folder with one of {', '.join(KINDS)}",
+            f"a saved result must be a folder with one of {', '.join(KINDS)}",
             f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is no folder'}",
-            "Give the folder that the command or .save(folder) wrote.",
+            "Name the folder that the command or .save(folder) wrote.",
         )
     kind = load_word(KINDS[file])
     if drawn and not kind.page:
         raise SchemaError(
             "pages and citations need a saved result",
-            f"{folder.name} holds {file}, a fitted model",
-            "Give the folder of `gaitdisc reconstruct`, or apply the model to a recording: `gaitdisc apply`.",
+            f"{folder.name} contains {file}, a fitted model",
+            "Name the folder of `gaitdisc reconstruct`, or apply the model to a recording: `gaitdisc apply`.",
         )
     return kind
 

@@ -131,8 +131,6 @@ class ClinicalVariable:
     unit: str
     up: str  # what a positive value means
     down: str  # what a negative value means
-    row: int  # place in the sheet of its kind
-    column: int  # place in the sheet of its kind
 
     def channel(self, side: str) -> str:
         """Name of the channel for a leg."""
@@ -143,53 +141,53 @@ class ClinicalVariable:
         return self.signs["lr".index(side)]
 
 
-def _angle(name: str, words: str, stem: str, up: str, down: str, place: tuple[int, int]) -> ClinicalVariable:
-    return ClinicalVariable(name, words, KINEMATICS, f"{stem}_{{side}}", (1.0, 1.0), "deg", up, down, *place)
+def _angle(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
+    return ClinicalVariable(name, words, KINEMATICS, f"{stem}_{{side}}", (1.0, 1.0), "deg", up, down)
 
 
-def _pelvis(name: str, words: str, signs: tuple[float, float], up: str, down: str, row: int) -> ClinicalVariable:
+def _pelvis(name: str, words: str, signs: tuple[float, float], up: str, down: str) -> ClinicalVariable:
     stem = {"pelvis_obliquity": "pelvis_list"}.get(name, name)
-    return ClinicalVariable(name, words, KINEMATICS, stem, signs, "deg", up, down, row, 0)
+    return ClinicalVariable(name, words, KINEMATICS, stem, signs, "deg", up, down)
 
 
-def _moment(name: str, words: str, stem: str, up: str, down: str, place: tuple[int, int]) -> ClinicalVariable:
-    stem = f"{stem}_{{side}}_moment"
-    return ClinicalVariable(name, words, MOMENTS, stem, (1.0, 1.0), "N m/kg", up, down, *place)
+def _moment(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
+    return ClinicalVariable(name, words, MOMENTS, f"{stem}_{{side}}_moment", (1.0, 1.0), "N m/kg", up, down)
 
 
-def _power(joint: str, column: int) -> ClinicalVariable:
+def _power(joint: str) -> ClinicalVariable:
     stem, up, down = f"{joint}_power_{{side}}", "generated", "absorbed"
-    return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), "W/kg", up, down, 2, column)
+    return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), "W/kg", up, down)
 
 
-def _force(name: str, words: str, axis: str, up: str, down: str, row: int) -> ClinicalVariable:
-    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up, down, row, 3)
+def _force(name: str, words: str, axis: str, up: str, down: str) -> ClinicalVariable:
+    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up, down)
 
 
+# in the order of a sheet, three in a row
 VARIABLES = (
-    _pelvis("pelvis_tilt", "pelvic tilt", (-1.0, -1.0), "forwards", "backwards", 0),
-    _pelvis("pelvis_obliquity", "pelvic obliquity", (1.0, -1.0), "own side up", "own side down", 1),
-    _pelvis("pelvis_rotation", "pelvic rotation", (-1.0, 1.0), "own side forwards", "own side backwards", 2),
-    _angle("hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension", (0, 1)),
-    _angle("hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction", (1, 1)),
-    _angle("hip_rotation", "hip rotation", "hip_rotation", "internal", "external", (2, 1)),
-    _angle("knee_flexion", "knee flexion", "knee_angle", "flexion", "extension", (0, 2)),
-    _angle("knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)", (1, 2)),
-    _angle("knee_rotation", "knee rotation", "knee_rotation", "internal", "external", (2, 2)),
-    _angle("ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion", (0, 3)),
-    _angle("ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion", (1, 3)),
-    _angle("ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external", (2, 3)),
-    _angle("foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out", (2, 4)),
-    _moment("hip_moment", "hip moment", "hip_flexion", "flexion", "extension", (0, 0)),
-    _moment("knee_moment", "knee moment", "knee_angle", "flexion", "extension", (0, 1)),
-    _moment("ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion", (0, 2)),
-    _moment("hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction", (1, 0)),
-    _moment("knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction", (1, 1)),
-    _moment("ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion", (1, 2)),
-    _power("hip", 0),
-    _power("knee", 1),
-    _power("ankle", 2),
-    _force("vertical_force", "vertical force, of body weight", "vy", "upwards", "", 0),
-    _force("fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards", 1),
+    _pelvis("pelvis_tilt", "pelvic tilt", (-1.0, -1.0), "forwards", "backwards"),
+    _pelvis("pelvis_obliquity", "pelvic obliquity", (1.0, -1.0), "own side up", "own side down"),
+    _pelvis("pelvis_rotation", "pelvic rotation", (-1.0, 1.0), "own side forwards", "own side backwards"),
+    _angle("hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension"),
+    _angle("hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction"),
+    _angle("hip_rotation", "hip rotation", "hip_rotation", "internal", "external"),
+    _angle("knee_flexion", "knee flexion", "knee_angle", "flexion", "extension"),
+    _angle("ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion"),
+    _angle("foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out"),
+    _angle("knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)"),
+    _angle("knee_rotation", "knee rotation", "knee_rotation", "internal", "external"),
+    _angle("ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion"),
+    _angle("ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external"),
+    _moment("hip_moment", "hip moment", "hip_flexion", "flexion", "extension"),
+    _moment("knee_moment", "knee moment", "knee_angle", "flexion", "extension"),
+    _moment("ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion"),
+    _power("hip"),
+    _power("knee"),
+    _power("ankle"),
+    _moment("hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
+    _moment("knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
+    _moment("ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
+    _force("vertical_force", "vertical force, of body weight", "vy", "upwards", ""),
+    _force("fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards"),
 )
 BY_NAME = {one.name: one for one in VARIABLES}

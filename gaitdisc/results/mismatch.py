@@ -87,29 +87,29 @@ class Mismatch(Saved, file="mismatch.json"):
     first, second : str
         What the two walks are called; the second is the one that is compared with, and gives the spread.
     channels : tuple of Channel
-        That both have.
+        Channels that both walks have.
     curves : mapping of str to ndarray (phase, channel) [channel's unit]
-        `first`, `second`: mean curves. `sd_first`, `sd_second`: from stride to stride; NaN where there is one stride.
-        `gap`: second minus first, with `low` and `high`, ends of its band: 1 - alpha for all points and channels
-        together. `t` [1].
+        `first`, `second`: mean curves. `sd_first`, `sd_second`: standard deviations over strides; NaN for a single
+        stride. `gap`: second minus first, with the limits `low` and `high` of its 1 - alpha band for all points and
+        channels together. `t` [1].
     regions : DataFrame
-        One row a stretch of the stride where the gap is more than chance, columns `REGION_COLUMNS`: largest gap, where,
-        in stride-to-stride standard deviations of the second walk there; mean gap; p (of the cluster, corrected).
+        One row per region of the stride with a significant gap, columns `REGION_COLUMNS`: largest gap, its place, its
+        size in stride-to-stride standard deviations of the second walk; mean gap; corrected p of the cluster.
     summary : DataFrame
-        One row a channel, columns `CHANNEL_COLUMNS`: whether it differs; largest gap anywhere and where; rms over the
-        stride of gap and of the second walk's sd; p of the largest |t|, corrected; `within`, the largest gap that the
-        band allows; `visible`, the gap that four such comparisons of five would have seen; `shift_percent`, by how much
-        later the first walk's curve fits best, and `rms_shifted`, the rms gap that is left then; `limit`, the smallest
-        difference that is named; `offset`, the mean gap over the stride, and `shape`, the largest gap that is left
-        without it; `too_small`, more than chance, but smaller than `limit`.
+        One row per channel, columns `CHANNEL_COLUMNS`: whether it differs; largest gap and its place; rms over the
+        stride of the gap and of the second walk's SD; p of the largest |t|, corrected; `within`, the largest gap that
+        the band allows; `visible`, the gap that four of five such comparisons would detect; `shift_percent`, the
+        best-fitting delay of the first walk's curve, and `rms_shifted`, the rms gap after this shift; `limit`, the
+        smallest difference that is named; `offset`, the mean gap over the stride, and `shape`, the largest gap without
+        the offset; `too_small`, significant but smaller than `limit`.
     exchange : Exchange
-        What was exchanged in the test.
+        Units and permutations of the test.
     findings : tuple of Finding
-        What was seen on the way: of both walks, and of channels that could not be compared.
+        Findings in both walks, and channels that could not be compared.
     provenance : Provenance
         Settings, seed, files.
     alignment : Alignment
-        Shift that all channels have in common; where it was applied, everything else is after it.
+        Shift that all channels have in common; if it was applied, all other fields refer to the shifted curves.
 
     Raises
     ------
@@ -136,11 +136,7 @@ class Mismatch(Saved, file="mismatch.json"):
         for name in CURVES:
             found = np.shape(self.curves[name]) if name in self.curves else "none"
             if found != wanted:
-                raise ShapeError(
-                    f"a mismatch needs {name!r} of shape {wanted}",
-                    f"found {found}",
-                    AGAIN,
-                )
+                raise ShapeError(f"{name!r} of a mismatch must have shape {wanted}", f"found {found}", AGAIN)
         tables = {"regions": (self.regions, REGION_COLUMNS), "summary": (self.summary, CHANNEL_COLUMNS)}
         check_columns(tables, "a mismatch needs", AGAIN)
         curves = {name: np.asarray(self.curves[name], float) for name in CURVES}
@@ -154,7 +150,7 @@ class Mismatch(Saved, file="mismatch.json"):
         object.__setattr__(self, "curves", {name: read_only(values) for name, values in curves.items()})
 
     def to_frame(self) -> pd.DataFrame:
-        """Curves and gap of every channel, one row a channel and percent of the stride."""
+        """Curves and gap of every channel, one row per channel and percent of the stride."""
         tables = [self.curve_table(name).assign(channel=name) for name in self.names]
         return pd.concat(tables, ignore_index=True)
 
@@ -179,23 +175,25 @@ class Mismatch(Saved, file="mismatch.json"):
         return {name: float(self.summary_of(name)["rms_gap"]) for name in self.names}
 
     def curve_table(self, name: str) -> pd.DataFrame:
-        """Everything over the stride of one channel, one row a percent.
+        """All curves of one channel, one row per percent of the stride.
 
         Parameters
         ----------
         name : str
-            Of the channel.
+            Name of the channel.
         """
         column = self.names.index(name)
         table = pd.DataFrame({key: self.curves[key][:, column] for key in CURVES})
         table.insert(0, "percent", PERCENT)
         table["differs"] = False
+        unit = self.channels[column].unit
+        table.attrs["units"] = {key: "1" if key == "t" else unit for key in CURVES} | {"percent": "%"}
         for row in self.regions_of(name):
             table["differs"] |= table["percent"].between(row["from_percent"], row["to_percent"])
         return table
 
     def ordered(self) -> list[str]:
-        """Names of the channels that differ, the most times the smallest difference named (the usual, if 0) first."""
+        """Names of the channels that differ, sorted by the gap in multiples of the smallest difference named."""
         differing = self.summary[self.summary["differs"].astype(bool)]
         reaches = dict(zip(self.names, np.ptp(self.curves["second"], axis=0), strict=True))
         size = {
@@ -206,12 +204,12 @@ class Mismatch(Saved, file="mismatch.json"):
         return sorted(size, key=lambda name: -size[name])
 
     def regions_of(self, name: str) -> list[dict[str, Any]]:
-        """Stretches of one channel, in order of the stride: rows of `regions`.
+        """Regions of one channel, in order of the stride: rows of `regions`.
 
         Parameters
         ----------
         name : str
-            Of the channel.
+            Name of the channel.
         """
         return _records(self.regions[self.regions["channel"] == name])
 
@@ -221,7 +219,7 @@ class Mismatch(Saved, file="mismatch.json"):
         Parameters
         ----------
         name : str
-            Of the channel.
+            Name of the channel.
         """
         return _records(self.summary[self.summary["channel"] == name])[0]
 

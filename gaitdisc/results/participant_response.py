@@ -80,14 +80,14 @@ class ParticipantResponse:
         for name, found in columns.items():
             if found != count:
                 raise ShapeError(
-                    f"a response of {count} outputs needs as many columns in {name}",
-                    f"found {found} for {self.participant}",
-                    "Give one column an output.",
+                    f"{name} of a response must have {count} columns, one per output",
+                    f"it has {found} for {self.participant}",
+                    "Give one column per output.",
                 )
         for name, curves in self.residuals.items():
             if curves.shape[1] != len(PERCENT):
                 raise ShapeError(
-                    f"residuals need {len(PERCENT)} points a stride",
+                    f"residuals must have {len(PERCENT)} points per stride",
                     f"residuals[{name}] of {self.participant} has {curves.shape[1]}",
                     "Normalise the strides to 0-100 %.",
                 )
@@ -119,8 +119,8 @@ class DataQuantity:
         missing = [column for column in QUANTITY_COLUMNS if column not in self.table.columns]
         if missing:
             raise SchemaError(
-                f"a table of R2 by length needs the columns {', '.join(QUANTITY_COLUMNS)}",
-                f"that of {self.participant} lacks {', '.join(missing)}",
+                f"a table of R2 by length must have the columns {', '.join(QUANTITY_COLUMNS)}",
+                f"the table of {self.participant} lacks {', '.join(missing)}",
                 "Compute it again with `gaitdisc ablate`.",
             )
 
@@ -163,24 +163,24 @@ QUANTITY = Kind(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ResponseRun(StudyRun):
-    """All that a report needs; nothing is fitted again to draw it.
+    """The content of a response report; drawing it needs no new fit.
 
     Parameters
     ----------
     title : str
         Title of the study.
     nominal, exo : str
-        The study's words for the two conditions; `exo` is empty where no device is compared.
+        The study's names of the two conditions; `exo` is empty if no device is compared.
     refusals : tuple of Refusal
-        Everybody and everything left out.
+        Persons and walks left out, with reasons.
     provenance : Provenance
         Settings, seed, files, versions.
     units : mapping of str to tuple
-        What was kept, by the file of its kind: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
+        Saved units, by the file of their kind: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
     unfitted : tuple of Refusal
-        Participants whose cycles are pooled and to whom no models are fitted, and why, in a study with a device.
+        In a study with a device: participants with pooled cycles but without fitted models, with reasons.
     renewed : tuple of str
-        Files of an earlier run that were found changed or unreadable, and were computed again; said once, not saved.
+        Files of an earlier run that were changed or unreadable and were computed again; not saved.
     """
 
     @property
@@ -195,12 +195,12 @@ class ResponseRun(StudyRun):
 
     @property
     def tests(self) -> PairTests | None:
-        """The models compared in pairs over the participants; None in runs of before there were tests."""
+        """Paired comparisons of the models over participants; None in runs of older versions."""
         return next(iter(self.of(TESTS)), None)
 
     @property
     def quantities(self) -> tuple[DataQuantity, ...]:
-        """What less data would have given, where `gaitdisc ablate` was run."""
+        """Results with less training data, if `gaitdisc ablate` was run."""
         return self.of(QUANTITY)
 
     @property
@@ -210,12 +210,12 @@ class ResponseRun(StudyRun):
 
     @property
     def cycles(self) -> tuple[PooledCycles, ...]:
-        """Where cycles are pooled over trials: each participant, session and condition."""
+        """Pooled cycles of each participant, session and condition."""
         return self.of(CYCLES)
 
     @property
     def reported(self) -> tuple[str, ...]:
-        """Participants of whom something is reported: models, or cycles."""
+        """Participants with reported models or cycles."""
         names = [response.participant for response in self.responses]
         return tuple(dict.fromkeys([*names, *(one.subject for one in self.cycles if len(one.kept))]))
 

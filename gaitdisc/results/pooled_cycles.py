@@ -58,38 +58,38 @@ class PooledCycles(Saved, file="cycles.json"):
     subject, group, session, condition : str
         Pseudonym; words of the study, empty where there are no groups or sessions.
     trials : int
-        Trials of which a cycle was cut, kept or not.
+        Number of trials with at least one cycle, kept or not.
     detectors : mapping of str to int
-        What found the contacts -> number of trials.
+        Detector of the contacts -> number of trials.
     contact_offset_s, foot_off_offset_s : float, optional
-        By how much contacts and foot offs of markers or angles were moved later, the median of the steps that the
-        ground or the file's events saw too [s]; None where nothing was moved.
+        Shift of contacts and foot offs from markers or angles towards later times, the median over steps that a plate
+        or the file's events also recorded [s]; None without a shift.
     offset_steps : int
-        Contacts that both saw.
+        Number of contacts that both detectors found.
     over_ground : bool
-        Whether the pelvis travels; False on a treadmill.
+        Whether the pelvis moves through the laboratory; False on a treadmill.
     channels : tuple of Channel
         Channels of `curves`.
     curves : ndarray (cycle, phase, channel) [channel's unit]
-        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN where a channel has no value, and
-        where moments or powers have no plate under the foot.
+        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN if a channel has no value, or if
+        moments and powers have no plate under the foot.
     cycles : DataFrame
-        One row a cycle, kept or left out: `CYCLE_COLUMNS`.
+        One row per cycle, kept or left out: `CYCLE_COLUMNS`.
     findings : tuple of Finding
-        Everything the reader and the quality checks saw.
+        All findings of the reader and the quality checks.
     refusals : tuple of Refusal
-        Trials that are left out as a whole, or all of them.
+        Trials that are left out entirely.
     files : mapping of str to str
         File name -> SHA-256.
     leg_m : float, optional
-        Leg length, or what goes with the stature [m]; None where nobody measured either.
+        Leg length, measured or estimated from the stature [m]; None if both are unknown.
     age_years : int, optional
         Whole years.
 
     Raises
     ------
     ShapeError
-        If the curves do not have 101 points, one column a channel, or one row a kept cycle.
+        If the curves do not have 101 points, one column per channel, and one row per kept cycle.
     """
 
     subject: str
@@ -118,8 +118,8 @@ class PooledCycles(Saved, file="cycles.json"):
         wanted = (int(self.cycles["kept"].sum()), len(PERCENT), len(self.channels))
         if np.shape(self.curves) != wanted:
             raise ShapeError(
-                f"curves of pooled cycles need the shape {wanted}: cycles kept, points, channels",
-                f"found {np.shape(self.curves)} for {self.name}",
+                f"curves of pooled cycles must have shape {wanted}: cycles, points, channels",
+                f"the shape is {np.shape(self.curves)} for {self.name}",
                 "Normalise the kept cycles with Strides.normalised.",
             )
         object.__setattr__(self, "curves", read_only(self.curves))
@@ -155,7 +155,7 @@ class PooledCycles(Saved, file="cycles.json"):
         return int((self.kept["side"] == side).sum())
 
     def to_frame(self) -> pd.DataFrame:
-        """Every cycle with its times, events and, where it is left out, why; one row each."""
+        """Every cycle with its times, events and the reason if it is left out; one row each."""
         return self.cycles
 
     def __repr__(self) -> str:
@@ -163,9 +163,9 @@ class PooledCycles(Saved, file="cycles.json"):
         return f"PooledCycles({self.subject}, {self.where}: {kept} of {cut} cycles kept, {self.trials} trials)"
 
     def mean_curves(self) -> pd.DataFrame:
-        """Mean and standard deviation over kept cycles of every channel on 101 points, by the cycles of its own foot.
+        """Mean and standard deviation of every channel on 101 points, over the kept cycles of its own foot.
 
-        Channels without a side come twice, once over the cycles of each foot.
+        Channels without a side occur twice, once for the cycles of each foot.
 
         Returns
         -------
@@ -244,8 +244,8 @@ class WalkSummary:
         wanted = (len(PERCENT), len(self.channels))
         if np.ndim(self.curves) != 3 or self.curves.shape[1:] != wanted:
             raise ShapeError(
-                f"curves of a walk need the shape (stride, {wanted[0]}, {wanted[1]})",
-                f"found {np.shape(self.curves)} for {self.subject} {self.condition}",
+                f"curves of a walk must have shape (stride, {wanted[0]}, {wanted[1]})",
+                f"the shape is {np.shape(self.curves)} for {self.subject} {self.condition}",
                 "Normalise the strides with Strides.normalised.",
             )
         object.__setattr__(self, "curves", read_only(self.curves))

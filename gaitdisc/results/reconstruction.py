@@ -29,20 +29,20 @@ MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", 
 
 @dataclass(frozen=True, eq=False)
 class Reconstruction(Saved, file="reconstruction.json"):
-    """All that a report of a reconstruction needs.
+    """The content of a reconstruction report.
 
     Parameters
     ----------
     title : str
         Of the study.
     sensors, states : tuple of Channel
-        What was read, and what was reconstructed.
+        Sensors and reconstructed states.
     split : str
-        The rule by which windows were parted, in words.
+        The rule that splits the windows, in words.
     history : str
-        Reach and density of the windows, in words.
+        Length and spacing of the windows, in words.
     models : mapping of str to str
-        Name of each model -> what it is.
+        Name of each model -> its description.
     errors : DataFrame
         participant, model, state, unit, rmse, low, high, relative_l2, r2.
     summary : DataFrame
@@ -50,13 +50,13 @@ class Reconstruction(Saved, file="reconstruction.json"):
     curves : DataFrame
         participant, model, state, percent, measured, measured_sd, reconstructed, rmse.
     refusals : tuple of Refusal
-        Who is left out, and why.
+        Persons and walks left out, with reasons.
     findings : tuple of Finding
-        What a reader must know of the recordings.
+        Findings in the recordings.
     provenance : Provenance
-        What the result rests on.
+        Settings, seed, files, versions.
     search : DataFrame, optional
-        Best set of sensors of every size, where they were searched: sensors, names, loss, rmse_deg, fits, seconds.
+        Best set of sensors of every size, after a search: sensors, names, loss, rmse_deg, fits, seconds.
     """
 
     title: str
@@ -80,17 +80,17 @@ class Reconstruction(Saved, file="reconstruction.json"):
 
     @property
     def recommended(self) -> str:
-        """Model to use: the cheapest of those whose error on the check part is within 2 % of the least.
+        """Recommended model: the cheapest whose error on the validation part is within 2 % of the smallest.
 
-        The test part has no say in it. A calibrated model is recommended by what it is without; a forecast's floors
-        are none to recommend. What `gaitdisc reconstruct` saves is of this kind, for every participant.
+        The test part is not used. A calibrated model is recommended by its error before calibration; the floors of a
+        forecast are never recommended. `gaitdisc reconstruct` saves a model of this kind for every participant.
         """
         every = self.summary.groupby("model")["check_loss"].mean()
         loss = every[[kind for kind in CHEAP_FIRST if kind in every.index]]
         return str(loss.index[np.sqrt(loss / loss.min()) <= NEAR][0])
 
     def over_participants(self) -> pd.DataFrame:
-        """Mean of each measure over participants, and its 95 % interval (Student's t, from three people); by model."""
+        """Mean of each measure over participants, and its 95 % interval (Student's t, n of 3 or more), by model."""
         return pd.DataFrame({model: _over(rows) for model, rows in self.summary.groupby("model", sort=False)}).T
 
     def over_states(self) -> pd.DataFrame:

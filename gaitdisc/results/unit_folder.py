@@ -35,7 +35,7 @@ T = TypeVar("T")
 Kind = TypeVar("Kind")
 Arrays = Mapping[str, NDArray[np.float64]]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
-AGAIN = "Run the command that wrote it again; `gaitdisc run` keeps what is whole and computes the rest anew."
+AGAIN = "Run the command that wrote it again. `gaitdisc run` keeps undamaged parts and computes the others again."
 CHANGED = "changed since it was saved (SHA-256 differs)"
 
 
@@ -110,7 +110,7 @@ def lies_on_disk(thing: object, field: str) -> bool:
 def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
     """Return the refusal of a file that is not as it was saved."""
     error = DamagedError(
-        "results need every file of their folder as it was saved", f"{path.parent.name}/{path.name} is {what}", do
+        "every file of a results folder must be as it was saved", f"{path.parent.name}/{path.name} is {what}", do
     )
     error.path, error.what = path, what
     return error
@@ -118,7 +118,7 @@ def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
 
 def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
     """Return the refusal of a file that another version of gaitdisc wrote."""
-    do = f"Another version wrote it: install that one to read it, or compute it again with {__version__}."
+    do = f"Another version wrote it. Install that version to read it, or compute it again with {__version__}."
     return damaged(path, f"of format {str(found)[:20]}, not {ours}", do)
 
 
@@ -168,9 +168,9 @@ def read_sealed(path: Path) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         raise damaged(path, f"not readable as JSON ({error})") from error
     if not isinstance(data, dict):
-        raise damaged(path, "no JSON object")
+        raise damaged(path, "not a JSON object")
     if own is None:
-        raise damaged(path, f"without a hash of its own: an older version of gaitdisc wrote it, or {OWN} was taken out")
+        raise damaged(path, f"without its own hash: an older version of gaitdisc wrote it, or {OWN} was removed")
     if found != own:
         raise damaged(path, CHANGED)
     return data
@@ -295,7 +295,7 @@ def read_json(path: Path) -> dict[str, Any]:
         raise of_another_format(path, data.get("format"), FORMAT)
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
-        raise damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
+        raise damaged(path, f"not in the expected form at {wrong.json_path}: {wrong.message[:200]}")
     return data
 
 

@@ -33,9 +33,9 @@ class Variants:
         """Check question and columns once."""
         missing = [column for column in VARIANT_COLUMNS if column not in self.table.columns]
         if missing or self.question not in QUESTIONS:
-            found = f"lacks {', '.join(missing)}" if missing else f"is of the question {self.question!r}"
+            found = f"lacks {', '.join(missing)}" if missing else f"belongs to the question {self.question!r}"
             raise SchemaError(
-                f"variants need the columns {', '.join(VARIANT_COLUMNS)} and a question: {', '.join(QUESTIONS)}",
+                f"variants must have the columns {', '.join(VARIANT_COLUMNS)} and a question: {', '.join(QUESTIONS)}",
                 f"the table of {self.participant} {found}",
                 "Compute it again: `gaitdisc modalities` or `gaitdisc sensitivity`.",
             )

@@ -58,17 +58,17 @@ class SensingModel:
         what = self.reconstructor.sensing
         if abs(recording.rate_hz / what.rate_hz - 1) > RATE_TOLERANCE:
             raise SamplingError(
-                f"the model reads its sensors at {what.rate_hz:g} Hz",
+                f"the model uses sensors at {what.rate_hz:g} Hz",
                 f"{recording.source.file or 'the recording'} has {recording.rate_hz:g} Hz",
-                "Resample the recording onto this rate.",
+                "Resample the recording to this rate.",
             )
         for channel in self.channels[: len(what.sensors)]:
             found = recording.channels[recording.index(channel.name)]
             if found.unit != channel.unit:
                 raise UnitError(
-                    f"the model reads {channel.name} in {channel.unit}",
+                    f"the model uses {channel.name} in {channel.unit}",
                     f"{recording.source.file or 'the recording'} has it in {found.unit}",
-                    "Name the unit in the study's [channels].",
+                    "State the unit in the study's [channels].",
                 )
         read = filled(recording.selected(what.sensors), what.sensors, missing, self.reconstructor.sensor_means)
         windows = windows_of(
@@ -118,7 +118,7 @@ def load_model(folder: Path) -> SensingModel:
     try:
         data = read_sealed(folder / NAME)
         if data["format"] != FORMAT:
-            raise ValueError(f"it has format {data['format']}, this version reads {FORMAT}")
+            raise ValueError(f"it has format {data['format']}; this version reads {FORMAT}")
         check_files(folder, data["sha256"])
         held = data["sensing"]
         what = Sensing(tuple(held["sensors"]), tuple(held["states"]), Lags(**held["lags"]), held["rate_hz"])
@@ -126,14 +126,14 @@ def load_model(folder: Path) -> SensingModel:
         half, kind = np.array(data["half_widths"], float), data["kind"]
         numbers = data["n_fitted"], data["seconds"], data["device"]
         if kind not in (*KINDS, *ON_REQUEST):
-            raise ValueError(f"it is a {kind!r}, which this version does not know")
+            raise ValueError(f"its kind {kind!r} is unknown to this version")
         if tuple(channel.name for channel in channels) != (*what.sensors, *what.states):
-            raise ValueError("its channels are others than its sensors and states")
+            raise ValueError("its channels differ from its sensors and states")
         if half.shape != (len(what.states),):
-            raise ValueError(f"it has {half.size} half widths for {len(what.states)} states")
+            raise ValueError(f"it has {half.size} interval half-widths for {len(what.states)} states")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise SchemaError(
-            f"{folder.name}/{NAME} is to be read as a model of gaitdisc",
+            f"{folder.name}/{NAME} must be a model saved by gaitdisc",
             f"it lacks {error}" if isinstance(error, KeyError) else _said(error),
             "Run `gaitdisc reconstruct` again.",
         ) from error
@@ -141,10 +141,10 @@ def load_model(folder: Path) -> SensingModel:
     readings = 1 if kind in STATIC else what.lags.count
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
         raise SchemaError(
-            f"{folder.name}/{WEIGHTS} is to be read with {folder.name}/{NAME}",
-            f"the weights read {len(weights.inputs)} numbers and estimate {', '.join(weights.outputs[:3])}, "
-            f"the model has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
-            "Both files belong to one model: copy them together, or run `gaitdisc reconstruct` again.",
+            f"{folder.name}/{WEIGHTS} must match {folder.name}/{NAME}",
+            f"the weights use {len(weights.inputs)} numbers and estimate {', '.join(weights.outputs[:3])}; the model "
+            f"has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
+            "Both files must come from one model. Copy them together, or run `gaitdisc reconstruct` again.",
         )
     return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
 
@@ -193,9 +193,9 @@ class Stream:
         new = real_array(reading)
         if new.shape != (len(self._sensors),):
             raise ShapeError(
-                f"a reading needs one value for each of {', '.join(self._sensors)}",
-                f"found an array of shape {new.shape}",
-                "Give them in this order, NaN where a sensor dropped out.",
+                f"a sample must have one value for each of {', '.join(self._sensors)}",
+                f"the array has shape {new.shape}",
+                "Give the values in this order, with NaN for a missing sensor.",
             )
         if self._missing != "none":
             new = np.where(np.isfinite(new), new, self._stands)

@@ -66,9 +66,7 @@ def _onnx() -> tuple[Any, Any]:
         from onnx import checker, helper
     except ImportError as error:
         raise SchemaError(
-            "a model is written as ONNX by the package onnx",
-            "it is not installed",
-            "Install it: pip install 'gaitdisc[onnx]'.",
+            "ONNX export requires the package onnx", "it is not installed", "Install it: pip install 'gaitdisc[onnx]'."
         ) from error
     return helper, checker
 

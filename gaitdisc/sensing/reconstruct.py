@@ -32,8 +32,8 @@ from gaitdisc.statistics.r2 import r2
 
 PERSISTENCE, PHASE_AVERAGE = FLOORS
 BASELINES = {
-    PERSISTENCE: "all states as they were when the forecast was made: measured, not reconstructed from the sensors",
-    PHASE_AVERAGE: "the mean stride of the fitted part, at the phase that the time since the last contact leads to",
+    PERSISTENCE: "all states as measured at the time of the forecast, not reconstructed from the sensors",
+    PHASE_AVERAGE: "the mean stride of the training part, at the phase given by the time since the last contact",
 }
 POINTS, LEAST_FILLED = 100, 0.5
 
@@ -95,9 +95,9 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
     filled = counts > 0
     if not len(durations) or filled.mean() < LEAST_FILLED:
         raise StrideError(
-            "the mean stride needs strides in the fitted part",
-            f"it has {len(durations)} and {int((counts == 0).sum())} of {POINTS} percents without a sample",
-            "Record longer, or reconstruct the present (ahead 0).",
+            "the mean stride needs strides in the training part",
+            f"it has {len(durations)}, and {int((counts == 0).sum())} of {POINTS} percent values have no sample",
+            "Record longer, or reconstruct the present state (ahead 0).",
         )
     sums = np.zeros((POINTS, y.shape[1]))
     np.add.at(sums, place, y[known])
@@ -155,11 +155,7 @@ class PersonReconstruction:
 
 
 def reconstruct(
-    participant: str,
-    parts: Parts,
-    what: Sensing,
-    channels: Sequence[Channel],
-    fits: Fits | None = None,
+    participant: str, parts: Parts, what: Sensing, channels: Sequence[Channel], fits: Fits | None = None
 ) -> PersonReconstruction:
     """Fit and test every kind of model, a forecast beside its two baselines; channels: sensors, then states."""
     fits = fits or Fits()

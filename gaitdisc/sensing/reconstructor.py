@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 FEATURES = 1000
 MOST_FITTED = 20_000  # windows; beyond it every k-th is fitted
 KINDS = {
-    "linear": "ridge regression on the present readings",
-    "shallow decoder": "two hidden layers on the present readings (SDN)",
-    "delay ridge": "ridge regression on the readings and their history",
-    "fourier ridge": f"ridge regression on {FEATURES} random Fourier features of the readings and their history",
-    "shred": "recurrent network on the readings and their history, shallow decoder (SHRED)",
+    "linear": "ridge regression on the current samples",
+    "shallow decoder": "two hidden layers on the current samples (SDN)",
+    "delay ridge": "ridge regression on the samples and their history",
+    "fourier ridge": f"ridge regression on {FEATURES} random Fourier features of the samples and their history",
+    "shred": "recurrent network on the samples and their history, shallow decoder (SHRED)",
 }
 MASKED = "masked shred"
 ENSEMBLE, MEMBERS = "shred ensemble", 5
 OF_TEXT, TEXT_STEPS, TEXT_PATIENCE = "shred-text", 4000, 1600  # steps of 64 windows; patience is 100 epochs of 1,000
 ON_REQUEST = {
-    MASKED: "SHRED that is given which readings are missing, fitted with a part of them hidden",
-    ENSEMBLE: f"mean of SHRED from {MEMBERS} seeds",
-    OF_TEXT: "SHRED as the dissertation's code has it: two LSTM layers of 64, decoder 350-400, Adam at a rate of 0.001",
+    MASKED: "SHRED with a mask of missing samples, trained with some of them hidden",
+    ENSEMBLE: f"mean of {MEMBERS} SHRED networks with different seeds",
+    OF_TEXT: "SHRED as in the dissertation's code: two LSTM layers of 64, decoder 350-400, Adam at a rate of 0.001",
 }
 STATIC = ("linear", "shallow decoder")
 WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")  # cheap: fitted many times where that is wanted
@@ -80,15 +80,15 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
     states = all_states if lags.ahead else tuple(name for name in all_states if name not in sensors)
     if not sensors or len(set(sensors)) < len(sensors):
         raise ChannelError(
-            "reconstruction needs sensors, each once",
+            "reconstruction needs at least one sensor, each listed once",
             f"found {', '.join(sensors) or 'none'}",
             "Name channels of the recording with --sensors.",
         )
     if not states:
         raise ChannelError(
-            "reconstruction needs a state that no sensor measures",
-            f"{', '.join(all_states)}: all of them are sensors",
-            "Take a sensor away, or record more channels.",
+            "reconstruction needs at least one state that no sensor measures",
+            f"{', '.join(all_states)} are all sensors",
+            "Remove a sensor, or record more channels.",
         )
     return Sensing(sensors, states, lags, rate_hz)
 
@@ -138,7 +138,7 @@ def fit_reconstructor(
     """
     if kind not in (*KINDS, *ON_REQUEST):
         known = ", ".join((*KINDS, *ON_REQUEST))
-        raise SchemaError("a reconstruction needs a kind of model", f"{kind!r} is none", f"Use: {known}.")
+        raise SchemaError("the kind of model is unknown", f"{kind!r} does not exist", f"Use: {known}.")
     device = fitting_device((kind,), device)
     fit = _fit_of(kind, len(what.sensors), seed, device)
     training, check = thinned(training, MOST_FITTED), thinned(check, MOST_FITTED)
@@ -200,8 +200,8 @@ def latent_states(done: Reconstructor, windows: Samples) -> NDArray[np.float64]:
     model = done.model
     if not isinstance(model, TrainedNetwork) or not isinstance(model.network, Shred):
         raise TrainingError(
-            "a latent state is that of one recurrent network",
-            f"the model is {done.kind!r}, which has none",
+            "only a model with one recurrent network has a latent state",
+            f"the model is {done.kind!r}",
             "Fit 'shred', 'masked shred' or 'shred-text'.",
         )
     return model.latent(windows.x)

@@ -39,8 +39,8 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
     if most < 1 or len(channels) < 2:
         raise ChannelError(
             "a search needs at least one sensor, and two channels to choose from",
-            f"{most} are requested, among {len(channels)} channels",
-            "Give --search 1 or more, and recordings with more channels.",
+            f"{most} sensors are requested, from {len(channels)} channels",
+            "Use --search 1 or more, and recordings with more channels.",
         )
     begun = time.process_time()
     angles = angle_columns(channels)

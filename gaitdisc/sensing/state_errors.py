@@ -162,9 +162,9 @@ def half_widths(errors: NDArray[np.float64], level: float = INTERVAL_LEVEL) -> N
     if int(np.ceil((n + 1) * level - 1e-9)) > n:
         least = int(np.ceil(level / (1 - level) - 1e-9))
         raise SamplingError(
-            f"an interval of {100 * level:g} % needs at least {least} checked windows",
+            f"an interval of {100 * level:g} % needs at least {least} validation windows",
             f"there are {n}",
-            "Record longer, or take a lower level.",
+            "Record longer, or use a lower level.",
         )
     ranks = np.ceil(n * level * (1 + 1 / effective_number(errors)) - 1e-9).astype(int)
     return sizes[np.minimum(ranks, n) - 1, np.arange(sizes.shape[1])]

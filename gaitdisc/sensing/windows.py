@@ -18,9 +18,9 @@ PERSON_OUT = "leave one person out"
 SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
 RANDOM = "random (leaks)"
 RULES = {
-    "temporal": "each trial: first 70 % fitted, next 10 % checked, last 20 % tested; no window crosses a border",
-    "blocked": "each trial in ten blocks: seven fitted, one checked, two tested; no window crosses a border",
-    RANDOM: "windows drawn at random: neighbours of every test window were fitted, so the error is far too small",
+    "temporal": "each trial: first 70 % training, next 10 % validation, last 20 % test; no window crosses a border",
+    "blocked": "each trial in ten blocks: seven training, one validation, two test; no window crosses a border",
+    RANDOM: "windows drawn at random: neighbours of test windows are in the training part; the error is far too small",
 }
 
 
@@ -37,8 +37,9 @@ class Lags:
         """Refuse a window without a reading."""
         if self.count < 1 or self.spacing < 1 or self.ahead < 0:
             raise ShapeError(
-                "a window needs at least one reading, lags at least one sample apart, and a state that is not past",
-                f"found {self.count} readings, {self.spacing} samples apart, {self.ahead} ahead",
+                "a window needs at least one sample, lags at least one sample apart, and a state that is not in the "
+                "past",
+                f"it has {self.count} samples, {self.spacing} samples apart, {self.ahead} ahead",
                 "Correct the lags.",
             )
 
@@ -80,9 +81,9 @@ def windows_of(
     if len(read) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead / recording.rate_hz:.2f} s ahead" if lags.ahead else ""
         raise SamplingError(
-            f"a window reaches back {lags.reach / recording.rate_hz:.2f} s{forth}",
+            f"a window extends back {lags.reach / recording.rate_hz:.2f} s{forth}",
             f"{recording.source.file or 'the recording'} lasts {recording.duration_s:.2f} s",
-            "Take fewer lags, or a longer trial.",
+            "Use fewer lags, or a longer trial.",
         )
     last = np.arange(lags.reach, len(read) - lags.ahead)
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
@@ -133,8 +134,9 @@ class Parts:
             if not any(len(each) for each in getattr(self, name)):
                 raise SamplingError(
                     f"the split {self.rule!r} needs windows in all three parts",
-                    f"none is left for {name}: the trials are too short for their windows and the gaps between parts",
-                    "Take a shorter history, or longer trials.",
+                    f"none remains for {name}: the trials are too short for their windows and the gaps between the "
+                    "parts",
+                    "Use a shorter history, or longer trials.",
                 )
 
     def fitted(self) -> Samples:
@@ -164,7 +166,7 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
     ([0.0, 42.0], [43.3, 48.0])
     """
     if rule not in RULES:
-        raise SchemaError("a split needs a rule", f"{rule!r} is none", f"Use one of: {', '.join(RULES)}.")
+        raise SchemaError("the split rule is unknown", f"{rule!r} does not exist", f"Use one of: {', '.join(RULES)}.")
     rng = np.random.default_rng(seed)
     labels = [_labels(each, rule, reach_s, rng) for each in trials]
     training, check, test = (_chosen(trials, labels, part) for part in (TRAINING, CHECK, TEST))
@@ -175,9 +177,9 @@ def split_by_subject(people: Sequence[Sequence[Samples]], tested: int) -> Parts:
     """Leave one person out of at least three; models are chosen by the next one in the list, fitted to all others."""
     if len(people) < 3:
         raise SamplingError(
-            "a model of a population needs at least three people: to fit, to check, and to test",
+            "a population model needs at least three people: for training, validation and testing",
             f"there are {len(people)}",
-            "Add participants, or fit each of them alone.",
+            "Add participants, or fit each participant separately.",
         )
     checked = (tested + 1) % len(people)
     fitted = [trial for k, trials in enumerate(people) if k not in (tested, checked) for trial in trials]
@@ -222,9 +224,9 @@ def _chosen(trials: Sequence[Samples], labels: Sequence[NDArray[np.int_]], part:
 
 
 WAYS = {
-    "none": "a window that lacks a reading is left out",
-    "mean": "the sensor's mean in the training part stands for a reading that is missing",
-    "last": "the sensor's last known reading stands for one that is missing",
+    "none": "windows with a missing sample are excluded",
+    "mean": "missing samples are replaced by the sensor's mean in the training part",
+    "last": "missing samples are replaced by the sensor's last known sample",
 }
 MOST_MISSING = 0.6  # of a window's readings, in training
 RUNS = (1, 3, 10)  # readings that go missing in a row, on average
@@ -282,7 +284,7 @@ def refuse_unknown_way(way: str) -> None:
     """Refuse what is no way to deal with missing readings."""
     if way not in WAYS:
         raise SchemaError(
-            "missing readings are dealt with in one of three ways", f"{way!r} is none", "Use none, mean or last."
+            "the treatment of missing samples is unknown", f"{way!r} does not exist", "Use none, mean or last."
         )
 
 

@@ -88,9 +88,9 @@ def short_run_findings(
                     "warning",
                     "short run",
                     recording.source.file,
-                    f"{len(runs(short))} stretch(es) between gaps shorter than {need} samples "
+                    f"{len(runs(short))} segment(s) between gaps shorter than {need} samples "
                     f"({need / recording.rate_hz:.3f} s)",
-                    f"themselves: a filter of {cutoff_hz:g} Hz needs {need} samples, so they are left out",
+                    f"these segments: a filter of {cutoff_hz:g} Hz needs {need} samples; they are excluded",
                     channel.name,
                     spans_s(recording.time, short),
                 )
@@ -101,23 +101,23 @@ def short_run_findings(
 def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max_gap_s: float) -> Recording:
     if not isinstance(cutoff_hz, int | float | np.number):
         raise SamplingError(
-            f"a {kind} filter has one cut-off [Hz], a number",
+            f"the cut-off of a {kind} filter must be one number [Hz]",
             f"found {cutoff_hz!r}",
-            "Filter twice, highpass and then lowpass, for a band.",
+            "Filter twice for a band: first highpass, then lowpass.",
         )
     rate = recording.rate_hz
     file = recording.source.file or "the recording"
     need = needed_samples(cutoff_hz, rate, order) if cutoff_hz > 0 and rate > 0 else 2
     if len(recording.time) < need:
         raise SamplingError(
-            f"a {kind} filter of {cutoff_hz:g} Hz needs {need} samples or more",
+            f"a {kind} filter of {cutoff_hz:g} Hz needs at least {need} samples",
             f"{file} has {len(recording.time)}",
             "Record longer, or choose a higher cut-off.",
         )
     if not 0.0 < cutoff_hz < rate / 2:
         raise SamplingError(
-            f"a {kind} cut-off must lie between 0 Hz and half the rate, {rate / 2:g} Hz",
-            f"{cutoff_hz:g} Hz is requested and {file} has {rate:g} samples a second",
+            f"the cut-off of a {kind} filter must lie between 0 Hz and half the rate, {rate / 2:g} Hz",
+            f"the requested cut-off is {cutoff_hz:g} Hz and {file} has {rate:g} samples per second",
             "Lower the cut-off in [filters], or export the raw signal at its full rate.",
         )
     sections = np.asarray(butter(order, cutoff_hz, kind, fs=rate, output="sos"))

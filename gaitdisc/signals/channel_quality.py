@@ -60,16 +60,13 @@ def channel_findings(recording: Recording) -> list[Finding]:
                     "flat",
                     recording.source.file,
                     f"{np.nanmax(x):.4g} {channel.unit} throughout",
-                    "the channel as something to predict: a locked coordinate, or nothing was measured",
+                    "the channel as an output: the coordinate is locked, or nothing was measured",
                     channel.name,
                 )
             )
             continue
         rests = channel.quantity in REST_QUANTITIES
-        for kind, marks in (
-            ("clipped", clipped(x, rests)),
-            ("jump", np.zeros(len(x), bool) if rests else jumping(x)),
-        ):
+        for kind, marks in (("clipped", clipped(x, rests)), ("jump", np.zeros(len(x), bool) if rests else jumping(x))):
             if marks.any():
                 findings.append(_finding(recording, column, kind, marks))
     return findings
@@ -122,18 +119,12 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
     stops = " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))
     words = {
         "clipped": (f"stops at {stops} {channel.unit}", "the peaks, which are lost"),
-        "jump": ("leaps from one sample to the next", "velocity and acceleration there"),
+        "jump": ("jumps from one sample to the next", "velocity and acceleration there"),
     }
     what, spoils = words[kind]
     where = f"in {places} place{'s' if places > 1 else ''}, {seconds:.2f} s in all"
     return Finding(
-        "warning",
-        kind,
-        recording.source.file,
-        f"{what}, {where}",
-        spoils,
-        channel.name,
-        spans_s(recording.time, marks),
+        "warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans_s(recording.time, marks)
     )
 
 
@@ -177,7 +168,7 @@ def drift_findings(forces: Recording) -> list[Finding]:
         baseline = swing_baseline(forces[channel.name], forces.rate_hz)
         if len(baseline) < FEWEST_SWINGS:
             if len(baseline):
-                what = f"{len(baseline)} unloaded phases between steps where {FEWEST_SWINGS} are needed to see a drift"
+                what = f"{len(baseline)} unloaded phases between steps; {FEWEST_SWINGS} are needed to detect a drift"
                 findings.append(Finding("note", "force drift", forces.source.file, what, "", channel.name))
             continue
         time = forces.time[0] + baseline[:, 0] / forces.rate_hz
@@ -186,16 +177,16 @@ def drift_findings(forces: Recording) -> list[Finding]:
         drifts = abs(drift) > DRIFT_N and low * high > 0
         if not drifts and abs(offset) <= OFFSET_N:
             continue
-        what = f"rests at {offset:+.1f} N (median of {len(baseline)} swings)"
+        what = f"reads {offset:+.1f} N when unloaded (median of {len(baseline)} swings)"
         if drifts:
-            what += f" and drifts by {drift:+.1f} N in {time[-1] - time[0]:.0f} s ({60 * slope:+.1f} N a minute)"
+            what += f" and drifts by {drift:+.1f} N in {time[-1] - time[0]:.0f} s ({60 * slope:+.1f} N per minute)"
         findings.append(
             Finding(
                 "warning",
                 "force drift",
                 forces.source.file,
                 what,
-                f"contacts near the threshold of {RISE_N:g} N, and moments: subtract the baseline",
+                f"contacts near the threshold of {RISE_N:g} N, and moments; subtract the baseline",
                 channel.name,
                 ((float(time[0]), float(time[-1])),),
             )

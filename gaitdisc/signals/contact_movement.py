@@ -60,9 +60,9 @@ def marker_contacts(
         swing = float(np.subtract(*np.nanpercentile(ahead, [95, 5]))) if np.isfinite(ahead).any() else 0.0
         if swing < 0.1:
             raise StrideError(
-                f"contacts from markers need heel {heel} to swing 0.1 m or more about the pelvis",
-                f"{markers.source.file or 'the recording'}: {swing:.3f} m along the direction of walking",
-                "Check the direction, the marker's name and that the trial is walking.",
+                f"heel marker {heel} must swing by at least 0.1 m relative to the pelvis to show contacts",
+                f"{markers.source.file or 'the recording'}: it swings by {swing:.3f} m along the direction of walking",
+                "Check the direction, the marker's name and whether the trial is walking.",
             )
         step = (markers.time[-1] - markers.time[0]) / (len(markers.time) - 1)
         known = np.where(np.isfinite(ahead), ahead, -np.inf)
@@ -125,18 +125,18 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
         name = f"hip_flexion_{side}"
         if name not in kinematics.names:
             raise ChannelError(
-                "contacts from angles need the hip's flexion",
-                f"{kinematics.source.file or 'the recording'} has {len(kinematics.names)} channels, no {name!r}",
+                "contacts from angles need hip flexion",
+                f"{kinematics.source.file or 'the recording'} has {len(kinematics.names)} channels, but not {name!r}",
                 "Map the column in the study's [channels], or choose another detector.",
             )
         peaks, period = _cycles(kinematics, name)
         knee = f"knee_angle_{side}"
         if knee in kinematics.names:
             times = _terminal_extensions(kinematics, knee, peaks, period)
-            note = "end of the knee's extension in late swing, at about 97 % of the stride that a plate would see"
+            note = "end of knee extension in late swing, about 97 % of the stride as a force plate would detect it"
         else:
             times = _hip_peaks(kinematics, name, peaks, period)
-            note = "hip flexion peak, at about 86 % of the stride that a plate would see"
+            note = "peak hip flexion, about 86 % of the stride as a force plate would detect it"
         found[side] = Contacts(np.unique(times), side, "angles", note=note)
     return found
 
@@ -149,9 +149,10 @@ def _cycles(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], floa
     reach = float(np.subtract(*np.percentile(known, [95, 5]))) if len(known) else 0.0
     if not np.isfinite(period) or reach < FEWEST_HIP_DEG:
         raise StrideError(
-            f"strides from angles need a hip that swings {FEWEST_HIP_DEG:g} deg or more and repeats",
-            f"{hip.source.file or 'the recording'}, {name}: {reach:.1f} deg, regularity {regularity:.2f}",
-            "Check that the trial is walking and that the angle is in deg.",
+            f"strides from angles need a hip that swings by at least {FEWEST_HIP_DEG:g} deg and repeats",
+            f"{hip.source.file or 'the recording'}, {name}: the range is {reach:.1f} deg, the regularity "
+            f"{regularity:.2f}",
+            "Check whether the trial is walking and whether the angle is in deg.",
         )
     slow = lowpassed(hip, CYCLE_CUTOFF / period).values[:, 0]
     slow_reach = float(np.subtract(*np.nanpercentile(slow, [95, 5])))

@@ -38,14 +38,14 @@ class Contacts:
     detector : str
         `force`, `markers`, `angles`, `events` or `oscillator`.
     foot_off : ndarray (foot off,) [s]
-        Where the detector sees them too; empty otherwise.
+        Times of foot off if the detector finds them, otherwise empty.
     note : str
-        What was inferred rather than given, and what the times stand for.
+        Inferred settings, and the meaning of the times.
 
     Raises
     ------
     StrideError
-        If the times do not increase, or side or detector is none of the agreed words.
+        If the times do not increase, or the side or detector is unknown.
 
     Examples
     --------
@@ -64,14 +64,14 @@ class Contacts:
         time = read_only(self.time)
         if self.side not in ("r", "l") or self.detector not in DETECTORS:
             raise StrideError(
-                "contacts need side 'r' or 'l' and a known detector",
-                f"found side {self.side!r}, detector {self.detector!r}",
-                f"Detectors are {', '.join(DETECTORS)}.",
+                "contacts must have side 'r' or 'l' and a known detector",
+                f"the side is {self.side!r}, the detector {self.detector!r}",
+                f"The detectors are {', '.join(DETECTORS)}.",
             )
         if time.ndim != 1 or np.any(np.diff(time) <= 0) or not np.isfinite(time).all():
             raise StrideError(
-                "initial contacts need increasing times",
-                f"side {self.side!r}, detector {self.detector}: shape {time.shape}, out of order or missing",
+                "the times of initial contacts must increase",
+                f"side {self.side!r}, detector {self.detector}: shape {time.shape}; times are missing or out of order",
                 "Sort the events of the file, or choose another detector.",
             )
         object.__setattr__(self, "time", time)
@@ -85,26 +85,26 @@ class Contacts:
         return f"Contacts({len(self)} of side {self.side!r} by {self.detector}{span})"
 
     def compared(self, other: Contacts, within_s: float = MATCH_S) -> Agreement:
-        """Match these contacts with those of another detector, nearest to nearest.
+        """Match these contacts with the nearest ones of another detector.
 
         Parameters
         ----------
         other : Contacts
-            Of the same foot in the same walk.
+            Contacts of the same foot in the same walk.
         within_s : float
-            Farther apart is no pair [s].
+            Largest difference within a pair [s].
 
         Returns
         -------
         Agreement
-            `difference_s`, other minus these, of each pair; `missed` and `extra` [s]. Contacts before the first or
-            after the last of the other detector (by more than `within_s`) count as neither: a plate sees two steps of
-            a walk.
+            `difference_s` of each pair (other minus these); `missed` and `extra` [s]. Contacts more than `within_s`
+            before the first or after the last of the other detector are ignored, because a plate records only two steps
+            of a walk.
 
         Raises
         ------
         StrideError
-            If the two are of different feet.
+            If the contacts belong to different feet.
 
         Examples
         --------
@@ -115,9 +115,9 @@ class Contacts:
         """
         if self.side != other.side:
             raise StrideError(
-                "contacts to compare need one foot",
-                f"found {self.detector} of side {self.side!r} and {other.detector} of side {other.side!r}",
-                "Compare right with right, left with left.",
+                "contacts can be compared for one foot only",
+                f"these are {self.detector} of side {self.side!r} and {other.detector} of side {other.side!r}",
+                "Compare right with right and left with left.",
             )
         if not len(self) or not len(other):
             return Agreement(np.empty(0), np.empty(0), np.empty(0))
@@ -210,7 +210,7 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
     if not any(event.side in ("r", "l") for event in contacts):
         seen = f"{len(contacts)} of them, without a side" if contacts else f"none among {len(trial.events)} events"
         raise StrideError(
-            "strides from events need initial contacts with their foot",
+            "events must name the foot of each initial contact",
             f"{trial.name} has {seen}",
             "Label them in the motion capture software, or choose another detector in [strides].",
         )
@@ -220,7 +220,7 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
         offs = np.unique([event.time for event in trial.events if event.label == OFF and event.side == side])
         lost = sum(event.side == "" for event in contacts)
         if len(times):
-            note = "events of the file" + (f"; {lost} contacts without a side left out" if lost else "")
+            note = "events of the file" + (f"; {lost} contacts without a side are excluded" if lost else "")
             found[side] = Contacts(times, side, "events", offs, note)
     return found
 
@@ -280,9 +280,9 @@ def force_contacts(
         sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
     if not sides:
         raise ChannelError(
-            "contacts from force need a vertical force for a foot",
+            "contacts from force need a vertical force for each foot",
             f"{forces.source.file or 'the recording'} has {', '.join(forces.names) or 'no channel'}",
-            "Say which plate or belt is which foot in [strides], or give markers so that it can be found.",
+            "Assign a foot to each plate or belt in [strides], or provide markers, from which it can be determined.",
         )
     found = {}
     for side in sorted(set(sides.values())):
@@ -330,9 +330,9 @@ def plate_contacts(
                     place[side] = -across
             if not np.isfinite(list(place.values())).all() or len(place) < 2:
                 raise StrideError(
-                    "identifying the foot on a plate needs both heel markers at contact",
-                    f"{forces.source.file}, {channel.name}: contact at {time:.3f} s, heel missing there",
-                    "Fill the marker, or say which plate is which foot.",
+                    "both heel markers must be visible at contact to identify the foot on a plate",
+                    f"{forces.source.file}, {channel.name}: a heel marker is missing at the contact at {time:.3f} s",
+                    "Fill the gap in the marker, or assign a foot to each plate.",
                 )
             side = max(place, key=lambda key: place[key])
             times[side].append(float(time))
@@ -352,7 +352,7 @@ def _contacts(
     spans = loaded(upward, forces.rate_hz, rise)
     on = np.array([_crossing(time, upward, start, rise) for start, _ in spans if start > 0])
     off = np.array([time[end - 1] for _, end in spans if end < len(time)])
-    sign = ", negative when loaded, taken as force on the plate" if downwards else ""
+    sign = ", negative when loaded: read as the force on the plate" if downwards else ""
     return on, off, f"{name} above {rise:.0f} N{sign}"
 
 

@@ -38,10 +38,10 @@ def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) 
     array([nan, nan,  2.,  2.,  2., nan, nan])
     """
     if order not in (1, 2):
-        raise SamplingError("a derivative is the first or the second", f"order is {order}", "Give order=1 or order=2.")
+        raise SamplingError("the order of a derivative must be 1 or 2", f"order is {order}", "Use order=1 or order=2.")
     if len(values) < len(FIRST):
         raise SamplingError(
-            f"a derivative needs {len(FIRST)} samples", f"found {len(values)}", "Record longer, or select more time."
+            f"a derivative needs at least {len(FIRST)} samples", f"found {len(values)}", "Use a longer period."
         )
     weights = FIRST if order == 1 else SECOND
     count = len(values) - 2 * REACH

@@ -51,7 +51,7 @@ def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> NDArray[np.flo
     """
     if not pelvis:
         raise ChannelError(
-            "a pelvis marker is needed", "none is named", "Name the markers of the pelvis, such as RASI, LASI."
+            "at least one pelvis marker is required", "none is named", "Name the pelvis markers, such as RASI and LASI."
         )
     return np.mean([marker_position(markers, name) for name in pelvis], axis=0)
 
@@ -71,8 +71,9 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     if not np.isfinite(np.concatenate(swings)).all(axis=1).any():
         raise StrideError(
             "the direction of walking needs a frame with a heel and the pelvis",
-            f"{markers.source.file or 'the recording'}: none has {', '.join(heels.values())} and {', '.join(pelvis)}",
-            "Fill the markers, or choose another detector in [strides].",
+            f"{markers.source.file or 'the recording'}: no frame has {', '.join(heels.values())} and "
+            f"{', '.join(pelvis)}",
+            "Fill the gaps in the markers, or choose another detector in [strides].",
         )
     up_axis = int(np.argmax(np.abs(np.nanmean(np.concatenate(swings), axis=0))))
     up = np.zeros(3)
@@ -123,7 +124,7 @@ def _from_swings(
     skew = float(np.mean((velocity - velocity.mean()) ** 3) / velocity.std() ** 3)
     if abs(skew) < FEWEST_SKEW:
         raise StrideError(
-            f"forwards is where the heels move fastest: a skewness of {FEWEST_SKEW:g} or more",
+            f"the direction of walking is where the heels move fastest, with a skewness of at least {FEWEST_SKEW:g}",
             f"{file or 'the recording'} has {skew:+.2f}",
             "Give the direction of walking in the study's [strides].",
         )
@@ -147,8 +148,8 @@ def given_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1
     lengths = np.linalg.norm(along), np.linalg.norm(above)
     if min(lengths) == 0 or abs(along @ above) > 0.1 * lengths[0] * lengths[1]:
         raise StrideError(
-            "forwards and upwards need to be at right angles and not zero",
-            f"found forward {tuple(forward)}, up {tuple(up)}",
-            "Correct them in the study's [strides].",
+            "the forward and upward directions must be perpendicular and not zero",
+            f"forward is {tuple(forward)}, up is {tuple(up)}",
+            "Correct the directions in the study's [strides].",
         )
     return Direction(along / lengths[0] + 0.0, above / lengths[1] + 0.0, "given")

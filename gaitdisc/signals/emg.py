@@ -55,15 +55,15 @@ def enveloped(
     for channel in emg.channels:
         if channel.quantity != "emg":
             raise ChannelError(
-                "an envelope is made of raw EMG",
-                f"{file} gives {channel.name!r}, which is {channel.quantity}",
+                "an EMG envelope must be computed from raw EMG",
+                f"{file}: {channel.name!r} is {channel.quantity}",
                 "Select the EMG channels, or name the muscle in the study's [channels].",
             )
     if emg.rate_hz <= 2 * highpass_hz:
         raise SamplingError(
-            f"an EMG high-pass of {highpass_hz:g} Hz needs a rate above {2 * highpass_hz:g} samples a second",
+            f"an EMG high-pass of {highpass_hz:g} Hz needs a rate above {2 * highpass_hz:g} samples per second",
             f"{file} has {emg.rate_hz:g}",
-            "Give the raw EMG at its full rate (1000 Hz is usual); if it is an envelope already, say so in [emg].",
+            "Export the raw EMG at its full rate (usually 1000 Hz). If it is an envelope already, state this in [emg].",
         )
     _check_raw(emg, file)
     fast = highpassed(emg, highpass_hz, order)
@@ -77,10 +77,10 @@ def _check_raw(emg: Recording, file: str) -> None:
         x = x[np.isfinite(x)]
         if len(x) > 100 and x.min() >= 0 and x.std() > 0 and np.median(x) > 0:
             raise SamplingError(
-                "an envelope is made of raw EMG, which swings about zero",
+                "raw EMG must oscillate about zero",
                 f"{file}, {channel.name}: all {len(x)} samples lie between {x.min():.3g} and {x.max():.3g} "
                 f"{channel.unit}, none below zero",
-                "It is rectified or an envelope already: say so in [emg], or export the raw signal.",
+                "The signal is rectified or an envelope. State this in [emg], or export the raw signal.",
             )
 
 
@@ -106,7 +106,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     >>> from gaitdisc.channel import Channel
     >>> clipped = np.clip(np.random.default_rng(0).normal(size=(999, 1)), -1.25, 1.25)
     >>> amplifier_range(Recording(np.arange(999) / 1000, clipped, (Channel("emg_sol_r", "emg", "V", "r"),))).how
-    'the largest value, met 199 times'
+    'the largest value, reached 199 times'
     """
     if given_v is not None:
         return AmplifierRange(given_v, "given")
@@ -118,12 +118,12 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     met = int((values > top * (1 - 1e-6)).sum(axis=0).max())
     below = int(((values > 0.95 * top) & (values <= top * (1 - 1e-6))).sum(axis=0).max())
     if met >= FEWEST_AT_RAIL and met > below / 10:  # a rail piles up; the largest value of noise does not
-        return AmplifierRange(top, f"the largest value, met {met} times")
+        return AmplifierRange(top, f"the largest value, reached {met} times")
     steps = [step for column in emg.values.T if (step := _quantisation_step(column)) is not None]
     if steps and STEPS * (step := float(np.median(steps))) >= top:
         return AmplifierRange(STEPS * step, f"the quantisation step of {step:.3g} V")
     usual = next((v for v in USUAL_RANGES_V if v >= top), top)
-    return AmplifierRange(usual, f"the smallest usual range that holds the largest value, {top:.3g} V", False)
+    return AmplifierRange(usual, f"the smallest usual range that contains the largest value, {top:.3g} V", False)
 
 
 def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
@@ -163,24 +163,30 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         silent = 1.4826 * float(np.median(np.abs(known - np.median(known)))) / limit.volts
         if clipped and silent < SILENT_SHARE <= share:
             kind, severity = "dead", "refused"
-            what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}, and no more than its noise "
-            what += f"between (robust standard deviation {1e3 * silent * limit.volts:.3g} mV)"
+            what = (
+                f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}; between them is only "
+                "noise "
+            )
+            what += f"(robust standard deviation {1e3 * silent * limit.volts:.3g} mV)"
         elif share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
             limit_share = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
             bursts = "" if share < DEAD_SHARE else " or bursts"
             kind, severity = "dead", "refused"
-            what = f"{size} {rail}; a live channel has {100 * limit_share:g} % or more{bursts}"
+            what = f"{size} {rail}; a connected channel has at least {100 * limit_share:g} %{bursts}"
         elif share > UNPLUGGED_SHARE:
-            kind, severity, what = "unplugged", "refused", f"{size} {rail}; no muscle gives more than 50 %"
+            kind, severity, what = "unplugged", "refused", f"{size} {rail}; no muscle exceeds 50 %"
         elif at_rail.mean() >= RAILS_SHARE and burst_ratio(x, emg.rate_hz) < FLAT_BURST:
             kind, severity = "unplugged", "refused"
-            what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}; no bursts between"
+            what = (
+                f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}, without bursts "
+                "between them"
+            )
         elif clipped:
             kind, severity = "clipped", "warning"
-            what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}"
+            what = f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}"
         else:
             continue
-        spoils = "the peaks of the envelope there" if kind == "clipped" else "the channel: it is left out"
+        spoils = "the peaks of the envelope there" if kind == "clipped" else "the channel, which is excluded"
         spans = spans_s(emg.time, at_rail) if kind == "clipped" else ()
         findings.append(Finding(severity, kind, emg.source.file, what, spoils, channel.name, spans))
     return findings
@@ -263,8 +269,8 @@ def other_unit_findings(
     how, looks, stated = (
         (f"{1 / ratio:.0f} times weaker", "V", "mV") if ratio < 1 else (f"{ratio:.0f} times stronger", "mV", "V")
     )
-    what = f"EMG is {how} than in {other}, the median of {len(common)} channels: its numbers look like {looks} where "
-    what += f"{stated} is stated, or those of {other} like {stated} where {looks} is"
+    what = f"EMG is {how} than in {other} (median of {len(common)} channels). The numbers look like {looks}, but "
+    what += f"{stated} is stated; or those of {other} look like {stated}, but {looks} is stated"
     return [Finding("warning", "EMG unit", trial, what, "EMG; state the unit in [channels], or export the file again")]
 
 
@@ -306,8 +312,8 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
 
 def _finding(one: tuple[str, float, float], other: tuple[str, float, float], file: str) -> Finding:
     def said(muscle: tuple[str, float, float]) -> str:
-        more, where = np.exp(abs(muscle[2])), "its foot stands" if muscle[2] > 0 else "its foot swings"
+        more, where = np.exp(abs(muscle[2])), "the foot is on the ground" if muscle[2] > 0 else "the foot is in the air"
         return f"{muscle[0]} is {more:.1f} times as strong while {where}"
 
-    what = f"{one[0]} and {other[0]} look exchanged, or the muscles of both legs: {said(one)}, {said(other)}"
+    what = f"{one[0]} and {other[0]} seem to be exchanged, or the muscles of both legs: {said(one)}, {said(other)}"
     return Finding("warning", "exchanged EMG", file, what, "both muscles; correct the labels", f"{one[0]}, {other[0]}")

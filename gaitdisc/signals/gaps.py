@@ -90,7 +90,7 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
         longest = max(end - start for start, end in spans)
         missing = sum(end - start for start, end in spans)
         fits = longest <= max_gap_s + 1e-9  # at an end too: a recording that begins so much later lacks nothing
-        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {max_gap_s:g} s; these are left out"
+        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {max_gap_s:g} s; these are excluded"
         findings.append(
             Finding(
                 "note" if fits else "warning",
@@ -98,7 +98,9 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
                 recording.source.file,
                 f"{len(spans)} gap{'s' if len(spans) > 1 else ''}, {missing:.3f} s of {recording.duration_s:.2f} s, "
                 f"the longest {longest:.3f} s",
-                "nothing: filled by a cubic spline and marked, at an end left out" if fits else spoils,
+                "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
+                if fits
+                else spoils,
                 channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name,
                 spans,
             )
@@ -209,9 +211,9 @@ def spike_findings(recording: Recording) -> list[Finding]:
                 "warning",
                 "spike",
                 recording.source.file,
-                f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) beside "
-                f"{beside:.4g} {channel.unit}; {places} place{'s' if places > 1 else ''} in all",
-                "nothing: taken out before the filter, bridged where short, and marked",
+                f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) next to {beside:.4g} "
+                f"{channel.unit}; {places} place{'s' if places > 1 else ''} in all",
+                "nothing: removed before the filter, interpolated where short, and marked",
                 channel.name,
                 spans_s(recording.time, here),
             )

@@ -52,9 +52,8 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     """Refuse strides of one side whose knee on that side does not swing before the next contact.
 
     The knee bends most in swing, at about 70 % of the stride of its own foot; the other knee does so half a stride
-    earlier, at about 20 %. Both being wrong means that the sides are swapped in the contacts or in the angles. Where
-    the contacts come from these very angles the check holds by itself; a swap of everything cannot be seen. Verify
-    that the trial is walking first (`verify_walking`).
+    earlier, at about 20 %. Both being wrong means that the sides are swapped in the contacts or in the angles, one that
+    it is stiff. A swap of everything cannot be seen. Verify that the trial is walking first (`verify_walking`).
 
     kinematics: with both knees, flexion positive [deg]
     returns: percent stride of the knee's peak; NaN where no stride has the knee
@@ -63,14 +62,15 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     at = knee_peak_percent(kinematics, strides, own)
     if not np.isfinite(at) or SWING[0] <= at <= SWING[1]:
         return at
-    file = kinematics.source.file or "the recording"
     across = knee_peak_percent(kinematics, strides, other) if other in kinematics.names else float("nan")
+    if SWING[0] <= across + 50 <= SWING[1]:  # the other knee swings while this foot stands: this knee is stiff
+        return at
     swapped = SWING[0] <= across <= SWING[1]
     raise StrideError(
-        f"in strides of side {strides.side!r} its knee bends most in swing, at {SWING[0]:g} to {SWING[1]:g} %",
-        f"{file}: {own} peaks at {at:.0f} %"
-        + (f", {other} at {across:.0f} %: left and right are swapped" if swapped else ""),
-        f"Swap the sides of the {strides.detector} contacts or of the angles."
+        f"in strides of side {strides.side!r} the knee must bend most in swing, at {SWING[0]:g} to {SWING[1]:g} %",
+        f"{kinematics.source.file or 'the recording'}: {own} peaks at {at:.0f} %"
+        + (f", {other} at {across:.0f} %: left and right are exchanged" if swapped else ""),
+        f"Exchange the sides of the {strides.detector} contacts or of the angles."
         if swapped
         else "Check that knee flexion is positive and that the contacts are initial contacts.",
     )
@@ -144,8 +144,8 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
         return []
     size = 1e3 * float(np.median(np.concatenate(list(towards.values()))))
     what = (
-        "left and right are swapped in all angles, or pelvis_tz points to the left: the pelvis is "
-        f"{-size:.0f} mm nearer to the foot that swings than to the one that stands (median of the strides)"
+        f"left and right are exchanged in all angles, or pelvis_tz points to the left: the pelvis is {-size:.0f} "
+        "mm nearer to the swing foot than to the stance foot (median of the strides)"
     )
     return [Finding("warning", "sides", kinematics.source.file, what, "every side; correct the labels", "pelvis_tz")]
 
@@ -173,8 +173,8 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
         return []
     said = " and ".join(f"knee_angle_{side} {more:+.0f} deg" for side, more in sorted(found.items()))
     what = (
-        "left and right are swapped in the forces or in the angles: under its own force each knee is bent more than in "
-        f"the air ({said})"
+        "left and right are exchanged in the forces or in the angles: each knee bends more under its own force "
+        f"than in the air ({said})"
     )
     file = f"{forces.source.file}, {kinematics.source.file}"
     return [Finding("warning", "sides", file, what, "every side; exchange the forces or the angles")]

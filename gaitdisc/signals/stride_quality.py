@@ -91,10 +91,9 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
                 "outlying stride",
                 recording.source.file,
                 f"{len(rows)} of {len(strides)} strides of side {strides.side}, the worst at "
-                f"{strides.start[worst]:.2f} s: "
-                f"{distance[worst, column]:.3g} {channel.unit} from the median curve, "
-                f"{distance[worst, column] / np.nanmedian(distance[:, column]):.1f} times the usual distance",
-                "means and models that take these strides for ordinary ones",
+                f"{strides.start[worst]:.2f} s: {distance[worst, column]:.3g} {channel.unit} from the median "
+                f"curve, {distance[worst, column] / np.nanmedian(distance[:, column]):.1f} times the usual distance",
+                "means and models that include these strides",
                 channel.name,
                 tuple((float(strides.start[k]), float(strides.end[k])) for k in rows),
             )
@@ -125,7 +124,9 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
         times = distance[k] / usual
         column = int(np.argmax(np.where(far[k], times, 0.0)))
         more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
-        reason = f"unlike the others: {recording.names[column]}{more} {times[column]:.1f} times the usual distance away"
+        reason = (
+            f"outlying: {recording.names[column]}{more} {times[column]:.1f} times the usual distance from the median"
+        )
         dropped.append(DroppedStride(float(strides.start[k]), float(strides.end[k]), reason))
     return replace(strides, start=strides.start[~out], end=strides.end[~out], dropped=(*strides.dropped, *dropped))
 
@@ -172,7 +173,7 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     curves, start = curves[whole], kept.start[whole]
     if len(curves) < FEWEST_TO_CHANGE or not curves.shape[2]:
         raise StrideError(
-            f"a late change is looked for in {FEWEST_TO_CHANGE} whole strides or more",
+            f"the test for a late change needs at least {FEWEST_TO_CHANGE} complete strides",
             f"{recording.source.file or 'the recording'} has {len(curves)} of side {strides.side!r}",
             "Record longer, or inspect the trial by eye.",
         )
@@ -204,7 +205,7 @@ def late_change_findings(recording: Recording, strides: Strides, alpha: float = 
     try:
         change = late_change(recording, strides, seed)
     except StrideError as error:
-        return [Finding("note", "late change", file, f"not looked for: {error.found}", "")]
+        return [Finding("note", "late change", file, f"not tested: {error.found}", "")]
     if change.p > alpha or change.size_sd < LEAST_SD:
         return []
     largest = sorted(change.shifts, key=lambda name: -change.shifts[name])[:3]
@@ -216,8 +217,8 @@ def late_change_findings(recording: Recording, strides: Strides, alpha: float = 
             "late change" if change.size_sd >= CHANGE_SD else "drift",
             file,
             f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} "
-            f"stride-to-stride sd (p = {change.p:.3f}): {moved} (root mean square over the stride)",
-            "a model trained before it and tested after it; leave the trial out, or cut it there",
+            f"stride-to-stride SD (p = {change.p:.3f}): {moved} (root mean square over the stride)",
+            "a model trained before the change and tested after it; exclude the trial, or cut it there",
             spans=((change.time, float(strides.end[-1])),),
         )
     ]
@@ -234,9 +235,7 @@ def _components(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     return u[:, :count] * s[:count]
 
 
-def _largest(
-    scores: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64]]:
+def _largest(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64]]:
     """Largest statistic, its split, and the lag-one correlations, of series (series, stride, component)."""
     count, n, _ = scores.shape
     centred = scores - scores.mean(axis=1, keepdims=True)

@@ -33,11 +33,11 @@ def cut_strides(
 
     >>> strides = cut_strides(Contacts(np.array([0.0, 1.0, 2.0, 3.1, 5.2, 6.2]), "r", "force"))
     >>> len(strides), strides.dropped[0].reason
-    (4, '2.10 s differs from the median stride of 1.00 s by more than 15 % and 6 robust sd: a contact was missed')
+    (4, '2.10 s differs from the median stride of 1.00 s by more than 15 % and 6 robust SD: a contact was missed')
     """
     if len(contacts) < 2:
         raise StrideError(
-            "a stride needs two initial contacts of one foot",
+            "a stride needs two initial contacts of the same foot",
             f"{contacts.detector} found {len(contacts)} of side {contacts.side!r}",
             "Record longer, or choose another detector in [strides].",
         )
@@ -50,8 +50,8 @@ def cut_strides(
     dropped = tuple(DroppedStride(float(start[k]), float(end[k]), reason) for k, reason in enumerate(reasons) if reason)
     if not kept.any():
         raise StrideError(
-            f"strides of side {contacts.side!r} need {min_s:g} to {max_s:g} s between contacts, without gaps",
-            f"none of {len(start)} is left; the first at {start[0]:.2f} s: {reasons[0]}",
+            f"strides of side {contacts.side!r} must have {min_s:g} to {max_s:g} s between contacts, without gaps",
+            f"none of {len(start)} qualifies; the first, at {start[0]:.2f} s: {reasons[0]}",
             "Check the contacts and the gaps, or change the limits in [strides].",
         )
     return Strides(start[kept], end[kept], contacts.side, contacts.detector, dropped)
@@ -64,7 +64,7 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
     min_s, max_s: limits of a stride's duration [s]
 
     >>> duration_reasons(np.array([1.0, 0.2]), 0.4, 2.5)
-    ['', '0.20 s is shorter than 0.4 s: a contact too many']
+    ['', '0.20 s is shorter than 0.4 s: one contact is probably false']
     """
     plausible = (duration >= min_s) & (duration <= max_s)
     median = float(np.median(duration[plausible])) if plausible.any() else float("nan")
@@ -73,14 +73,14 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
     reasons = []
     for length in duration:
         if length < min_s:
-            reasons.append(f"{length:.2f} s is shorter than {min_s:g} s: a contact too many")
+            reasons.append(f"{length:.2f} s is shorter than {min_s:g} s: one contact is probably false")
         elif length > max_s:
-            reasons.append(f"{length:.2f} s is longer than {max_s:g} s: a pause, or a contact was missed")
+            reasons.append(f"{length:.2f} s is longer than {max_s:g} s: the person paused, or a contact was missed")
         elif abs(length - median) > limit:
             cause = "a contact was missed" if length > 1.7 * median else "a stumble, or a false contact"
             reasons.append(
                 f"{length:.2f} s differs from the median stride of {median:.2f} s by more than "
-                f"{100 * OUTLIER_SHARE:.0f} % and {OUTLIER_SD:g} robust sd: {cause}"
+                f"{100 * OUTLIER_SHARE:.0f} % and {OUTLIER_SD:g} robust SD: {cause}"
             )
         else:
             reasons.append("")
@@ -133,7 +133,7 @@ class Walking:
     # median over hips and knees of the correlation with the same angle one stride later; NaN where the recording is
     # shorter than four strides
     regularity: float
-    knee_deg: float  # excursion of the knee, 5th to 95th percentile; NaN without a knee
+    knee_deg: float  # excursion of the knee that bends more, 5th to 95th percentile; NaN without a knee
 
 
 def measured_walking(kinematics: Recording, strides: Strides) -> Walking:
@@ -156,7 +156,7 @@ def measured_walking(kinematics: Recording, strides: Strides) -> Walking:
         median,
         float(np.sum(strides.duration_s) / kinematics.duration_s),
         regularity,
-        min(knees) if knees else float("nan"),
+        max(knees) if knees else float("nan"),  # of the better leg: a stiff knee walks too
     )
 
 
@@ -166,7 +166,7 @@ def verify_walking(
     """Refuse a trial that is not walking or running.
 
     Walking means: at least `fewest` strides, which cover 60 % of the trial, repeat with a correlation of 0.72 or more,
-    and bend both knees by 25 deg or more. On treadmill_walk_ik the twelve walks, each with a stumble, have 0.82 to 0.98
+    and bend a knee by 25 deg or more. On treadmill_walk_ik the twelve walks, each with a stumble, have 0.82 to 0.98
     and cover 84 to 96 %; the two range-of-motion trials 0.58 and 0.64 and cover below 20 %.
 
     kinematics: with hip and knee flexion [deg]
@@ -176,29 +176,26 @@ def verify_walking(
     found = measured_walking(kinematics, strides)
     fails = []
     if found.strides < fewest:
-        fails.append(f"{found.strides} stride{'s' if found.strides != 1 else ''} where {fewest} are needed")
+        fails.append(f"{found.strides} stride{'s' if found.strides != 1 else ''}, but {fewest} are needed")
     if found.coverage < least_coverage:
         fails.append(f"strides cover {100 * found.coverage:.0f} % of {kinematics.duration_s:.1f} s")
     if found.regularity < LEAST_REGULARITY:
         fails.append(f"hips and knees repeat with a correlation of {found.regularity:.2f}")
     if found.knee_deg < LEAST_KNEE_DEG:
-        fails.append(f"a knee moves {found.knee_deg:.0f} deg")
+        fails.append(f"the range of a knee is at most {found.knee_deg:.0f} deg")
     if fails:
         least = "1 stride" if fewest == 1 else f"{fewest} strides"
         raise StrideError(
-            f"walking means {least} or more over {100 * least_coverage:.0f} % of the trial, repeating with a "
-            f"correlation of {LEAST_REGULARITY:g} or more, knees bending {LEAST_KNEE_DEG:g} deg or more",
+            f"a walk must have at least {least} over {100 * least_coverage:.0f} % of the trial, a stride-to-stride "
+            f"correlation of at least {LEAST_REGULARITY:g}, and a range of one knee of {LEAST_KNEE_DEG:g} deg or more",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
-            "Leave calibration and range-of-motion trials out of the study, or cut the trial to its walking part.",
+            "Remove calibration and range-of-motion trials from the study, or cut the trial to its walking part.",
         )
     return found
 
 
 def stride_period(
-    x: NDArray[np.float64],
-    rate_hz: float,
-    shortest_s: float = SHORTEST_STRIDE_S,
-    longest_s: float = LONGEST_STRIDE_S,
+    x: NDArray[np.float64], rate_hz: float, shortest_s: float = SHORTEST_STRIDE_S, longest_s: float = LONGEST_STRIDE_S
 ) -> tuple[float, float]:
     """Period at which an angle repeats, and how well.
 

@@ -37,7 +37,7 @@ def check(simulation: Simulation) -> None:
 
 def _check_size(simulation: Simulation) -> None:
     if not simulation.states:
-        raise SimulationError("a simulation has one state or more", "there is none", "Add [states.<name>].")
+        raise SimulationError("a simulation must have at least one state", "there is none", "Add [states.<name>].")
     parts = sum(
         len(each)
         for each in (simulation.states, simulation.driving, simulation.parameters, simulation.ports,
@@ -45,17 +45,17 @@ def _check_size(simulation: Simulation) -> None:
     )  # fmt: skip
     if parts > MOST_PARTS:
         raise SimulationError(
-            f"a simulation file has at most {MOST_PARTS} parts",
+            f"a simulation file may have at most {MOST_PARTS} parts",
             f"this one has {parts}",
-            "Give a model of this size as a PythonSimulation.",
+            "Write a model of this size as a PythonSimulation.",
         )
     lines = (*simulation.definitions, *simulation.equations, *simulation.observations)
     characters = sum(len(text) for _, text in lines) + sum(len(each.term) for each in simulation.effects)
     if characters > MOST_CHARACTERS:
         raise SimulationError(
-            f"a simulation's expressions have at most {MOST_CHARACTERS} characters together",
-            f"these have {characters}",
-            "Give a model of this size as a PythonSimulation.",
+            f"the expressions of a simulation may have at most {MOST_CHARACTERS} characters in total",
+            f"they have {characters}",
+            "Write a model of this size as a PythonSimulation.",
         )
 
 
@@ -64,19 +64,19 @@ def _check_names(simulation: Simulation) -> None:
     for section, name in _named(simulation):
         if not _NAME.match(name) or name in _KEYWORDS:
             raise SimulationError(
-                "a name is a letter, then letters, digits and _ (64 at most), and no word of Python",
+                "a name must be a letter followed by letters, digits and _ (at most 64), and not a Python keyword",
                 f"found {name[:80]!r}",
                 "Rename it.",
                 (section, name[:80]),
             )
         if name in RESERVED:
             raise SimulationError(
-                "a name is not that of a function, nor t", f"found {name!r}", "Rename it.", (section, name)
+                "a name must not be that of a function, nor t", f"found {name!r}", "Rename it.", (section, name)
             )
         if name in owner:
             raise SimulationError(
-                "each name means one thing",
-                f"{name!r} stands in [{owner[name]}] and in [{section}]",
+                "each name must have one meaning",
+                f"{name!r} is defined in [{owner[name]}] and in [{section}]",
                 "Rename one of them.",
                 (section, name),
             )
@@ -85,7 +85,10 @@ def _check_names(simulation: Simulation) -> None:
     doubled = next((name for name in observed if observed.count(name) > 1), None)
     if doubled is not None:
         raise SimulationError(
-            "each observation has a name of its own", f"{doubled!r} stands twice", "Rename one.", ("observations",)
+            "observations must have different names",
+            f"{doubled!r} occurs twice",
+            "Rename one of them.",
+            ("observations",),
         )
 
 
@@ -103,15 +106,17 @@ def _check_numbers(simulation: Simulation) -> None:
         bounds = [bound for bound in (parameter.low, parameter.high) if bound is not None]
         for number in (parameter.value, *bounds):
             if not math.isfinite(number):
-                raise SimulationError("a parameter is a finite number", f"found {number}", "Write a number.", place)
+                raise SimulationError("parameters must be finite numbers", f"found {number}", "Write a number.", place)
         if len(bounds) == 2 and bounds[0] > bounds[1]:
             raise SimulationError(
-                "low is at most high", f"low is {bounds[0]:g}, high {bounds[1]:g}", "Exchange them.", place
+                "low must not exceed high", f"low is {bounds[0]:g}, high {bounds[1]:g}", "Exchange them.", place
             )
     for state in simulation.states:
         if state.initial is not None and not math.isfinite(state.initial):
             found = f"initial is {state.initial}"
-            raise SimulationError("a state starts at a finite number", found, "Write one.", ("states", state.name))
+            raise SimulationError(
+                "the initial value of a state must be a finite number", found, "Write a number.", ("states", state.name)
+            )
 
 
 def _check_equations(simulation: Simulation) -> None:
@@ -121,12 +126,14 @@ def _check_equations(simulation: Simulation) -> None:
         if name not in states:
             nearest = nearest_word(name, states)
             remedy = f"Did you mean {nearest!r}?" if nearest else f"The states are {', '.join(states)}."
-            raise SimulationError("an equation belongs to a state", f"{name!r} is none", remedy, ("equations", name))
+            raise SimulationError(
+                "an equation must belong to a state", f"{name!r} is none", remedy, ("equations", name)
+            )
     for name in states:
         if given.count(name) != 1:
-            found = "it has none" if name not in given else "it has more"
+            found = "it has none" if name not in given else "it has several"
             raise SimulationError(
-                f"state {name!r} has one equation", found, f'Write {name} = "..." in [equations].', ("equations",)
+                f"state {name!r} must have one equation", found, f'Write {name} = "..." in [equations].', ("equations",)
             )
 
 
@@ -172,14 +179,14 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) 
         signal, seconds = call.arguments
         if next(names(signal), None) not in simulation.signals or set(names(signal)) != {getattr(signal, "name", None)}:
             raise SimulationError(
-                "delay(signal, seconds) takes a state or an input",
-                f"in {text[:60]!r} its signal is something else",
+                "the signal of delay(signal, seconds) must be a state or an input",
+                f"in {text[:60]!r} it is neither",
                 f"Delay one of: {', '.join(simulation.signals)}.",
             )
         moving = next((name for name in names(seconds) if name not in fixed), None)
         if moving is not None or next(delays(seconds), None) is not None:
             raise SimulationError(
-                "the seconds of delay(signal, seconds) are numbers and parameters",
+                "the seconds of delay(signal, seconds) must consist of numbers and parameters",
                 f"in {text[:60]!r} they use {moving or 'delay'!r}",
                 "Write a number or a parameter.",
             )
@@ -196,12 +203,14 @@ def _parts_of(text: str) -> tuple[Tree, tuple[str, ...], tuple[Operation, ...]]:
 def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], number: int) -> None:
     place = ("effects", str(number))
     if term.kind not in ("port", "equation"):
-        raise SimulationError("an effect acts at a port or in an equation", f"found {term.kind!r}", "Name one.", place)
+        raise SimulationError(
+            "an effect must act at a port or in an equation", f"found {term.kind!r}", "Name one of them.", place
+        )
     among = tuple(ports if term.kind == "port" else states)
     if term.place not in among:
         raise SimulationError(
-            f"effect {term.name!r} acts at a {term.kind} of the simulation",
-            f"there is none called {term.place!r}",
+            f"effect {term.name!r} must act at a {term.kind} of the simulation",
+            f"{term.place!r} does not exist",
             f"Known: {', '.join(among) or 'none'}.",
             place,
         )
@@ -213,9 +222,9 @@ def _check_ports(simulation: Simulation) -> None:
     for port in simulation.ports:
         if port.name not in used:
             raise SimulationError(
-                "a port stands in an equation or a definition",
-                f"{port.name!r} stands nowhere, so that an effect there would change nothing",
-                "Add it to the equation of the place that it means, or take it away.",
+                "a port must be used in an equation or a definition",
+                f"{port.name!r} is not used, so an effect there would change nothing",
+                "Add it to the equation in which it acts, or remove it.",
                 ("ports", port.name),
             )
 
@@ -226,7 +235,9 @@ def _check_sensors(simulation: Simulation) -> None:
         place = ("observations", sensor.channel)
         if sensor.channel not in observed:
             known = f"Known: {', '.join(observed)}."
-            raise SimulationError("a sensor records an observation", f"{sensor.channel!r} is none", known, place)
+            raise SimulationError(
+                "a sensor must record an observation", f"{sensor.channel!r} is not an observation", known, place
+            )
         _check_positive(sensor, {"sd": sensor.unit or "the column's unit", "lowpass": "Hz"}, place)
 
 
@@ -235,9 +246,9 @@ def _check_inputs(simulation: Simulation) -> None:
         place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
         _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)
         if one.wander is not None and not errors:
-            raise SimulationError("wander belongs to gain or sd", "it has neither", "Write one beside it.", place)
+            raise SimulationError("wander requires gain or sd", "it has neither", "Write one of them.", place)
         if errors and one.wraps:
-            raise SimulationError("the phase of the stride is exact", "it has gain or sd", "Take them out.", place)
+            raise SimulationError("the phase of the stride must be exact", "it has gain or sd", "Remove them.", place)
 
 
 def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[str, ...]) -> None:
@@ -245,4 +256,4 @@ def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[st
         number = getattr(part, key)
         if number is not None and not (math.isfinite(number) and number > 0):
             found = f"found {key} = {number:g}"
-            raise SimulationError(f"{key} is a number above 0 [{unit}]", found, "Correct it, or leave it out.", place)
+            raise SimulationError(f"{key} must be a number above 0 [{unit}]", found, "Correct or remove it.", place)

@@ -31,13 +31,7 @@ class Compiled:
     observation: Program  # derivatives of the states, and the observed channels
 
     def run(
-        self,
-        drive: Drive,
-        rows: Rows,
-        steps: int,
-        *,
-        substeps: int = SUBSTEPS,
-        past: NDArray[np.float64] | None = None,
+        self, drive: Drive, rows: Rows, steps: int, *, substeps: int = SUBSTEPS, past: NDArray[np.float64] | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """States along each row, by Runge-Kutta of order 4.
 
@@ -81,11 +75,7 @@ class Compiled:
         return at_points(self.right_hand_side, leaf_columns(t, x, u, values), late).T
 
     def observe(
-        self,
-        drive: Drive,
-        rows: Rows,
-        states: NDArray[np.float64],
-        past: NDArray[np.float64] | None = None,
+        self, drive: Drive, rows: Rows, states: NDArray[np.float64], past: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
         """Observed channels along rows that were run.
 
@@ -156,19 +146,19 @@ class Compiled:
         fits = starts.shape[1] == len(self.states) and drive.inputs.shape[2] == len(self.inputs)
         if not fits or values.shape not in ((len(self.parameters),), (count, len(self.parameters))):
             raise ShapeError(
-                f"rows have starts (row, {len(self.states)}), values (row, {len(self.parameters)}) and "
+                f"rows must have starts (row, {len(self.states)}), values (row, {len(self.parameters)}) and "
                 f"{len(self.inputs)} inputs",
-                f"found starts {starts.shape}, values {values.shape}, {drive.inputs.shape[2]} inputs",
-                "Follow the order of the simulation's states, parameters and inputs.",
+                f"they have starts {starts.shape}, values {values.shape}, {drive.inputs.shape[2]} inputs",
+                "Use the order of the simulation's states, parameters and inputs.",
             )
         place = np.empty((count, 2), np.int64)
         place[:, 0], place[:, 1] = rows.trial, rows.begin
         inside = (place[:, 0] >= 0) & (place[:, 0] < len(drive.samples)) & (place[:, 1] >= 0)
         if not inside.all() or np.any(place[:, 1] >= drive.samples[place[:, 0]]):
             raise ShapeError(
-                f"rows begin inside one of {len(drive.samples)} trials",
-                f"found trials {place[:, 0].min()} to {place[:, 0].max()}, first samples from {place[:, 1].min()} "
-                f"to {place[:, 1].max()}",
+                f"each row must begin inside one of {len(drive.samples)} trials",
+                f"the trials are {place[:, 0].min()} to {place[:, 0].max()}, the first samples {place[:, 1].min()} to "
+                f"{place[:, 1].max()}",
                 "Count trials and samples from 0.",
             )
         return place, starts, np.array(np.broadcast_to(values, (count, len(self.parameters))), order="C")

@@ -126,20 +126,20 @@ def refuse_delays_of(
             seconds = float(at_points(program, [np.array(one) for one in values.values()], None, 1)[0, 0])
         said = f"{written(call)[:60]!r} is {seconds:g} s" + (f" ({written(ago)[:40]})" if set(names(ago)) else "")
         if not np.isfinite(seconds):
-            raise SimulationError("a delay is a number of seconds", said, "Write a number of 0 or more.")
+            raise SimulationError("a delay must be a number of seconds", said, "Write a number that is not negative.")
         if seconds < 0 and not (isinstance(signal, Name) and signal.name in inputs):
             raise SimulationError(
-                "a delay of a state is 0 s or more: what it will be is not known yet",
+                "the delay of a state must not be negative, because its future is unknown",
                 said,
-                "Write it without the sign.",
+                "Write the delay without the minus sign.",
             )
         if abs(seconds) >= shortest_s:
             raise SimulationError(
-                f"a delay is shorter than every trial; the shortest, {trial!r}, lasts {shortest_s:.4g} s"
+                f"a delay must be shorter than every trial; the shortest, {trial!r}, lasts {shortest_s:.4g} s"
                 if trial
-                else f"a delay is shorter than a day ({shortest_s:g} s)",
+                else f"a delay must be shorter than a day ({shortest_s:g} s)",
                 said,
-                "Write seconds, or leave the trial out." if trial else "Write seconds.",
+                "Write the delay in seconds, or remove the trial." if trial else "Write the delay in seconds.",
             )
 
 

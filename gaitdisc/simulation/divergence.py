@@ -45,14 +45,15 @@ def refuse_divergence(
     if np.all(ok):
         return
     first, *others = divergences(compiled, drive, rows, states, ok)
-    more = f"; {len(others)} of {len(ok)} rows more" if others else ""
-    driven = f"{first.parameter!r}, on which its rate depends most, and " if first.parameter else ""
+    more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
+    driven = f"{first.parameter!r}, which affects its rate most, and " if first.parameter else ""
     late = " (time is in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
-        "a simulation stays finite (every state within 1e6)",
-        f"{compiled.simulation.title!r} leaves it in trial {first.trial + 1} after t = {first.time:.4g} s, "
-        f"first in {first.state!r} (last {first.value:.3g}){more}",
-        f"Check {driven}the start; or samples {1 / drive.rate:.4g} s apart are too coarse for how fast it moves{late}.",
+        "every state of a simulation must stay within 1e6",
+        f"{compiled.simulation.title!r} diverges in trial {first.trial + 1} after t = {first.time:.4g} s, first in "
+        f"{first.state!r} (last value {first.value:.3g}){more}",
+        f"Check {driven}the initial state. Samples {1 / drive.rate:.4g} s apart may also be too coarse for this "
+        f"motion{late}.",
     )
 
 

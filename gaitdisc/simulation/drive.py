@@ -34,8 +34,9 @@ class Drive:
         fits = inputs.ndim == 3 and samples.shape == time0.shape == inputs.shape[:1]
         if not (fits and self.rate > 0 and np.all((samples > 0) & (samples <= inputs.shape[1]))):
             raise ShapeError(
-                "a drive has inputs (trial, sample, input), a first time and a length for each trial, and a rate",
-                f"inputs are {inputs.shape}, times {time0.shape}, lengths {samples.tolist()[:5]}, rate {self.rate}",
+                "a drive must have inputs (trial, sample, input), a first time and a length for each trial, and a rate",
+                f"the inputs have shape {inputs.shape}, the times {time0.shape}; lengths {samples.tolist()[:5]}, rate "
+                f"{self.rate}",
                 "Build it from a list of trials with Drive.of.",
             )
         for name, value in (("rate", float(self.rate)), ("time0", time0), ("inputs", inputs), ("samples", samples)):

@@ -15,7 +15,7 @@ SHORTEST = 20  # samples of a trial
 JITTER = 0.1  # of a step: how far a sample may lie from its place on the even time base
 EVEN = 1e-3  # of a step, which is even enough
 BRIDGED_S = 0.2  # longest gap of an input that is bridged
-MILLISECONDS = "everything, if these are milliseconds: divide 'time' by 1000"
+MILLISECONDS = "everything, if the times are in milliseconds: divide 'time' by 1000"
 SLOW_HZ = 0.5  # rates below are rare where time is in seconds, and what milliseconds look like
 
 
@@ -51,13 +51,13 @@ def on_even_time(
         if worst > 100 * EVEN:
             first = float(np.median(trial.time * rate - place))
             even, what = _resampled(trial, np.asarray((place + first) / rate, np.float64), inputs)
-            what = f"trial {trial.name!r}: times lie up to {worst:.1f} % of a step beside an even clock; {what}"
+            what = f"trial {trial.name!r}: times deviate by up to {worst:.1f} % of a step from an even clock; {what}"
             findings.append(Finding("note", "clock", source, what, "nothing at this size"))
     missing = int(place[-1]) + 1 - len(place)
     if missing:
         even = _with_rows(even, place, rate)
         what = f"trial {trial.name!r}: {missing} rows of {len(even.time)} are missing"
-        findings.append(Finding("warning", "gap in time", source, what, "what happened there: it is left out"))
+        findings.append(Finding("warning", "gap in time", source, what, "the missing period, which is excluded"))
     return _bridged(even, inputs, rate, source, findings), rate, findings
 
 
@@ -69,25 +69,21 @@ def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list
     whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
     if rate >= SLOW_HZ or not whole:
         return []
-    what = f"a step of {1 / rate:g} s, {len(trials[0].time) / rate:g} s in all"
+    what = f"a step of {1 / rate:g} s, {len(trials[0].time) / rate:g} s in total"
     return [Finding("warning", "clock", source, what, MILLISECONDS)]
 
 
 def _refuse_short(trial: TrialColumns, where: str) -> None:
     if len(trial.time) < SHORTEST:
-        raise SamplingError(
-            f"a trial has {SHORTEST} samples or more",
-            f"{where} has {len(trial.time)}",
-            "Leave it out, or record longer.",
-        )
+        raise SamplingError(f"a trial needs {SHORTEST} samples", f"{where} has {len(trial.time)}", "Record longer.")
     steps = np.diff(trial.time)
     back = int(np.argmin(steps))
     if steps[back] <= 0:
-        what = "stands twice" if steps[back] == 0 else f"is followed by {trial.time[back + 1]:.6g} s"
+        what = "occurs twice" if steps[back] == 0 else f"is followed by {trial.time[back + 1]:.6g} s"
         raise SamplingError(
-            "time increases within a trial",
+            "time must increase within a trial",
             f"{where}: t = {trial.time[back]:.6g} s {what} (sample {back + 2} of the trial)",
-            "Take the doubled rows away, or give each trial a name of its own in the column 'trial'.",
+            "Remove the duplicate rows, or give each trial its own name in the column 'trial'.",
         )
 
 
@@ -121,10 +117,10 @@ def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
     steps = np.diff(time)
     worst = int(np.argmax(np.abs(steps - np.median(steps))))
     return SamplingError(
-        f"a trial is sampled evenly, to {JITTER:g} of a step",
-        f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s where most are "
-        f"{np.median(steps):.6g} s (steps from {steps.min():.6g} to {steps.max():.6g} s)",
-        "Resample it to an even rate, or cut it there into two trials.",
+        f"the sampling interval of a trial must be constant within {JITTER:g} of a step",
+        f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s; the median is {np.median(steps):.6g} "
+        f"s (steps from {steps.min():.6g} to {steps.max():.6g} s)",
+        "Resample it to an even rate, or split it there into two trials.",
     )
 
 
@@ -141,8 +137,8 @@ def _resampled(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str
         observed=_along(trial.observed, trial.time, late_s, (False,) * trial.observed.shape[1]),
     )
     if _roughness(moved.observed, trial.observed) <= _roughness(trial.observed, trial.observed):
-        return moved, "the samples are moved to even times"
-    return even, "the samples themselves lie evenly, and are taken as even"
+        return moved, "the samples are resampled to even times"
+    return even, "the samples are evenly spaced and are used with even times"
 
 
 def _along(
@@ -188,17 +184,17 @@ def _bridged(
         longest = end - first
         if longest / rate > BRIDGED_S + 1e-9 or empty[0] or empty[-1]:
             raise ReadError(
-                f"an input has a value in every row, but for gaps of at most {BRIDGED_S:g} s between others",
-                f"{source}, trial {trial.name!r}, column {name!r}: {longest} rows ({longest / rate:.3g} s) without one "
-                f"from t = {trial.time[first]:.4g} s on",
-                "Cut the trial there into two, or fill the gap before.",
+                f"an input must have a value in every row, except in gaps of at most {BRIDGED_S:g} s",
+                f"{source}, trial {trial.name!r}, column {name!r}: {longest} rows ({longest / rate:.3g} s) without a "
+                f"value from t = {trial.time[first]:.4g} s on",
+                "Split the trial there into two, or fill the gap first.",
             )
         known, at = ~empty, np.arange(len(empty))
         values = np.unwrap(filled[known, column], period=1.0) if name == "phase" else filled[known, column]
         whole = np.interp(at, at[known], values)
         filled[:, column] = whole % 1.0 if name == "phase" else whole
-        what = f"trial {trial.name!r}: {int(empty.sum())} samples are missing, at most {longest / rate:.3g} s together"
-        findings.append(Finding("warning", "bridged", source, what, "what the simulation does there", name))
+        what = f"trial {trial.name!r}: {int(empty.sum())} samples are missing, at most {longest / rate:.3g} s in a row"
+        findings.append(Finding("warning", "bridged", source, what, "the simulated motion there", name))
     return replace(trial, inputs=filled)
 
 

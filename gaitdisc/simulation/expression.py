@@ -27,11 +27,11 @@ _ALLOWED = f"numbers, names, + - * / ** ( ) and {' '.join(FUNCTIONS)}"
 _STRANGE = re.compile(r"[^A-Za-z0-9_+\-*/(),. \t\r\n]|\b(?:0[xXbBoO]|\d+_)\w+")
 _BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _WORDS = {
-    ast.Attribute: ("a dot after a name", "Names have no dots; write a number's point after a digit."),
-    ast.Lambda: ("a lambda", "Write the arithmetic itself."),
+    ast.Attribute: ("a dot after a name", "Names contain no dots. Write the decimal point after a digit."),
+    ast.Lambda: ("a lambda", "Write only arithmetic."),
     ast.IfExp: (
         "if and else",
-        "Use step(a), which is 1 where a > 0 and 0 elsewhere, or where(a, b), which is b there.",
+        "Use step(a), which is 1 if a > 0 and otherwise 0, or where(a, b), which is b if a > 0.",
     ),
     ast.BoolOp: ("'and' or 'or'", "Use products, max and min of step(...)."),
     ast.Compare: ("a comparison", "Use step(a - b) for a > b."),
@@ -83,7 +83,7 @@ def parsed(text: str) -> Tree:
     """
     if len(text) > LONGEST:
         raise SimulationError(
-            f"an expression has at most {LONGEST} characters",
+            f"an expression may have at most {LONGEST} characters",
             f"this one has {len(text)}: {text[:30]!r}...",
             "Split it with [definitions].",
         )
@@ -93,13 +93,13 @@ def parsed(text: str) -> Tree:
     flat = re.sub(r"\s", " ", text)
     start = len(flat) - len(flat.lstrip())
     if start == len(flat):
-        raise SimulationError("an expression is needed", "the text is empty", "Write 0 where nothing acts.")
+        raise SimulationError("an expression must not be empty", "the text is empty", "Write 0 if nothing acts.")
     try:
         body = ast.parse(flat.strip(), mode="eval").body
         return _Conversion(text, start).tree(body, 1)
     except SyntaxError as error:
         at = start + (error.offset or 1) - 1
-        raise _refusal(text, min(at, len(text) - 1), f"{error.msg}", "Correct what stands there.") from None
+        raise _refusal(text, min(at, len(text) - 1), f"{error.msg}", "Correct the expression.") from None
     except (MemoryError, RecursionError, ValueError) as error:
         if isinstance(error, SimulationError):
             raise
@@ -136,12 +136,12 @@ def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationErro
     """Refusal of a name that has no value, with the nearest one that has.
 
     >>> unknown_name("b*omgea", "omgea", ("omega", "b")).remedy
-    "Did you mean 'omega'? Known here: omega, b."
+    "Did you mean 'omega'? Known names: omega, b."
     """
     found = re.search(rf"\b{re.escape(name)}\b", text)
     nearest = nearest_word(name, known)
     listed = ", ".join(known[:30]) + (", ..." if len(known) > 30 else "")
-    remedy = (f"Did you mean {nearest!r}? " if nearest else "") + f"Known here: {listed}."
+    remedy = (f"Did you mean {nearest!r}? " if nearest else "") + f"Known names: {listed}."
     return _refusal(text, found.start() if found else 0, f"the unknown name {name!r}", remedy)
 
 
@@ -181,12 +181,12 @@ class _Conversion:
         except OverflowError:
             value = math.inf
         if not math.isfinite(value):
-            raise self._refused(node, "a number beyond 1.8e308", "Write a finite number.")
+            raise self._refused(node, "a number above 1.8e308", "Write a finite number.")
         return Number(value)
 
     def _call(self, node: ast.Call, depth: int) -> Operation:
         if not isinstance(node.func, ast.Name) or node.keywords:
-            raise self._refused(node, "a call of something else than a named function", f"Only {_ALLOWED}.")
+            raise self._refused(node, "a call of something other than a named function", f"Only {_ALLOWED}.")
         name, count = node.func.id, len(node.args)
         if name not in FUNCTIONS:
             nearest = nearest_word(name, FUNCTIONS)
@@ -206,19 +206,19 @@ def _refusal(text: str, at: int, found: str, remedy: str) -> SimulationError:
     line, column = text.count("\n", 0, at) + 1, at - (text.rfind("\n", 0, at) + 1) + 1
     around = text[max(0, at - 20) : at + 30].replace("\n", " ")
     where = f"line {line}, column {column}" if "\n" in text else f"column {column}"
-    return SimulationError("an expression is arithmetic on names", f"at {where} ({around!r}) found {found}", remedy)
+    return SimulationError("expressions must be arithmetic on names", f"at {where} ({around!r}) found {found}", remedy)
 
 
 def _remedy(strange: str) -> str:
     if strange.isdigit() or len(strange) > 1:  # full-width digits, hexadecimal ones, 1_000
-        return "Write it as a decimal number, as 16 or 1.6e1."
+        return "Write it as a decimal number, such as 16 or 1.6e1."
     return _SIGNS.get(strange, f"Only {_ALLOWED}.")
 
 
 def _too_large(text: str) -> SimulationError:
     return SimulationError(
-        f"an expression nests at most {DEEPEST} deep and has at most {LARGEST} parts",
-        f"this one goes further: {text[:30]!r}...",
+        f"an expression may be nested at most {DEEPEST} deep and have at most {LARGEST} parts",
+        f"this one exceeds a limit: {text[:30]!r}...",
         "Split it with [definitions].",
     )
 

@@ -37,9 +37,9 @@ class Measured:
         wanted = (len(self.trials), self.drive.inputs.shape[1], len(self.channels))
         if observed.shape != wanted or len(self.drive.samples) != len(self.trials):
             raise ShapeError(
-                "measured trials have observed values (trial, sample, channel)",
-                f"found {observed.shape} where {wanted} was expected",
-                "Pad the trials to one length with NaN.",
+                "measured trials must have observed values of shape (trial, sample, channel)",
+                f"their shape is {observed.shape} instead of {wanted}",
+                "Pad the trials to the same length with NaN.",
             )
         object.__setattr__(self, "observed", observed)
 
@@ -70,9 +70,9 @@ class Measured:
         which = np.flatnonzero(self.samples >= end)
         if first < 0 or end <= first or not which.size:
             raise SamplingError(
-                f"samples {first} to {end} of a trial are needed",
+                f"samples {first} to {end} of a trial are required",
                 f"the longest has {int(self.samples.max())}",
-                "Use fewer.",
+                "Use fewer samples.",
             )
         time0 = self.drive.time0[which] + first / self.rate
         drive = Drive(self.rate, time0, self.drive.inputs[which, first:end], np.full(len(which), end - first))
@@ -90,16 +90,16 @@ def measured_of_trials(
     """Measured trials, checked."""
     if not trials:
         raise SamplingError(
-            f"a trial has {SHORTEST} samples or more",
-            f"{source} has no row",
-            "Export the record again, with its samples.",
+            f"a trial needs {SHORTEST} samples",
+            f"{source} has no rows",
+            "Export it again with its samples.",
         )
     even = [on_even_time(trial, tuple(inputs), source) for trial in trials]
     trials, rates = [one for one, _, _ in even], [rate for _, rate, _ in even]
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
     if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:
         raise SamplingError(
-            "all trials have one rate",
+            "all trials must have the same rate",
             f"{source}, trial {trials[0].name!r} has {rates[0]:.6g} Hz, "
             f"trial {trials[apart].name!r} {rates[apart]:.6g}",
             "Resample them to one rate.",
@@ -119,7 +119,7 @@ def measured_of_trials(
                 "one trial",
                 source,
                 f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)",
-                "held-out proof on other trials: only a later part of this one can be held out; record a second one",
+                "the test on other trials: only a later part of this trial can be held out; record a second one",
             )
         )
     return Measured(drive, observed, tuple(trial.name for trial in trials), tuple(channels), tuple(seen), source)
@@ -131,7 +131,7 @@ def _together(notes: list[Finding]) -> list[Finding]:
     for note in notes:
         alike.setdefault((note.kind, note.channel), []).append(note)
     return [
-        replace(some[0], what=some[0].what + (f"; {len(some) - 1} more trials alike" if len(some) > 1 else ""))
+        replace(some[0], what=some[0].what + (f"; the same in {len(some) - 1} more trials" if len(some) > 1 else ""))
         for some in alike.values()
     ]
 
@@ -145,15 +145,15 @@ def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str)
             there = len(trial.time) - missing[trial.name]
             if there < SHORTEST:
                 raise ReadError(
-                    f"an observed channel has {SHORTEST} values or more in every trial",
+                    f"an observed channel must have at least {SHORTEST} values in every trial",
                     f"{source}, trial {trial.name!r}, column {name!r} has {there} in {len(trial.time)} rows",
-                    "Leave the trial out, or take the channel out of [observations].",
+                    "Remove the trial, or remove the channel from [observations].",
                 )
         worst = max(missing, key=lambda trial: missing[trial])
         if missing[worst]:
             rows = sum(len(trial.time) for trial in trials)
             what = f"{sum(missing.values())} of {rows} samples are missing, most in trial {worst!r} ({missing[worst]})"
-            found.append(Finding("note", "empty cells", source, what, "nothing: they are left out", name))
+            found.append(Finding("note", "empty cells", source, what, "nothing: they are excluded", name))
     return found
 
 
@@ -168,12 +168,12 @@ def _constant(
             still = [trial for trial, one in values if np.ptp(one[np.isfinite(one)]) == 0]
             if len(still) == len(trials) and kind == "observed":
                 raise ShapeError(
-                    f"an observed channel varies: {name!r}",
+                    f"an observed channel must vary: {name!r}",
                     f"{source} has {getattr(trials[0], kind)[0, column]:g} in every sample",
-                    "Take the channel out of [observations], or correct the column.",
+                    "Remove the channel from [observations], or correct the column.",
                 )
             if still:
                 what = f"constant in {len(still)} of {len(trials)} trials (first: {still[0]!r})"
                 severity = "warning" if kind == "observed" else "note"
-                found.append(Finding(severity, "constant", source, what, "what these trials show", name))
+                found.append(Finding(severity, "constant", source, what, "the evidence from these trials", name))
     return found

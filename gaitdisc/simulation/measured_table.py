@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
+from gaitdisc.channel import hint_nearest, nearest_word
+from gaitdisc.errors import ChannelError, GaitdiscError, MissingFileError, ReadError, UnitError
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.even_time import TrialColumns
@@ -82,8 +82,10 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
             values = _converted(recording, wanted, simulation, (name, findings))
             doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
             if doubtful:
-                what = f"{doubtful} of {len(values)} samples are marked as not to be trusted"
-                findings[f"{name} {wanted}"] = Finding("warning", "suspect", name, what, "what rests on them", wanted)
+                what = f"{doubtful} of {len(values)} samples are marked as unreliable"
+                findings[f"{name} {wanted}"] = Finding(
+                    "warning", "suspect", name, what, "everything that depends on them", wanted
+                )
             columns.append((wanted, values))
         by_name = dict(columns)
         stacked = [
@@ -99,7 +101,7 @@ def _table(path: Path) -> pd.DataFrame:
 
     if path.suffix.lower() not in ENDINGS:
         raise ReadError(
-            "measured data are a CSV or Parquet table", f"{path.name} ends in {path.suffix!r}", "Export it as CSV."
+            "measured data must be a CSV or Parquet table", f"{path.name} ends in {path.suffix!r}", "Export it as CSV."
         )
     try:
         check_regular(path, LARGEST_TEXT_BYTES)
@@ -125,17 +127,18 @@ def _table(path: Path) -> pd.DataFrame:
         raise
     except OSError as error:
         found = f"{path.name}: {error.strerror or error}"
-        raise ReadError("measured data are read from a table", found, "Check the path.") from error
+        kind = MissingFileError if isinstance(error, FileNotFoundError) else ReadError
+        raise kind("measured data must be a table", found, "Check the path.") from error
     except Exception as error:  # pandas and pyarrow have no common ancestor of theirs
         found = f"{path.name}: {str(error).splitlines()[0][:200] if str(error) else type(error).__name__}"
-        raise ReadError("measured data are a CSV or Parquet table", found, "Open it and export it again.") from error
+        raise ReadError("measured data must be a CSV or Parquet table", found, "Export it again.") from error
 
 
 def _refuse_doubled(head: Sequence[str], file: str) -> None:
     names = [name.strip().strip('"') for name in head]
     doubled = next((name for name in names if name and names.count(name) > 1), None)
     if doubled is not None:
-        raise ChannelError("each column has a name of its own", f"{file} has {doubled!r} twice", "Rename one.")
+        raise ChannelError("each column must have its own name", f"{file} has {doubled!r} twice", "Rename one of them.")
 
 
 def _channels(simulation: Simulation, columns: Sequence[str], file: str) -> tuple[str, ...]:
@@ -160,8 +163,7 @@ def _missing(name: str, columns: Sequence[str], file: str) -> ChannelError:
             f"{file} has {timed!r}",
             "Convert it to seconds and call the column 'time'.",
         )
-    nearest = nearest_word(name, columns)
-    hint = f", the nearest is {nearest!r}" if nearest else ""
+    hint = hint_nearest(name, columns)
     listed = ", ".join(columns[:20]) + (", ..." if len(columns) > 20 else "")
     return ChannelError(
         f"the simulation needs a measured column {name!r}",
@@ -178,9 +180,7 @@ def _trials(table: pd.DataFrame, file: str) -> NDArray[np.object_]:
         return np.full(len(table), "1", object)
     empty = np.flatnonzero(table["trial"].isna().to_numpy())
     if empty.size:
-        raise ReadError(
-            "every row names its trial", f"{file}, line {empty[0] + 2} has none", "Fill the column 'trial'."
-        )
+        raise ReadError("every row must name its trial", f"{file}, line {empty[0] + 2} has none", "Fill in 'trial'.")
     return table["trial"].astype(str).to_numpy(object)
 
 
@@ -189,17 +189,17 @@ def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: s
 
     if pd.api.types.is_datetime64_any_dtype(table[name]) or pd.api.types.is_timedelta64_dtype(table[name]):
         raise ReadError(
-            "every cell of a measured column is a number" + (", time in seconds" if name == "time" else ""),
-            f"{file}, column {name!r} holds dates or clock times, first {table[name].iloc[0]}",
-            "Write seconds since the trial's start." if name == "time" else "Write numbers.",
+            "every cell of a measured column must be a number" + (", time in seconds" if name == "time" else ""),
+            f"{file}, column {name!r} contains dates or clock times, first {table[name].iloc[0]}",
+            "Write seconds since the start of the trial." if name == "time" else "Write numbers.",
         )
     values = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
     bad = np.flatnonzero(~np.isfinite(values) & ~table[name].isna().to_numpy())
     if bad.size:
         row = int(bad[0])
         raise ReadError(
-            "every cell of a measured column is a number, or empty",
-            f"{file}, line {row + 2} (trial {trial[row]!r}), column {name!r} has {str(table[name].iloc[row])!r}"
+            "every cell of a measured column must be a number or empty",
+            f"{file}, line {row + 2} (trial {trial[row]!r}), column {name!r} contains {str(table[name].iloc[row])!r}"
             + (f"; {bad.size} such cells" if bad.size > 1 else ""),
             "Write a number, or leave the cell empty.",
         )
@@ -210,9 +210,9 @@ def _refuse_timeless(time: NDArray[np.float64], trial: NDArray[np.object_], file
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
         raise ReadError(
-            "every row has its time",
+            "every row must have a time",
             f"{file}, line {bad[0] + 2} (trial {trial[bad[0]]!r}) has none",
-            "Fill the column 'time', or take the row away.",
+            "Fill the column 'time', or remove the row.",
         )
 
 
@@ -224,15 +224,13 @@ def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[st
     unused = [column for column in columns if column not in wanted]
     if absent and unused:
         raise ChannelError(
-            "each column is an input or is observed, where a state has no column",
-            f"{file}: no column is named after {', '.join(absent)}, and nothing uses {', '.join(unused[:10])}",
-            "Rename the column, take it away, or list what is measured under [observations].",
+            "each column must be an input or an observation if a state has no column",
+            f"{file}: no column is named {', '.join(absent)}, and {', '.join(unused[:10])} are not used",
+            "Rename or remove the column, or list the measured channels under [observations].",
         )
     if absent:
         what = f"not measured: {', '.join(absent)}"
-        found.append(
-            Finding("note", "not measured", file, what, "nothing; it follows from the others by the equations")
-        )
+        found.append(Finding("note", "not measured", file, what, "nothing; it follows from the other states"))
     if unused:
         listed = ", ".join(unused[:10]) + (", ..." if len(unused) > 10 else "")
         found.append(Finding("note", "unused columns", file, listed, ""))
@@ -251,12 +249,16 @@ def _converted(
     unstated = (channel.quantity, channel.unit) == ("signal", "1")  # numbers of which no unit is known
     factor = None if to is None or unstated else unit_factor(channel.unit, to)
     if factor is None:
-        what = f"{channel.unit!r} is not compared with the simulation's {to!r}" if to else f"{channel.unit!r} as it is"
-        findings[name] = Finding("note", "unit", file, what, "nothing if both mean the same", name)
+        what = (
+            f"{channel.unit!r} cannot be compared with the simulation's {to!r}"
+            if to
+            else f"{channel.unit!r} is used unchanged"
+        )
+        findings[name] = Finding("note", "unit", file, what, "nothing if both are the same unit", name)
         return recording[name]
     if np.isnan(factor):
         raise UnitError(
-            f"{name!r} is measured in a unit of the simulation's kind, {to!r}",
+            f"{name!r} must have a unit of the same kind as {to!r} in the simulation",
             f"{file} has it in {channel.unit!r}",
             "Correct the unit in the simulation file or in the study.",
         )

@@ -63,13 +63,13 @@ class Term:
     Parameters
     ----------
     place : str
-        Port, or state whose derivative it adds to.
+        Port, or state to whose derivative the effect is added.
     kind : str
-        Which of these the place is: `port` or `equation`.
+        Kind of the place: `port` or `equation`.
     name : str
-        What the effect is called, `coulomb_friction`.
+        Name of the effect, such as `coulomb_friction`.
     term : str
-        What it adds, an expression of states, inputs and parameters [the place's unit].
+        The added expression of states, inputs and parameters [the place's unit].
 
     Examples
     --------

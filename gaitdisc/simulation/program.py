@@ -243,8 +243,8 @@ def at_points(
     """
     if program.delays and (late is None or np.shape(late)[-1] != len(program.delays)):
         raise SimulationError(
-            f"delayed signals are needed at each point: {', '.join(signal for signal, _ in program.delays)}",
-            "they were not given",
+            f"delayed signals must be given at each point: {', '.join((signal for signal, _ in program.delays))}",
+            "they are missing",
             "Run the simulation, or give `late`.",
         )
     table = PointTable(program, int(np.size(columns[0])) if points is None else points)

@@ -213,8 +213,8 @@ def called(
     own = np.asarray(simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports]))
     if own.shape != x.shape or own.dtype.kind not in "fiu":
         raise SimulationError(
-            f"the right-hand side of {simulation.title!r} gives a number for each row and state, {x.shape} here",
-            f"it gave {own.dtype} of shape {own.shape}",
-            "Return an array (row, state), np.column_stack of the states' derivatives, say.",
+            f"the right-hand side of {simulation.title!r} must return one number per row and state, shape {x.shape}",
+            f"it returned {own.dtype} of shape {own.shape}",
+            "Return an array (row, state), for example np.column_stack of the derivatives.",
         )
     return own + fed[:, ports : ports + states]

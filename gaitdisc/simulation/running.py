@@ -33,9 +33,9 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         return _of_python(simulation)
     if simulation.model:
         raise SimulationError(
-            "a simulation that is run has equations of its own",
-            f"those of {simulation.title!r} are in {simulation.model}",
-            "Give its path to gaitdisc discover: there the engine computes.",
+            "a simulation must have its own equations to be run",
+            f"the equations of {simulation.title!r} are in {simulation.model}",
+            "Give its path to gaitdisc discover, which uses the engine.",
         )
     states = tuple(state.name for state in simulation.states)
     inputs = tuple(each.name for each in simulation.inputs)
@@ -102,13 +102,7 @@ class PythonCompiled(Compiled):
     model: PythonSimulation
 
     def run(
-        self,
-        drive: Drive,
-        rows: Rows,
-        steps: int,
-        *,
-        substeps: int = SUBSTEPS,
-        past: NDArray[np.float64] | None = None,
+        self, drive: Drive, rows: Rows, steps: int, *, substeps: int = SUBSTEPS, past: NDArray[np.float64] | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """States along each row, as `Compiled.run`."""
         place, starts, values = self._rows(drive, rows)

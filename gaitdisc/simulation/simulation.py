@@ -18,43 +18,45 @@ Lines = tuple[tuple[str, str], ...]  # name, expression
 
 @dataclass(frozen=True)
 class Simulation:
-    """A dynamical system as a simulation file holds it; frozen, and checked when it is made.
+    """A dynamical system as in a simulation file; immutable, and checked when it is created.
 
     Parameters
     ----------
     title : str
-        One line for a person.
+        Title in one line.
     states : tuple of State
         In the order of the state vector.
     inputs : tuple of Input
-        Measured signals that drive it.
+        Measured signals that drive the simulation.
     parameters : tuple of Parameter
-        Numbers of the model.
+        Parameters of the model.
     ports : tuple of Port
-        Places where a missing effect may enter; zero in the model as given.
+        Places where a missing effect may act; zero in the initial model.
     definitions : tuple of (str, str)
-        Name and expression, each may use those above.
+        Name and expression; each may use earlier definitions.
     equations : tuple of (str, str)
         State and expression of its time derivative, in the order of the states.
     observations : tuple of (str, str)
         Measured column and expression; by default each state under its own name.
     effects : tuple of Term
-        What was added, and where.
+        The added effects and their places.
     sensors : tuple of Sensor
-        How observed channels were recorded, for those of which the file says it.
+        How observed channels were recorded, if the file states it.
     source : Path, optional
-        File it was read from.
+        File of the simulation.
     layout : str
-        Text of that file, whose comments and order are kept when it is written back.
+        Text of that file, to keep its comments and order when it is written back.
     model : str
-        File of an engine (OpenSim, MuJoCo) that holds the equations in the place of the file's own.
+        Model file of an engine (OpenSim, MuJoCo) that contains the equations.
     inexact : float
-        Share of an observed channel's spread by which runs may err without anything being missing, taken as white.
+        Error of the runs that does not indicate a missing effect, as a share of an observed channel's spread; treated
+        as white noise.
 
     Raises
     ------
     SimulationError
-        If a name is unknown or doubled, an expression does not parse, a port is used nowhere, an equation is missing.
+        If a name is unknown or occurs twice, an expression cannot be parsed, a port is not used, or an equation is
+        missing.
 
     Examples
     --------
@@ -107,7 +109,7 @@ class Simulation:
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """Names of the states and inputs: what changes in time and can be delayed."""
+        """Names of the states and inputs, which vary in time and can be delayed."""
         return (*(state.name for state in self.states), *(each.name for each in self.inputs))
 
     @property
@@ -120,7 +122,7 @@ class Simulation:
         return {parameter.name: parameter.value for parameter in self.parameters}
 
     def sensor(self, channel: str) -> Sensor:
-        """How an observed channel was recorded; nothing is known of one that the file says nothing of.
+        """How an observed channel was recorded; without details if the file states none.
 
         Parameters
         ----------
@@ -130,27 +132,27 @@ class Simulation:
         return next((one for one in self.sensors if one.channel == channel), Sensor(channel))
 
     def with_sensor(self, sensor: Sensor) -> Simulation:
-        """Simulation in which an observed channel was recorded in another way.
+        """Simulation with another sensor of an observed channel.
 
         Parameters
         ----------
         sensor : Sensor
-            Of the channel that it names.
+            Sensor, which names its channel.
         """
         return replace(self, sensors=(*(one for one in self.sensors if one.channel != sensor.channel), sensor))
 
     def with_effect(self, term: Term) -> Simulation:
-        """Simulation with one effect more.
+        """Simulation with one additional effect.
 
         Parameters
         ----------
         term : Term
-            What is added, and to which port or equation.
+            The effect and its port or equation.
         """
         return replace(self, effects=(*self.effects, term))
 
     def without_effects(self) -> Simulation:
-        """Simulation without anything added."""
+        """Simulation without added effects."""
         return replace(self, effects=())
 
     def with_values(self, values: Mapping[str, float]) -> Simulation:
@@ -159,7 +161,7 @@ class Simulation:
         Parameters
         ----------
         values : mapping of str to float
-            By parameter's name.
+            Values by the name of the parameter.
 
         Raises
         ------
@@ -170,20 +172,20 @@ class Simulation:
         for name in values:
             if name not in known:
                 raise SimulationError(
-                    "a value belongs to a parameter of the simulation",
-                    f"there is none called {name!r}",
+                    "the name must be a parameter",
+                    f"there is no {name!r}",
                     f"Known: {', '.join(known) or 'none'}.",
                 )
         changed = (replace(each, value=float(values.get(each.name, each.value))) for each in self.parameters)
         return replace(self, parameters=tuple(changed))
 
     def with_starts(self, starts: Mapping[str, float]) -> Simulation:
-        """Simulation of which some states have another `initial`.
+        """Simulation with another `initial` of some states.
 
         Parameters
         ----------
         starts : mapping of str to float
-            By state's name [the state's unit].
+            Initial values by the name of the state [the state's unit].
 
         Raises
         ------
@@ -194,9 +196,7 @@ class Simulation:
         for name in starts:
             if name not in known:
                 raise SimulationError(
-                    "a start belongs to a state of the simulation",
-                    f"there is none called {name!r}",
-                    f"Known: {', '.join(known)}.",
+                    "the name must be a state", f"there is no {name!r}", f"Known: {', '.join(known)}."
                 )
         changed = (
             replace(state, initial=float(starts[state.name])) if state.name in starts else state
@@ -205,14 +205,14 @@ class Simulation:
         return replace(self, states=tuple(changed))
 
     def with_state(self, state: State, equation: str) -> Simulation:
-        """Simulation with one state more, after the others; nothing observes it.
+        """Simulation with one additional state after the others, which is not observed.
 
         Parameters
         ----------
         state : State
             Name, unit, start.
         equation : str
-            Its time derivative, in the simulation's names and its own.
+            Its time derivative, in the names of the simulation and its own name.
         """
         return replace(self, states=(*self.states, state), equations=(*self.equations, (state.name, equation)))
 
@@ -224,13 +224,13 @@ class Simulation:
         state : str
             Its name.
         equation : str
-            In the simulation's names.
+            Expression in the names of the simulation.
         """
         kept = ((name, equation if name == state else text) for name, text in self.equations)
         return replace(self, equations=tuple(kept))
 
     def with_parameter(self, parameter: Parameter) -> Simulation:
-        """Simulation with a further parameter, or with another in the place of one of the same name.
+        """Simulation with an additional parameter, which replaces one of the same name.
 
         Parameters
         ----------
@@ -243,14 +243,14 @@ class Simulation:
         return replace(self, parameters=tuple(kept))
 
     def with_observation(self, name: str, expression: str) -> Simulation:
-        """Simulation with a further observed channel, or with another expression for one that it has.
+        """Simulation with an additional observed channel, or with another expression for an existing one.
 
         Parameters
         ----------
         name : str
             Measured column.
         expression : str
-            In the simulation's names.
+            Expression in the names of the simulation.
         """
         kept = dict(self.observations)
         kept[name] = expression
@@ -273,29 +273,29 @@ class Simulation:
         for name in names:
             if name not in has:
                 raise SimulationError(
-                    "an observation of the simulation", f"{name!r} is none", f"Known: {', '.join(has)}."
+                    "the name must be an observation", f"there is no {name!r}", f"Known: {', '.join(has)}."
                 )
         sensors = tuple(one for one in self.sensors if one.channel in names)
         return replace(self, observations=tuple((name, has[name]) for name in names), sensors=sensors)
 
     def with_input(self, name: str, expression: str) -> Simulation:
-        """Simulation in which an input is replaced by an expression of itself wherever it stands.
+        """Simulation in which an input is replaced by an expression everywhere.
 
         Parameters
         ----------
         name : str
             Input.
         expression : str
-            In states, inputs, parameters and `t`: `1.2*tau`, `delay(tau, 0.05)`.
+            Expression of states, inputs, parameters and `t`: `1.2*tau`, `delay(tau, 0.05)`.
 
         Raises
         ------
         SimulationError
-            If there is no such input, or the expression is not of the simulation's names.
+            If there is no such input, or the expression uses unknown names.
         """
         if all(each.name != name for each in self.inputs):
             known = ", ".join(each.name for each in self.inputs) or "none"
-            raise SimulationError("an input is to be replaced", f"there is none called {name!r}", f"Known: {known}.")
+            raise SimulationError("the name must be an input", f"there is no {name!r}", f"Known: {known}.")
         by = {name: parsed(expression)}
 
         def changed(text: str) -> str:

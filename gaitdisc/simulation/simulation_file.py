@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.errors import MissingFileError, ReadError, SchemaError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.delays import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
@@ -46,14 +46,14 @@ def read_simulation(path: Path | str) -> Simulation:
     Returns
     -------
     Simulation
-        With its source and the text's layout, so that it can be written back.
+        Simulation with its source and layout, so that it can be written back.
 
     Raises
     ------
     ReadError
         If the file cannot be read, is too large, or is not TOML.
     SchemaError
-        If it is no simulation: file, line, what was found and what to do.
+        If it is not a simulation; the message gives file, line and remedy.
 
     Examples
     --------
@@ -68,19 +68,19 @@ def read_simulation(path: Path | str) -> Simulation:
         size = check_regular(path)
         if size > LARGEST:
             raise ReadError(
-                f"a simulation file has at most {LARGEST // 1024} KiB",
+                f"a simulation file may have at most {LARGEST // 1024} KiB",
                 f"{path.name} has {size / 1024:.0f} KiB",
-                "Give a model of this size as a PythonSimulation.",
+                "Write a model of this size as a PythonSimulation.",
             )
         text = path.read_bytes().decode("utf-8-sig")
     except OSError as error:
-        raise ReadError(
-            "a simulation is read from a TOML file", f"{path.name}: {error.strerror or error}", "Check the path."
-        ) from error
+        kind = MissingFileError if isinstance(error, FileNotFoundError) else ReadError
+        found = f"{path.name}: {error.strerror or error}"
+        raise kind("a simulation must be a TOML file", found, "Check the path.") from error
     except UnicodeDecodeError as error:
         raise ReadError(
-            "a simulation file is text in UTF-8",
-            f"{path.name} has another byte at {error.start}",
+            "a simulation file must be UTF-8 text",
+            f"{path.name} is not at byte {error.start}",
             "Save it as UTF-8.",
         ) from error
     return simulation_of(text, path.name, path)
@@ -107,7 +107,7 @@ def simulation_of(text: str, file: str = "the simulation", source: Path | None =
 
 
 def _not_toml(file: str, found: str) -> ReadError:
-    return ReadError(f"{file} is to be a TOML file", found, "Correct it there; docs/simulation.md shows the form.")
+    return ReadError(f"{file} must be a TOML file", found, "Correct it there. docs/simulation.md shows the form.")
 
 
 def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
@@ -118,9 +118,7 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
             _check_keys(_table(entry, (section, name)), keys, (section, name))
     effects = table.get("effects", [])
     if not isinstance(effects, list):
-        raise SimulationError(
-            "effects are a list of tables", "found something else", "Write [[effects]].", ("effects",)
-        )
+        raise SimulationError("effects must be tables", "they have another form", "Write [[effects]].", ("effects",))
     sensors = tuple(_sensor(name, e) for name, e in parts["observations"].items() if isinstance(e, dict))
     parts["observations"] = {n: e["expression"] if isinstance(e, dict) else e for n, e in parts["observations"].items()}
     lines = {
@@ -146,9 +144,9 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
     model = _text(table, "model", ())
     if model and lines["equations"]:
         raise SimulationError(
-            "the equations stand in the file or in a model of an engine",
-            f"found both, and model = {model!r}",
-            "Take one of them away.",
+            "the equations must be in the file or in a model of an engine",
+            f"it has both, and model = {model!r}",
+            "Remove one of them.",
             ("equations",),
         )
     return Simulation(
@@ -172,7 +170,7 @@ def _parameter(name: str, entry: Mapping[str, Any]) -> Parameter:
     place = ("parameters", name)
     value = _number(entry, "value", place)
     if value is None:
-        raise SimulationError("a parameter has a value", "it has none", "Write value = ...", place)
+        raise SimulationError("a parameter must have a value", "it has none", "Write value = ...", place)
     low, high = _number(entry, "low", place), _number(entry, "high", place)
     return Parameter(name, value, _unit(entry, place), low, high, _text(entry, "meaning", place))
 
@@ -181,7 +179,7 @@ def _sensor(name: str, entry: Mapping[str, Any]) -> Sensor:
     place = ("observations", name)
     _check_keys(entry, _OBSERVATION, place)
     if "expression" not in entry:
-        raise SimulationError("an observation has an expression", "it has none", 'Write expression = "...".', place)
+        raise SimulationError("an observation needs an expression", "it has none", 'Write expression = "...".', place)
     sd, lowpass = _number(entry, "sd", place), _number(entry, "lowpass", place)
     return Sensor(name, _text(entry, "unit", place), sd, lowpass)
 
@@ -193,7 +191,7 @@ def _effect(entry: Any, number: int) -> Term:
     kinds = [kind for kind in ("port", "equation") if kind in entry]
     if len(kinds) != 1 or "term" not in entry:
         raise SimulationError(
-            "an effect has a term, and a port or an equation",
+            "an effect must have a term, and a port or an equation",
             f"found {', '.join(entry) or 'nothing'}",
             'Write port = "..." (or equation = "...") and term = "...".',
             place,
@@ -208,7 +206,7 @@ def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[s
             nearest = nearest_word(key, known)
             remedy = f"Did you mean {nearest!r}? " if nearest else ""
             raise SimulationError(
-                "only keys of the simulation file stand here",
+                "only keys of the simulation file are allowed",
                 f"found {key[:60]!r}",
                 f"{remedy}Known: {', '.join(known)}.",
                 place or (key,),
@@ -217,14 +215,16 @@ def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[s
 
 def _table(value: Any, place: tuple[str, ...]) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise SimulationError("a table is needed", f"found {str(value)[:60]!r}", "Write [section.name].", place)
+        raise SimulationError("it must be a table", f"found {str(value)[:60]!r}", "Write [section.name].", place)
     return value
 
 
 def _text(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> str:
     value = table.get(key, "")
     if not isinstance(value, str):
-        raise SimulationError(f"{key} is text", f"found {str(value)[:60]}", f'Write {key} = "...".', place or (key,))
+        raise SimulationError(
+            f"{key} must be text", f"found {str(value)[:60]}", f'Write {key} = "...".', place or (key,)
+        )
     return value
 
 
@@ -237,8 +237,8 @@ def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float
         return None
     value = table[key]
     if type(value) not in (int, float) or abs(value) > 1e300 or not math.isfinite(value):
-        found = f"found {str(value)[:60]}" if type(value) is not int else "found a number beyond 1e300"
-        raise SimulationError(f"{key} is a finite number", found, "Write it without quotes.", place)
+        found = f"found {str(value)[:60]}" if type(value) is not int else "the number exceeds 1e300"
+        raise SimulationError(f"{key} must be a finite number", found, "Write it without quotes.", place)
     return float(value)
 
 
@@ -246,7 +246,9 @@ def _expression(value: Any, place: tuple[str, ...]) -> str:
     if type(value) in (int, float) and abs(value) < 1e300 and math.isfinite(value):
         return repr(value)
     if not isinstance(value, str):
-        raise SimulationError("an expression is text", f"found {str(value)[:60]}", 'Write it in quotes: "..."', place)
+        raise SimulationError(
+            "expressions must be text", f"found {str(value)[:60]}", 'Write it in quotes: "..."', place
+        )
     return value
 
 
@@ -281,12 +283,12 @@ def bundled_names() -> tuple[str, ...]:
 
 
 def bundled(name: str) -> Simulation:
-    """Simulation that comes with the package.
+    """Simulation that is included in the package.
 
     Parameters
     ----------
     name : str
-        `pendulum`, `lorenz` and so on; one that is none of them is refused with the list.
+        `pendulum`, `lorenz` and so on; the message of an unknown name lists all.
 
     Raises
     ------
@@ -303,8 +305,8 @@ def bundled(name: str) -> Simulation:
         nearest = nearest_word(name, bundled_names())
         hint = f"Did you mean {nearest!r}? " if nearest else ""
         raise ReadError(
-            "a simulation that comes with the package",
-            f"there is none called {name!r}",
+            "the simulation must be one that is included in the package",
+            f"there is no {name!r}",
             f"{hint}Known: {', '.join(bundled_names())}.",
         )
     return read_simulation(_FOLDER / f"{name}.toml")

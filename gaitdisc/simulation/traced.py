@@ -112,7 +112,7 @@ class Quantity:
         return lambda: _ARITHMETIC[name](self)
 
     def __float__(self) -> float:
-        raise NotTraced("it turns a number into a float")
+        raise NotTraced("it converts a number into a float")
 
 
 class Condition(Quantity):
@@ -166,7 +166,7 @@ def traced_equations(function: Callable[..., Any], arguments: Callable[[Callable
                 raise there
             return [Operation("+", (one, Operation("log", (never,)))) for one in there]
         if len(yes) != len(no):
-            raise NotTraced("it returns now more, now fewer derivatives")
+            raise NotTraced("the number of derivatives that it returns varies")
         return [_either(condition, one, other) for one, other in zip(yes, no, strict=True)]
 
     def gone(decided: dict[Tree, bool]) -> list[Tree] | Exception:

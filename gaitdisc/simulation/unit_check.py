@@ -26,7 +26,7 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     >>> from gaitdisc.simulation.simulation_file import simulation_of
     >>> text = '[states.x]\nunit = "m"\n[parameters.f]\nvalue = 1\nunit = "N"\n[equations]\nx = "f"\n'
     >>> print(unit_findings(simulation_of(text))[0].what)
-    [equations] x: 'f' is not of the unit m/s
+    [equations] x: 'f' must have the unit m/s
     """
     parts = (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports)
     if all(part.unit == "1" for part in parts):
@@ -67,8 +67,8 @@ class _Check:
         for part in (*simulation.states, *simulation.driving, *simulation.parameters, *simulation.ports):
             self.known[part.name] = dimension_of(part.unit)
             if self.known[part.name] is None:
-                what = f"{part.unit!r} is no unit that the package knows"
-                self.findings.append(Finding("note", "unit", self._file, what, "the check of what is added", part.name))
+                what = f"{part.unit!r} is not a known unit"
+                self.findings.append(Finding("note", "unit", self._file, what, "the check of units in sums", part.name))
 
     def rate(self, state: str) -> Dimension | None:
         """Dimension of a state's derivative."""
@@ -79,7 +79,7 @@ class _Check:
         """Report where an expression has another dimension than its place."""
         found = self.unit(parsed(text), where)
         if found is not None and wanted is not None and found != wanted:
-            self._report(f"{where}: {_short(parsed(text))} is not of the unit {unit}")
+            self._report(f"{where}: {_short(parsed(text))} must have the unit {unit}")
 
     def unit(self, tree: Tree, where: str) -> Dimension | None:
         """Dimension of an expression; None where it may be any."""
@@ -90,7 +90,7 @@ class _Check:
             return self._alike(tree, parts, where)
         if tree.symbol in _PURE:
             if tree.symbol in _OF_PURE and parts[0] is not None and any(parts[0]):
-                self._report(f"{where}: {_short(tree)} takes a pure number or an angle")
+                self._report(f"{where}: the argument of {_short(tree)} must be a pure number or an angle")
             return dimension_of("1")
         if tree.symbol == "where":
             return parts[1]
@@ -113,7 +113,7 @@ class _Check:
         for part, argument in there[1:]:
             if part != there[0][0]:
                 word = "compared" if tree.symbol in ("max", "min") else "added"
-                self._report(f"{where}: {_short(there[0][1])} and {_short(argument)} are {word} and differ in unit")
+                self._report(f"{where}: {_short(there[0][1])} and {_short(argument)} are {word} but differ in unit")
                 return None
         return there[0][0] if there else None
 
@@ -134,7 +134,7 @@ def refuse_units(simulation: Simulation) -> None:
     >>> refuse_units(ankle.with_sensor(Sensor("theta", "deg")))  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    gaitdisc.simulation.refusal.SimulationError: [observations] theta: an observation is in ... Write 57.2958*theta.
+    gaitdisc.simulation.refusal.SimulationError: [observations] theta: an observation must ... Write 57.2958*theta.
     """
     for name, text in simulation.observations:
         sensor = simulation.sensor(name)
@@ -144,7 +144,7 @@ def refuse_units(simulation: Simulation) -> None:
         tree = parsed(text)
         found = dimension_in(simulation, text)
         if found is not None and found != wanted:
-            raise _unlike(sensor, f"{text!r} is of another kind", "Correct the unit, or the expression.")
+            raise _unlike(sensor, f"{text!r} has another kind of unit", "Correct the unit or expression.")
         _refuse_factor(simulation, sensor, tree)
 
 
@@ -156,7 +156,7 @@ def _refuse_factor(simulation: Simulation, sensor: Sensor, tree: Tree) -> None:
     if factor is None:
         return
     if math.isnan(factor):
-        raise _unlike(sensor, f"{name!r} is of another kind, {units[name]}", "Correct the unit, or the expression.")
+        raise _unlike(sensor, f"{name!r} has another kind of unit, {units[name]}", "Correct the unit or expression.")
     if abs(abs(number) / factor - 1) > ROUNDED and (abs(number) == 1.0 or _is_of_units(abs(number), units[name])):
         raise _unlike(sensor, f"{name!r} is in {units[name]}", f"Write {math.copysign(factor, number):.6g}*{name}.")
 
@@ -184,5 +184,5 @@ def _is_of_units(number: float, unit: str) -> bool:
 
 
 def _unlike(sensor: Sensor, found: str, remedy: str) -> SimulationError:
-    needed = f"an observation is in the unit of its column, {sensor.unit!r}"
+    needed = f"an observation must have the unit of its column, {sensor.unit!r}"
     return SimulationError(needed, found, remedy, ("observations", sensor.channel))

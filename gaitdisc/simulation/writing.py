@@ -24,17 +24,16 @@ _STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'|[^#\"'\n]*?"
 
 
 def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str, overwrite: bool = False) -> Path:
-    r"""Write a simulation file, whole or not at all.
+    r"""Write a simulation file; never a partial one.
 
     Parameters
     ----------
     simulation : Simulation or PythonSimulation
-        What the file shall hold. Of a Python object that is everything but its right-hand side; `read_into` gives it to
-        the object again.
+        Simulation to write. The right-hand side of a Python object is not written; `read_into` restores the rest.
     path : Path or str
-        Where.
+        Path of the file.
     overwrite : bool
-        Whether a file may be replaced that `write_simulation` did not write, or that was changed since.
+        Whether to replace a file that `write_simulation` did not write, or that was changed since.
 
     Returns
     -------
@@ -44,7 +43,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Raises
     ------
     WriteError
-        If it cannot or may not be written; an older file is left as it was.
+        If it cannot be written; an older file is unchanged.
 
     Examples
     --------
@@ -63,9 +62,9 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     """
     if not isinstance(simulation, Simulation | PythonSimulation):
         raise SimulationError(
-            "a simulation file holds a Simulation",
+            "only a Simulation can be written to a simulation file",
             f"found {type(simulation).__name__}",
-            "Make one of a function first: gaitdisc.simulation_from_function(function).",
+            "Convert a function first: gaitdisc.simulation_from_function(function).",
         )
     text = _python_text(simulation) if isinstance(simulation, PythonSimulation) else simulation_text(simulation)
     with guarded("gd.write_simulation", overwrite=overwrite):
@@ -95,14 +94,14 @@ def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
         text = path.read_text(encoding="utf-8")
         table = tomllib.loads(text)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ReadError("a model is read from a TOML file", f"{path.name}: {error}", "Check the path.") from error
+        raise ReadError("a model must be a TOML file", f"{path.name}: {error}", "Check the path.") from error
     for section in ("states", "inputs", "ports"):
         own, its = [part.name for part in getattr(model, section)], list(table.get(section, {}))
         if own != its:
             raise SchemaError(
-                f"the {section} are those of {model.title!r}: {', '.join(own) or 'none'}",
+                f"the {section} must be those of {model.title!r}: {', '.join(own) or 'none'}",
                 f"{path.name} has {', '.join(its) or 'none'}",
-                "Read the file that was written of this model.",
+                "Read the file that was written from this model.",
             )
     equations = [f"{name} = {quoted(listed)}" for name, listed in model.equations]
     read = simulation_of("\n".join([text, "[equations]", *equations, ""]), path.name)

@@ -47,8 +47,8 @@ def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool
     count = len(turned) + 1
     if plan.alpha * count < 1:
         raise ComparisonError(
-            f"a permutation test at level {plan.alpha:g} needs {int(np.ceil(1 / plan.alpha))} permutations or more",
-            f"there are {count}",
+            f"a permutation test at level {plan.alpha:g} needs at least {int(np.ceil(1 / plan.alpha))} permutations",
+            f"it has {count}",
             "Raise the number of permutations, or the level.",
         )
     signs = np.ones((len(turned), n))
@@ -86,9 +86,7 @@ class ClusterTest:
 
 
 def one_sample_test(
-    curves: NDArray[np.float64],
-    plan: PermutationPlan = USUAL,
-    worth: NDArray[np.float64] | None = None,
+    curves: NDArray[np.float64], plan: PermutationPlan = USUAL, worth: NDArray[np.float64] | None = None
 ) -> ClusterTest:
     """Test whether curves lie about zero: differences of pairs, or curves minus one that is known.
 
@@ -149,8 +147,8 @@ def two_sample_test(
     _check(second, FEWEST_IN_EACH)
     if first.shape[1:] != second.shape[1:]:
         raise ShapeError(
-            "two sets of curves need the same points of the stride and channels",
-            f"found {first.shape} and {second.shape}",
+            "both sets of curves must have the same points of the stride and the same channels",
+            f"their shapes are {first.shape} and {second.shape}",
             "Normalise both to 101 points and choose the channels that both have.",
         )
     sets, shape = (first, second), first.shape[1:]
@@ -228,11 +226,11 @@ def _check(curves: NDArray[np.float64], fewest: int) -> None:
         raise ShapeError(
             "a test over the stride needs complete curves (unit, phase, channel)",
             f"found {curves.shape}" + (f", {missing} values missing" if missing else ""),
-            "Leave out strides or channels with gaps, by name.",
+            "Exclude strides or channels with gaps by name.",
         )
     if len(curves) < fewest:
         raise ComparisonError(
-            f"a permutation test at the 5 % level needs {fewest} units or more in a set",
+            f"a permutation test at the 5 % level needs at least {fewest} units in a set",
             f"found {len(curves)}",
-            "Record more strides or people; with fewer, no result could be significant.",
+            "Record more strides or people. With fewer, no result can be significant.",
         )

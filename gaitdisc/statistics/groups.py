@@ -61,13 +61,13 @@ def find_groups(
     count = int(labels.max())
     if count < 2:
         return Groups(
-            0, np.zeros_like(labels), silhouette, p, stability, "No sub-groups: nothing parts the participants"
+            0, np.zeros_like(labels), silhouette, p, stability, "No sub-groups: no feature separates the participants"
         )
-    measured = f"{count} groups part with silhouette {silhouette:.2f}, p = {p:.3f}, stability {stability:.2f}"
+    measured = f"{count} groups separate with silhouette {silhouette:.2f}, p = {p:.3f}, stability {stability:.2f}"
     if p > alpha:
-        why = f"No sub-groups: {measured}; one cloud parts as well by chance"
+        why = f"No sub-groups: {measured}; a single normal distribution separates as well by chance"
     elif stability < LEAST_STABILITY:
-        why = f"No sub-groups: {measured}; they fall apart when a fifth of the participants is left out"
+        why = f"No sub-groups: {measured}; the groups change when a fifth of the participants is left out"
     else:
         return Groups(count, labels, silhouette, p, stability, f"Sub-groups: {measured}")
     return Groups(0, np.zeros_like(labels), silhouette, p, stability, why)
@@ -148,7 +148,7 @@ def _check(features: NDArray[np.float64]) -> None:
     if features.ndim != 2 or len(features) < FEWEST or not np.isfinite(features).all():
         missing = int(np.sum(~np.isfinite(features)))
         raise ComparisonError(
-            f"sub-groups need {FEWEST} participants or more with complete features",
-            f"found {features.shape}" + (f", {missing} of the numbers missing" if missing else ""),
-            "Leave out, by name, whoever lacks a feature.",
+            f"sub-groups need at least {FEWEST} participants with complete features",
+            f"found {features.shape}" + (f", {missing} values missing" if missing else ""),
+            "Exclude participants with missing features by name.",
         )

@@ -47,16 +47,16 @@ def largest_family(p: float, alpha: float = 0.05) -> int:
 def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     """Correct a family of tests by Holm's step-down procedure with Sidak's levels.
 
-    The smallest p is held against the level of m tests, the next against that of m - 1, and so on; at the first that is
-    too large the procedure stops, and nothing after it is rejected. Adjusted p are 1 - (1 - p)^k, never below that of
-    a smaller p. The family-wise error is alpha at most for independent tests and for those that rise and fall together.
+    The smallest p is compared with the level of m tests, the next with that of m - 1, and so on. The procedure stops at
+    the first p that is too large; later hypotheses are not rejected. Adjusted p are 1 - (1 - p)^k, never below that of
+    a smaller p. The family-wise error is at most alpha for independent and for positively dependent tests.
 
     Parameters
     ----------
     p : array_like (test,)
-        Of the tests of one family, 0 to 1.
+        p-values of one family of tests, 0 to 1.
     alpha : float
-        Of the family.
+        Family-wise level.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     Raises
     ------
     ComparisonError
-        If there is no test, or a p or alpha is missing or outside of 0 to 1.
+        If there is no test, or a p or alpha is missing or outside 0 to 1.
 
     References
     ----------
@@ -83,9 +83,9 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     if not len(found) or not np.all((found >= 0) & (found <= 1)):
         wrong = [f"{value:g}" for value in found[~((found >= 0) & (found <= 1))]]
         raise ComparisonError(
-            "a family of tests needs p between 0 and 1",
-            f"found {', '.join(wrong[:5])}" if wrong else "found no test",
-            "Leave out, with a reason, what could not be tested.",
+            "the p-values of a family of tests must lie between 0 and 1",
+            f"found {', '.join(wrong[:5])}" if wrong else "there is no test",
+            "Exclude the comparisons that could not be tested, and state the reason.",
         )
     order = np.argsort(found, kind="stable")
     left = np.arange(len(found), 0, -1)
@@ -109,7 +109,7 @@ def check_level(level: float, name: str) -> None:
     """Refuse a level that is no probability between 0 and 1, as a percentage is."""
     if not 0 < level < 1:
         raise ComparisonError(
-            f"{name} is a probability between 0 and 1", f"found {level:g}", "Give a share: 0.05 for 5 %, 0.95 for 95 %."
+            f"{name} must be a probability between 0 and 1", f"found {level:g}", "Write 0.05 for 5 %, 0.95 for 95 %."
         )
 
 

@@ -23,13 +23,15 @@ def check_same(one: pd.Index, other: pd.Index, words: str) -> None:
     if len(unlike) or one.has_duplicates or other.has_duplicates:
         double = next((index for index in (one, other) if index.has_duplicates), one)
         found = (
-            f"{unlike[0]!r} is in one of them" if len(unlike) else f"{double[double.duplicated()][0]!r} stands twice"
+            f"{unlike[0]!r} is in only one of them"
+            if len(unlike)
+            else f"{double[double.duplicated()][0]!r} occurs twice"
         )
         raise ShapeError(
-            f"both tables have the same {words}, once each",
+            f"both tables must have the same {words}, each once",
             found,
-            "Leave out of both who was measured once (a missing number is NaN), and make the participant the index: "
-            'table.set_index("participant").',
+            "Remove participants who were measured only once from both tables (a missing number is NaN), and make "
+            'the participant the index: table.set_index("participant").',
         )
 
 
@@ -38,7 +40,7 @@ def check_numbers(table: pd.DataFrame, words: str) -> None:
     for name, kind in table.dtypes.items():
         if not pd.api.types.is_numeric_dtype(kind) or pd.api.types.is_bool_dtype(kind):
             raise ShapeError(
-                f"every column is one of the {words} and holds numbers",
-                f"column {name!r} holds others ({kind})",
-                'Leave it out; who was measured goes into the index: table.set_index("participant").',
+                f"every column must be one of the {words} and contain numbers",
+                f"column {name!r} contains other values ({kind})",
+                'Remove it. Participant names go into the index: table.set_index("participant").',
             )

@@ -15,10 +15,10 @@ ROUNDING = 1e-9  # of the largest value: a spread below it is rounding
 
 
 def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
-    """Coefficient of determination of every column, 1 - SSE / SST, SST about the mean of the measured part itself.
+    """Coefficient of determination of every column, 1 - SSE / SST, SST about the mean of the measured values.
 
-    It is 1 for a perfect prediction, 0 for one as good as the mean, and has no lower bound. It is NaN where it means
-    nothing; `why_no_r2` says why.
+    It is 1 for a perfect prediction, 0 for one as good as the mean, and has no lower bound. It is NaN if it is
+    undefined; `why_no_r2` gives the reason.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ShapeError
-        If the two differ in shape.
+        If the shapes differ.
 
     References
     ----------
@@ -62,13 +62,13 @@ def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> 
     measured, predicted (sample, column) [each column's unit]: as for `r2`
 
     >>> why_no_r2(np.full((3, 1), 0.5), np.zeros((3, 1)))
-    ('the measured part does not vary: 0.5 in all 3 samples',)
+    ('the measured values do not vary: 0.5 in all 3 samples',)
     """
     if np.ndim(measured) != 2 or np.shape(measured) != np.shape(predicted):
         raise ShapeError(
-            "R2 needs measured and predicted of one shape (sample, column)",
-            f"found {np.shape(measured)} and {np.shape(predicted)}",
-            "Give one prediction a sample and column.",
+            "R2 needs measured and predicted values of the same shape (sample, column)",
+            f"their shapes are {np.shape(measured)} and {np.shape(predicted)}",
+            "Give one prediction per sample and column.",
         )
     return tuple(_reason(y, f) for y, f in zip(measured.T, predicted.T, strict=True))
 
@@ -80,7 +80,7 @@ def _reason(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> st
     if missing:
         return f"{missing} of {len(measured)} samples are missing"
     if measured.std() <= ROUNDING * np.abs(measured).max():
-        return f"the measured part does not vary: {measured[0]:.6g} in all {len(measured)} samples"
+        return f"the measured values do not vary: {measured[0]:.6g} in all {len(measured)} samples"
     return ""
 
 

@@ -33,25 +33,22 @@ class SignedRank:
 
 
 def signed_rank(
-    first: ArrayLike,
-    second: ArrayLike,
-    left_out: Mapping[int, str] | None = None,
-    level: float = 0.95,
+    first: ArrayLike, second: ArrayLike, left_out: Mapping[int, str] | None = None, level: float = 0.95
 ) -> SignedRank:
-    """Test whether the differences of pairs, second minus first, lie about zero.
+    """Test whether the differences of pairs (second minus first) are centred on zero.
 
-    Differences are compared as they are, in float64; zeros are dropped from the ranking (Wilcoxon) and counted, equal
-    ones share their mean rank.
+    Differences are compared in float64. Zeros are excluded from the ranking (Wilcoxon) and counted; ties share their
+    mean rank.
 
     Parameters
     ----------
     first, second : array_like (pair,)
         In one unit, pair by pair. Two Series are paired by their index, in whatever order.
     left_out : mapping of int to str, optional
-        Pairs that are left out, with the reason. A number that is missing elsewhere is refused: libraries drop it in
-        silence, and with 10 pairs of 11 the smallest p doubles.
+        Pairs that are left out, with the reason. Other missing numbers are refused, because silently dropping one of 11
+        pairs doubles the smallest possible p.
     level : float
-        Of the interval.
+        Level of the interval.
 
     Returns
     -------
@@ -60,9 +57,9 @@ def signed_rank(
     Raises
     ------
     ShapeError
-        If the two are not of one length, or two Series are of other participants.
+        If the lengths differ, or two Series have different participants.
     ComparisonError
-        If a number is missing that nobody explains, or no pair is left.
+        If a number is missing without a reason, or no pair remains.
 
     References
     ----------
@@ -158,24 +155,24 @@ def _differences(
 ) -> NDArray[np.float64]:
     if first.ndim != 1 or first.shape != second.shape:
         raise ShapeError(
-            "a test of pairs needs two rows of numbers of one length",
-            f"found {first.shape} and {second.shape}",
-            "Give one number a participant and condition.",
+            "a paired test needs two rows of numbers of the same length",
+            f"their shapes are {first.shape} and {second.shape}",
+            "Give one number per participant and condition.",
         )
     kept = np.array([pair not in left_out for pair in range(len(first))], bool)
     differences = second - first
     missing = np.flatnonzero(kept & ~np.isfinite(differences))
     if len(missing):
         raise ComparisonError(
-            "a test of pairs needs both numbers of every pair",
+            "a paired test needs both numbers of every pair",
             f"{len(missing)} of {len(first)} pairs lack one (pair {', '.join(str(i + 1) for i in missing)})",
-            "Leave these pairs out by name, with the reason.",
+            "Exclude these pairs by name and state the reason.",
         )
     if not kept.any():
         raise ComparisonError(
-            "a test of pairs needs at least one pair",
-            f"found {len(first)}, {len(first) - int(kept.sum())} of them left out",
-            "Give more participants.",
+            "a paired test needs at least one pair",
+            f"there are {len(first)}, {len(first) - int(kept.sum())} of them excluded",
+            "Add participants.",
         )
     return differences[kept]
 

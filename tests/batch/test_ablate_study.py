@@ -13,7 +13,7 @@ def test_a_run_keeps_what_ablate_added(study, tmp_path):
     run = ablate_study(one, tmp_path, (1.0, 300.0))
     [quantity] = run.quantities
     assert quantity.participant == "P01"
-    assert quantity.left_away[300.0].startswith("the training part has")
+    assert quantity.left_away[300.0].startswith("the training part is")
     medians = quantity.medians()
     assert medians.loc[1.0, "exo"] < medians["exo"].iloc[-1]
     assert [each.participant for each in run_study(one, tmp_path).quantities] == ["P01"]
@@ -52,4 +52,4 @@ def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
     person = person.model_copy(update={"trials": (person.trials[0], broken)})
     refused = computed_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
     assert isinstance(refused, Refusal)
-    assert says(refused.reason, "1", "to be read") and "nowhere.mot" not in refused.reason
+    assert says(refused.reason, "1", "be read") and "nowhere.mot" not in refused.reason

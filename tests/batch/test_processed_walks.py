@@ -124,10 +124,7 @@ def test_another_setting_or_file_has_another_key(overground):
 def test_the_body_s_mass_and_the_bytes_of_a_laboratory_s_marker_set_are_in_the_key(overground, tmp_path):
     person, own = overground.participants[0], tmp_path / "ours.toml"
     named = overground.model_copy(update={"kinematics": Kinematics(marker_set=str(own))})
-    keys = {
-        cycles_key(overground, person),
-        cycles_key(overground, person.model_copy(update={"mass_kg": 60.0})),
-    }
+    keys = {cycles_key(overground, person), cycles_key(overground, person.model_copy(update={"mass_kg": 60.0}))}
     for text in ("title = 'a'", "title = 'b'"):
         own.write_text(text)
         keys.add(cycles_key(named, person))
@@ -187,7 +184,7 @@ def test_two_short_walks_over_ground_that_no_model_can_use_are_pooled(overground
     models = Models(angles=ANGLES, outputs=("knee_angle_r",))
     unit = computed_unit(overground.model_copy(update={**parts, "models": models}), person, tmp_path, lambda _: None)
     assert [one.condition for one in unit.cycles] == ["walk", "exo"] and all(len(one.kept) for one in unit.cycles)
-    assert not unit.refusals and "where 10 are needed" in unit.unfitted
+    assert not unit.refusals and "10 are needed" in unit.unfitted
     treadmill = {**parts, "models": models, "strides": StrideRules(ground="treadmill")}
     refused = computed_unit(overground.model_copy(update=treadmill), person, tmp_path / "other", lambda _: None)
     assert not refused.cycles and [refusal.condition for refusal in refused.refusals] == ["walk", "exo"]

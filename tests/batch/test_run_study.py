@@ -105,7 +105,7 @@ def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
     done = run_study(study, copy, Workers(jobs=2))
     assert [response.participant for response in done.responses] == ["P01"]
     [refusal] = done.refusals
-    assert refusal.participant == "P02" and says(refusal.reason, "2 times", "(SIGKILL)")
+    assert refusal.participant == "P02" and says(refusal.reason, "(SIGKILL) 2 times")
     assert [refusal.reason for refusal in load_run(copy).refusals] == [refusal.reason]
 
 

@@ -83,5 +83,5 @@ def test_a_file_that_cannot_be_read_refuses_this_participant(study, tmp_path):
     for question in ("modalities", "sensitivity"):
         refused = computed_variants(study, person, tmp_path, question, lambda _: None)
         assert isinstance(refused, Refusal)
-        assert says(refused.reason, "1", "to be read") and "gone.mot" not in refused.reason
+        assert says(refused.reason, "1", "be read") and "gone.mot" not in refused.reason
     assert not list(Path(tmp_path).rglob("variants.json"))

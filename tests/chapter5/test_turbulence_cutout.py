@@ -33,7 +33,7 @@ def test_what_is_wrong_is_said(tmp_path):
         read_cutout([one, written(tmp_path / "b.h5", [1])], 0.002)
     with pytest.raises(ShapeError, match=r"c.h5.*a.h5"):
         read_cutout([one, written(tmp_path / "c.h5", [2], shift=1.0)], 0.002)
-    with pytest.raises(SamplingError, match=r"advance evenly"):
+    with pytest.raises(SamplingError, match=r"evenly spaced"):
         read_cutout([written(tmp_path / "d.h5", [1, 2, 4])], 0.002)
     with pytest.raises(ShapeError, match=r"3, 4, 3\).*e.h5.*3, 2, 3\)"):
         read_cutout([written(tmp_path / "e.h5", [1], shape=(4, 3, 2, 3))], 0.002)

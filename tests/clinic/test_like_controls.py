@@ -9,7 +9,7 @@ from texts import says
 
 from gaitdisc.clinic.like_controls import at_leg_length, described, dimensionless_speed, groups_of, like_controls
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.clinic.reference import bands, limits_of, reference_of, spatiotemporal_limits
+from gaitdisc.clinic.reference import Sample, bands, reference_of, spatiotemporal_limits
 from gaitdisc.clinic.rules import outstanding
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.clinical_reference import ReferenceLeg
@@ -111,21 +111,35 @@ def test_what_a_run_knows_of_size_and_age_reaches_the_reading():
 
 def test_limits_are_the_prediction_limits_of_a_textbook():
     """Four values 58 60 62 60 of 16 people: 60 +- t(.975, 15) 1.633 root(17/16), t = 2.131."""
-    found = limits_of(np.array([58.0, 60.0, 62.0, 60.0]), 16)
+    values = np.array([58.0, 60.0, 62.0, 60.0])
+    found = Sample(values, 16).limits()
     reach = 2.131 * np.sqrt(8 / 3) * np.sqrt(17 / 16)
     assert (found.low, found.high) == pytest.approx((60 - reach, 60 + reach), abs=1e-3)
-    assert limits_of(np.array([58.0, 60.0, 62.0, 60.0]), 16, tests=40).high > found.high
-    assert np.isinf(limits_of(np.array([58.0, 60.0]), 2).high)
+    assert found.band == pytest.approx((60 - 2 * np.sqrt(8 / 3), 60 + 2 * np.sqrt(8 / 3)))
+    assert Sample(values, 16).limits(tests=40).high > found.high
+    assert np.isinf(Sample(values[:2], 2).limits().high)
 
 
-def test_most_pages_of_healthy_people_lie_within_their_limits():
-    rng = np.random.default_rng(0)
-    inside = 0
-    for _ in range(300):
-        values, one_more = rng.normal(size=(10, 8)), rng.normal(size=8)
-        limits = [limits_of(column, 10, tests=8) for column in values.T]
-        inside += all(one.low < value < one.high for one, value in zip(limits, one_more, strict=True))
-    assert inside >= 0.92 * 300
+def test_limits_follow_the_speed_on_a_line_as_in_a_textbook():
+    """Ten people, 40 + 10 v + rest, v of mean 1 and Sxx .32: at .4 m/s 44 +- t(.975, 8) s root(1 + 1/10 + .36/.32)."""
+    speeds, rest = np.repeat([0.8, 0.8, 1.0, 1.2, 1.2], 2), np.tile([-1.0, 1.0], 5)
+    sample = Sample(40 + 10 * speeds + rest, 10, speeds)
+    found, spread = sample.limits(speed=0.4), np.sqrt(10 / 8)
+    assert found.mean == pytest.approx(44.0)
+    assert found.high - found.mean == pytest.approx(2.306 * spread * np.sqrt(1.1 + 0.36 / 0.32), rel=1e-3)
+    assert found.sd == pytest.approx(spread * np.sqrt(1 + 0.36 / 0.32))
+    assert sample.limits(speed=0.1).mean == pytest.approx(50.0)  # too far: .81 / .32 beyond 2, the line is not followed
+
+
+def test_of_healthy_pages_one_in_twenty_speaks_of_what_is_beyond_its_limits():
+    """Of 40 independent values one in 20 pages has one beyond its limits, and 4.6 % of values are outside 2 sd."""
+    rng, pages, eye = np.random.default_rng(1), 0, 0
+    for _ in range(200):
+        values, more = rng.normal(size=(20, 40)), rng.normal(size=40)
+        limits = [Sample(column, 20).limits(tests=40) for column in values.T]
+        pages += any(not one.low <= value <= one.high for one, value in zip(limits, more, strict=True))
+        eye += sum(not one.band[0] <= value <= one.band[1] for one, value in zip(limits, more, strict=True))
+    assert pages <= 20 and 0.04 < eye / 8000 < 0.08
 
 
 def test_the_first_session_of_a_person_counts_and_no_pseudonym_is_kept():

@@ -39,14 +39,21 @@ def test_without_a_reference_and_for_another_condition_the_reason_is_said():
 
 
 def test_the_light_says_why():
+    dead = tuple(Finding("refused", "dead", file, "flat", "the channel", "emg_ta_l") for file in "ab")
     found = (
-        Finding("refused", "dead", "a", "flat", "the channel", "emg_ta_l"),
+        dead[0],
+        Finding("refused", "frozen", "a", "still", "the angle", "knee_angle_l"),
         Finding("warning", "gap", "a", "0.2 s", "angles"),
+        Finding("warning", "body weight", "a", "12 %", "moments, by 12 %; weigh again"),
     )
-    few = read_beside(made_person(each=2, findings=found, refusals=(Refusal("P01", "walk 3", "unread"),)), None)
-    assert few.light == "amber"
-    assert says(few.reasons[0], "few cycles", "2 left, 2 right")
-    assert few.reasons[1:] == ("trials left out: 1", "EMG left out: 1 channel", "warnings: gap")
+    gone = (Refusal("P01", "walk 3", "unread"),)
+    few = read_beside(made_person(each=2, findings=found, refusals=gone), None)
+    assert few.light == "amber" and len(few.reasons) == 5
+    assert says(few.reasons[0], "few cycles", "2 left, 2 right", "1 trial is left out", "3")
+    assert says(few.reasons[1], "EMG", "emg_ta_l", "electrodes") and says(few.reasons[2], "knee_angle_l left out")
+    assert few.reasons[3:] == ("gap: look at the curves before you use angles", "body weight: weigh again")
+    enough = read_beside(made_person(each=3, findings=dead, refusals=gone), None)  # never plugged in, one trial bad
+    assert (enough.light, enough.reasons) == ("green", ())
     nothing = made_person(refusals=(Refusal("P01", "walk", "no cycle of P01"),))
     nothing = made_person(
         cycles=nothing.cycles.assign(kept=False), curves=np.zeros((0, *nothing.curves.shape[1:])),
@@ -162,4 +169,4 @@ def test_where_the_knee_bends_more_after_is_found_and_nothing_on_the_other_side(
 def test_few_cycles_are_not_tested_and_the_reason_is_said():
     found = contrast_of(_reading("before", each=2), _reading("after", each=2))
     assert found.spans == () and found.tested == {}
-    assert says(found.untested["l"], "6 units", "more", "2")
+    assert says(found.untested["l"], "6 units", "2")

@@ -3,6 +3,7 @@
 import errno
 import os
 import random
+import shutil
 import signal
 import stat
 import subprocess
@@ -14,8 +15,9 @@ import pytest
 from made_clinic import SOURCE, made_controls, made_person, made_run, published_table, written_table
 from texts import says
 
-from gaitdisc.commands.clinic_pages import keep_reference, kept_reference, write_people
+from gaitdisc.commands.clinic_pages import keep_reference, kept_reference, say_new_recordings, write_people
 from gaitdisc.errors import WriteError
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.results.clinical_reference import load_reference, save_reference
 from gaitdisc.results.participant_response import load_run
 from gaitdisc.results.provenance import Refusal
@@ -40,6 +42,37 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
     assert str(tmp_path) not in text
     assert says(text, "P02", "run/cycles/P02") and "unread" in text
     assert [path.name for path in sorted((tmp_path / "report" / "people").glob("*.html"))] == ["P01.html"]
+
+
+def test_new_cycles_of_a_person_cost_the_page_of_that_person(tmp_path):
+    first = made_run(made_person("P01"), made_person("P02"))
+    longer = made_run(made_person("P01"), made_person("P02", each=5))
+    people = tmp_path / "report" / "people"
+
+    def drawn(run):
+        pages = []
+        index = write_people(run, tmp_path, progress=pages.append)
+        assert says(index.read_text(encoding="utf-8"), "2 people", "P01.html", "P02.html")
+        return [page.stem for page in pages]
+
+    assert [drawn(run) for run in (first, first, longer)] == [["P01", "P02"], [], ["P02"]]
+    (people / "P01.html").write_text("another", encoding="utf-8")
+    (tmp_path / "clinic.toml").write_text('[people.P02]\ncomment = "cane"\n', encoding="utf-8")
+    assert drawn(longer) == ["P01", "P02"] and "cane" in (people / "P02.html").read_text(encoding="utf-8")
+
+
+def test_recordings_that_the_study_does_not_name_are_counted_by_pseudonym_and_not_named(tmp_path, capsys):
+    for name in ("anna/w1.c3d", "anna/w2.c3d", "anna/w3.C3D", "anna/notes.txt", "bob/w1.c3d"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(b"")
+    people = [
+        Participant(id=who, trials=(PlannedTrial(condition="walk", files=(f"{folder}/w1.c3d",)),))
+        for who, folder in (("P01", "anna"), ("P02", "bob"))
+    ]
+    say_new_recordings(Study(conditions=Conditions(nominal="walk"), participants=tuple(people)).placed(tmp_path))
+    said = capsys.readouterr().err
+    assert says(said, "New recordings", "2 beside those of P01", "gaitdisc watch") and "P02" not in said
+    assert "anna" not in said and "w2" not in said
 
 
 def test_a_reference_stays_with_the_run(tmp_path):
@@ -76,7 +109,7 @@ def run_folder(tmp_path_factory):
 def test_controls_of_a_run_become_one_file(called, run_folder, tmp_path):
     done = called("reference", run_folder, "--out", tmp_path, "--group", "control")
     assert done.returncode == 0, done.stderr
-    assert says(done.stdout, "walk: 2 people, 4 legs;", "fewer", "5", "nothing")
+    assert says(done.stdout, "walk: 2 people, 4 legs;", "fewer", "5", "no deviation")
     assert load_reference(tmp_path).people("walk") == 2
 
 
@@ -185,10 +218,11 @@ def test_pages_drawn_by_killed_and_by_eight_processes_are_whole(saved, server, t
     saved(tmp_path / "whole")
     codes, seconds = server(tmp_path / "whole")
     whole = pages(tmp_path / "whole")
-    assert codes == [0] and {path.suffix for path in whole} == {".html", ".pdf", ".csv"}
+    assert codes == [0] and {path.suffix for path in whole} == {".html", ".pdf", ".csv", ".json"}
     saved(tmp_path / "killed")
     chance, kills = random.Random(4), 0
     for _ in range(4 * KILLS):
+        shutil.rmtree(tmp_path / "killed" / "report", ignore_errors=True)  # parts that stand are not drawn again
         (code,), _ = server(tmp_path / "killed", killed_after_s=chance.uniform(0, 0.8 * seconds))
         there = pages(tmp_path / "killed")
         assert there == {path: whole[path] for path in there}

@@ -30,9 +30,9 @@ def test_a_participant_of_a_study(study):
     ("words", "said"),
     [
         (["{exo}"], "a comparison needs two recordings, or a study; exo.mot is one recording. Name the measured walk"),
-        (["{exo}", "{exo}"], "hold the same bytes"),
+        (["{exo}", "{exo}"], "are identical files"),
         (["{exo}", "{natural}", "--channel", "ankle_ange_r"], "the nearest that all have is 'ankle_angle_r'"),
-        (["{exo}", "{natural}", "--detector", "force"], "strides that one detector finds in both"),
+        (["{exo}", "{natural}", "--detector", "force"], "strides that the same detector finds in both"),
     ],
 )
 def test_refusals_are_one_sentence(called, recordings, tmp_path, words, said):

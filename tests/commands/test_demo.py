@@ -6,7 +6,7 @@ def test_demo_does_the_whole_job(tmp_path, called, unpainted):
     done = called("demo", tmp_path / "demo", "--seconds", "30", "--people", "1", "--jobs", "1", "--quiet")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "demo" / "run" / "report" / "report.html").stat().st_size > 10_000
-    assert "no people" in done.stdout
+    assert "simulated" in done.stdout
 
 
 @pytest.mark.slow
@@ -18,10 +18,9 @@ def test_a_made_week_becomes_pages_that_find_what_was_planted(called, tmp_path):
     assert "knee flexion in swing: left" in pages["P02"]
     assert "Reduced dorsiflexion in swing: right" in pages["P04"]
     assert "knee flexion in swing: right" in pages["P05_before"]
-    quiet = ["None of" in pages[healthy] for healthy in ("P01", "P03", "P05_after", "P07", "P08")]
-    # limits leave some healthy people out (how many in forty, studies/clinic_rules.py counts), a knee of 50 deg beside
-    # limits of 50 to 69 deg does not: two of these five bend theirs so
-    assert sum(quiet) >= 4
+    # how many of forty healthy people have a sentence of the second tier, benchmarks/clinic_gaits.py counts
+    assert sum("■ Beyond" in pages[healthy] for healthy in ("P01", "P03", "P05_after", "P07", "P08")) <= 1
+    assert all("■ Beyond" in pages[planted] for planted in ("P02", "P04", "P05_before"))
     assert says(pages["P08"], "controls are adults", "8 years")
     assert "These controls are adults" not in pages["P01"]
     assert "no cycle is kept" in pages["P06"]

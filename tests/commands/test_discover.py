@@ -123,14 +123,14 @@ def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("simulation", "said"),
     [
-        ("power", "power.toml, line 14, [equations] v: an expression is arithmetic on names; at column 11"),
+        ("power", "power.toml, line 14, [equations] v: expressions must be arithmetic on names; at column 11"),
         ("unknown", "found the unknown name 'kk'. Did you mean 'k'?"),
-        ("port", "port.toml, line 12, [ports] push: a port stands in an equation or a definition"),
-        ("broken", "broken.toml is to be a TOML file; Expected ']'"),
-        ("absent", "a simulation is read from a TOML file; absent.toml: No such file"),
-        ("wild", "'Spring' leaves it in trial 1 after t = "),
-        ("hostile", "hostile.toml, line 14, [equations] v: an expression is arithmetic on names"),
-        ("tower", "a simulation stays finite"),
+        ("port", "port.toml, line 12, [ports] push: a port must be used in an equation or a definition"),
+        ("broken", "broken.toml must be a TOML file; Expected ']'"),
+        ("absent", "a simulation must be a TOML file; absent.toml: No such file"),
+        ("wild", "'Spring' diverges in trial 1 after t = "),
+        ("hostile", "hostile.toml, line 14, [equations] v: expressions must be arithmetic on names"),
+        ("tower", "every state of a simulation must stay within"),
         ("deep", "deep.toml, line 14, [equations] v"),
     ],
 )
@@ -140,17 +140,17 @@ def test_simulations_that_are_refused(lab, simulation, said):
 
 
 def test_a_simulation_that_blows_up_names_the_parameter(lab):
-    assert says(refusal(lab, "wild.toml", "good.csv"), "'k'", "its rate depends most")
+    assert says(refusal(lab, "wild.toml", "good.csv"), "'k'", "affects its rate most")
 
 
 @pytest.mark.parametrize(
     ("data", "said"),
     [
         ("column", "the simulation needs a measured column 'x'; column.csv has trial, time, y."),
-        ("short", "a trial has 20 samples or more; short.csv, trial '1' has 10."),
-        ("constant", "an observed channel varies: 'x'; constant.csv has 1 in every sample."),
-        ("nan", "nan.csv, line 9 (trial '1'), column 'x' has '?'."),
-        ("absent", "measured data are read from a table; absent.csv: No such file"),
+        ("short", "a trial needs 20 samples; short.csv, trial '1' has 10."),
+        ("constant", "an observed channel must vary: 'x'; constant.csv has 1 in every sample."),
+        ("nan", "nan.csv, line 9 (trial '1'), column 'x'"),
+        ("absent", "measured data must be a table; absent.csv: No such file"),
     ],
 )
 def test_data_that_are_refused(lab, data, said):

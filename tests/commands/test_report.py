@@ -34,7 +34,7 @@ def test_a_folder_with_no_page_to_draw_is_refused(tmp_path, called):
     (tmp_path / "model.json").write_text("{}")
     done = called("report", tmp_path)
     assert done.returncode == REFUSED
-    assert says(done.stderr, "none", "above", "`models`")
+    assert says(done.stderr, "no page", "above", "`models`")
     done = called("report", tmp_path / "nowhere")
     assert done.returncode == REFUSED and "nowhere is no folder" in done.stderr
 
@@ -102,7 +102,7 @@ def test_a_language_is_written_filled_in_kept_and_taken_away(called, run_folder,
     assert empty.returncode == 0 and "Fill in the second column" in empty.stdout
     table.write_text("English,other\nWhat stands out,Auffälliges <i>\nknee flexion,Kniebeugung\n", encoding="utf-8")
     done = called("report", run_folder, "--language", table)
-    assert done.returncode == 0 and "English stays, " in done.stdout and "hip flexion; " in done.stdout
+    assert done.returncode == 0 and "remain in English: " in done.stdout and "hip flexion; " in done.stdout
     assert "Auffälliges &lt;i&gt;" in page.read_text() and "Kniebeugung" in page.read_text()
     called("report", run_folder, "--person", "P08")
     assert "Kniebeugung" in page.read_text()

@@ -9,14 +9,14 @@ from gaitdisc.ingest.study_file import load_study
 from gaitdisc.results.clinical_reference import save_reference
 
 
-def test_whoever_stops_it_reads_that_nothing_is_lost(study, tmp_path, capsys):
+def test_whoever_stops_it_reads_that_nothing_is_lost(study, tmp_path, caplog):
     def stopped(_):
         raise KeyboardInterrupt
 
-    with pytest.raises(typer.Exit) as ended:
+    with caplog.at_level("INFO", "gaitdisc"), pytest.raises(typer.Exit) as ended:
         report_on(stopped, load_study(study), tmp_path, quiet=True)
     assert ended.value.exit_code == STOPPED
-    assert "goes on from there" in capsys.readouterr().err
+    assert "continues from there" in caplog.text
 
 
 @pytest.mark.usefixtures("unpainted")

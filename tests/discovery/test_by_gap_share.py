@@ -1,12 +1,13 @@
 from dataclasses import replace
 
 import pytest
-from hidden_in_a_mass import Experiment, mass, record, with_load
+from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover import discover
+from gaitdisc.simulation.simulation_file import simulation_of
 
 CLEAN = Experiment(seconds=8.0, noise=0.001)
 
@@ -61,3 +62,11 @@ def test_what_is_left_is_told_as_a_share(answered):
     size = found.held_out
     left = (size.after**2 - size.noise_floor**2) / (size.before**2 - size.noise_floor**2)
     assert found.to_json()["gap"]["held_out"]["unexplained"] == pytest.approx(max(left, 0.0))
+
+
+def test_a_number_ten_times_too_large_is_found_where_no_slope_at_the_files_leads_to_it():
+    stiff = simulation_of(MASS.replace("value = 24.0", "value = 240.0"), "mass.toml")
+    case = set_up_case(stiff, record(with_load("-0.6*v*abs(v)**0.5"), 5, CLEAN))
+    found = closing_most(case, scale_of(case), ())
+    (k,) = (part for part in found.now.model.parts if part.candidate.label == "wrong_parameter@k")
+    assert k.values["value"] == pytest.approx(24.0, rel=0.05)

@@ -5,7 +5,7 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.case import SHORT, set_up_case, split_in_time
+from gaitdisc.discovery.case import SHORT, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.noise import sensor_noise
@@ -144,8 +144,8 @@ def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
     assert np.isfinite(case.as_read().model.fit.misfit)
 
 
-@pytest.mark.parametrize(("lag", "steps"), [(0.1, 2), (0.004, 4)])  # two steps of 15 ms run away below 5.4 ms
-def test_a_fast_state_is_integrated_in_steps_that_do_not_run_away(lag, steps):
+def lagging(lag):
+    """A first-order lag [s] recorded every 30 ms."""
     text = f"""
 title = "Lag"
 [states.m]
@@ -162,4 +162,18 @@ m = "(u - m)/lag"
     u = np.sin(t)
     seen = np.stack([u + np.random.default_rng(seed).normal(0, 0.01, len(t)) for seed in range(4)])[..., None]
     measured = Measured(Drive.of([u[:, None]] * 4, 1 / 0.03), seen, ("1", "2", "3", "4"), ("m",))
-    assert set_up_case(simulation_of(text, "lag.toml"), measured).substeps == steps
+    return set_up_case(simulation_of(text, "lag.toml"), measured)
+
+
+@pytest.mark.parametrize(("lag", "steps"), [(0.1, 2), (0.004, 4)])  # two steps of 15 ms run away below 5.4 ms
+def test_a_fast_state_is_integrated_in_steps_that_do_not_run_away(lag, steps):
+    assert lagging(lag).substeps == steps
+
+
+@pytest.mark.parametrize(("lag", "hangs"), [(0.1, False), (0.0055, True)])  # two steps are stable above 15 ms / 2.785
+def test_what_is_found_at_the_edge_of_stability_hangs_on_the_integration_step(lag, hangs):
+    as_read = lagging(0.1).as_read()
+    values, starts = np.array([lag]), as_read.model.fit.starts + 0.5
+    fit = as_read.shooting.at(as_read.model.machine, (), values, starts)
+    now = replace(as_read, model=replace(as_read.model, fit=fit))
+    assert hangs_on_step(lagging(0.1), now) == hangs

@@ -58,22 +58,19 @@ def _refusal(tmp_path, text):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("[[shape]", "a catalogue is a TOML file of [[shape]] entries; mine.toml: "),
-        ("", "a catalogue holds [[shape]] entries and nothing else; mine.toml holds nothing"),
+        ("[[shape]", "a catalogue must be a TOML file of [[shape]] entries; mine.toml: "),
+        ("", "a catalogue must contain only [[shape]] entries; mine.toml holds nothing"),
         ('name = "x"', 'mine.toml holds name. Begin each effect with a line "[[shape]]"'),
         ("shape = [1]", "mine.toml, shape 1 is not one"),
         ('[[shape]]\nname = "a"\npiece = ["x"]', "mine.toml, shape 1 has 'piece'. Did you mean pieces?"),
         (
             '[[shape]]\nname = "a"\npieces = ["z"]\nstates = ["z"]',
-            "are names, and the time derivative of each as an expression; mine.toml, shape 1 has ['z']",
+            "must be names, each with its time derivative as an expression; mine.toml, shape 1 has ['z']",
         ),
         ('[[shape]]\nname = "a"\npieces = ["z"]\nstates = { z = "v - z/tau" }', "has 'tau'"),
         ('[[shape]]\nname = "a"\ncolour = 1', "mine.toml, shape 1 has 'colour'. Remove it."),
         ('[[shape]]\nname = "My Effect"\npieces = ["x"]', "mine.toml, shape 1 has 'My Effect'"),
-        (
-            '[[shape]]\nname = "a"\npieces = "x"',
-            "a shape's pieces are a list of expressions; mine.toml, shape 1 has 'x'",
-        ),
+        ('[[shape]]\nname = "a"\npieces = "x"', "the pieces of a shape must be a list; mine.toml, shape 1 has 'x'"),
         ('[[shape]]\nname = "a"\npieces = ["x*d"]\nconstants = { d = "guess" }', "has {'d': 'guess'}. Choose one"),
         ('[[shape]]\nname = "a"\npieces = ["x"]\nneeds = "luck"', "mine.toml, shape 1 has 'luck'. Remove the line."),
         (

@@ -306,7 +306,7 @@ def test_effects_that_are_given_are_fitted_and_nothing_is_searched():
     assert _named(discovery)[1] == [("cubic_stiffness", "load"), ("constant_load", "load")]
     assert [one.small for one in discovery.effects] == [False, True]
     assert discovery.given == "proven"
-    assert says(discovery.sentence, "given", "without constant load at the load port")
+    assert says(discovery.sentence, "given", "constant load at the load port in addition")
     assert discovery.effects[0].estimates["stiffness"].value == pytest.approx(14.0, rel=0.05)
     assert [one.name for one in augmented.effects] == ["cubic_stiffness", "constant_load"]
 
@@ -314,7 +314,7 @@ def test_effects_that_are_given_are_fitted_and_nothing_is_searched():
 def test_a_given_effect_that_is_not_there_is_refuted():
     discovery, _ = discover(mass(), record(mass(), SEED), Request(effects=("coulomb_friction@load",)))
     assert discovery.given == "refuted"
-    assert says(discovery.sentence, "do not bear it out", "p = ")
+    assert says(discovery.sentence, "do not support it", "p = ")
 
 
 def test_a_given_effect_that_does_not_exist_is_refused_with_the_nearest():

@@ -28,7 +28,7 @@ def test_a_filter_that_the_file_does_not_tell_of_is_found_and_told(filtered):
     assert case.record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
     (finding,) = (one for one in case.measured.findings if one.kind == "low-pass")
     assert finding.channel == "x"
-    assert says(finding.what, "without lag (order 2") and "say lowpass" in finding.spoils
+    assert says(finding.what, "without lag (order 2") and "state lowpass" in finding.spoils
 
 
 def test_what_the_file_says_stands(filtered):

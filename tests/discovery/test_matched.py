@@ -44,34 +44,34 @@ def gap_in_push(measured):
 WRONG = {
     "no observation": (
         lambda m: replace(m, channels=("xx",)),
-        r"every measured channel is an observation of 'A mass on a spring, pushed': x; walk.csv has 'xx', the nearest "
-        r"is 'x'. Add 'xx' to the observations, or leave the channel out.",
+        r"every measured channel must be an observation of 'A mass on a spring, pushed': x; walk.csv has 'xx', the "
+        r"nearest is 'x'. Add 'xx' to the observations, or remove the channel.",
     ),
     "twice": (
         lambda m: replace(m, channels=("x", "x"), observed=np.repeat(m.observed, 2, axis=2)),
-        r"each channel has a name of its own; walk.csv has 'x' twice. Rename one.",
+        r"each channel must have its own name; walk.csv has 'x' twice. Rename one.",
     ),
     "trial twice": (
         lambda m: replace(m, trials=("1", "1")),
-        r"each trial has a name of its own; walk.csv has trial '1' twice. Rename one.",
+        r"each trial must have its own name; walk.csv has trial '1' twice. Rename one.",
     ),
     "inputs": (
         lambda m: with_inputs(m, np.zeros((2, 200, 3))),
-        r"driven by 1 inputs: push; walk.csv has 3. Give one column for each, in this order.",
+        r"needs 1 inputs: push; walk.csv has 3. Give one column for each, in this order.",
     ),
     "input gap": (
         gap_in_push,
-        r"an input has a value in every sample; walk.csv, trial '2', 'push': nan in sample 8. Fill the gap",
+        r"an input must have a value in every sample; walk.csv, trial '2', 'push': nan in sample 8. Fill the gap",
     ),
     "no value": (
         lambda m: with_value(m, np.nan, 1),
-        r"an observed channel has values in every trial; walk.csv, trial '2' has none of 'x'. Leave the trial",
+        r"an observed channel must have values in every trial; walk.csv, trial '2' has none of 'x'. Remove the trial",
     ),
     "constant": (
         lambda m: with_value(m, 0.25, slice(None)),
-        r"an observed channel varies: 'x'; walk.csv has 0.25 in every sample. Take the channel out",
+        r"an observed channel must vary: 'x'; walk.csv has 0.25 in every sample. Remove the channel",
     ),
-    "short": (short, r"a trial has 16 samples or more; walk.csv, trial '1' has 9. Leave it out, or record longer."),
+    "short": (short, r"a trial must have at least 16 samples; walk.csv, trial '1' has 9. Remove it, or record longer."),
 }
 
 
@@ -102,11 +102,11 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
     [
         (
             "delay(x, -1)",
-            r"\[shape\] mine: a delay of a state is 0 s or more.*'delay\(x, -1\)' is -1 s. Write it without",
+            r"\[shape\] mine: the delay of a state must not be.*'delay\(x, -1\)' is -1 s. Write the delay without",
         ),
         (
             "delay(x, 1e9)",
-            r"\[shape\] mine: .* the shortest, '1', lasts 4 s; 'delay\(x, .*\)' is 1e\+09 s. Write seconds",
+            r"\[shape\] mine: .* the shortest, '1', lasts 4 s; 'delay\(x, .*\)' is 1e\+09 s. Write the delay",
         ),
     ],
 )

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.prescribed import LeftMoment, joint_finding
+from gaitdisc.discovery.prescribed import ResidualMoment, joint_finding
 
 RATE, SECONDS = 25.0, 4.0
 TIME = np.arange(0, SECONDS, 1 / RATE)
@@ -51,7 +51,7 @@ def found(left, seed=1, columns_of=lambda mine: mine):
     def seen(candidate, constants):
         return columns_of(columns(candidate, constants))
 
-    joint = LeftMoment("ankle_moment", TIME, left + noise(seed)[0], MUSCLES + left, noise(99, 4), ANGLE, seen)
+    joint = ResidualMoment("ankle_moment", TIME, left + noise(seed)[0], MUSCLES + left, noise(99, 4), ANGLE, seen)
     return joint_finding(joint, SHAPES)
 
 

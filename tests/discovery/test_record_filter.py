@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.discovery.record_filter import RecordFilter, no_filter
+from gaitdisc.discovery.record_filter import RecordFilter
 
 RUNS = np.random.default_rng(0).normal(size=(3, 5, 150, 2, 4)).cumsum(axis=2)
 
@@ -48,7 +48,7 @@ def test_it_leaves_of_white_noise_what_its_gain_says():
 
 
 def test_without_a_cut_off_nothing_is_done():
-    none = no_filter(2, 100.0)
+    none = RecordFilter((None, None), 100.0)
     assert (none.margin, none.every, none.gains.tolist()) == (0, 1, [1.0, 1.0])
     assert none.filtered(RUNS, 2) is RUNS
 

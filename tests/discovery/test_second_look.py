@@ -2,15 +2,20 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict, held_out_proof
+from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.held_out import free_run_error, grows_along_runs
 from gaitdisc.discovery.scored_model import scored
-from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_relatives
+from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_relatives, without_small
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation_file import simulation_of
 
 
 def _problem(truth, how=None):
@@ -50,3 +55,21 @@ def test_free_runs_of_what_is_right_leave_the_noise_and_refuse_what_is_wrong():
 @pytest.mark.parametrize(("truth", "cutoff_hz", "grows"), [("0", 6.0, False), ("-14*x**3", 0.0, True)])
 def test_what_is_missing_grows_along_a_run_and_a_sensors_noise_does_not(truth, cutoff_hz, grows):
     assert grows_along_runs(*_problem(with_load(truth), Experiment(seconds=12.0, cutoff_hz=cutoff_hz))) == grows
+
+
+@pytest.mark.parametrize(("truth", "shaking", "named"), [("-14*x**3", 0.0, True), ("0", 8.0, False)])
+def test_what_closes_next_to_nothing_of_the_gap_is_not_named(truth, shaking, named):
+    case, as_read = _problem(with_load(truth), Experiment(seconds=12.0, shaking=shaking))
+    found = _with(case, as_read, "cubic_stiffness@load", factor=-1.0)
+    verdict = Verdict("missing_physics", found, (), proof=held_out_proof(case, as_read, found))
+    assert (without_small(case, as_read, verdict) is verdict) == named
+    if not named:
+        assert without_small(case, as_read, verdict).rivals == (found,)
+
+
+def test_a_walk_of_which_a_simulation_describes_nothing_is_no_agreement():
+    still = simulation_of('[states.a]\nunit = "m"\n[equations]\na = "0"\n[observations]\nx = "a"', "still.toml")
+    seen = np.random.default_rng(4).normal(size=(3, 30, 1)).cumsum(axis=1)
+    measured = Measured(Drive.of([np.zeros((30, 0))] * 3, 1.0), seen, ("1", "2", "3"), ("x",))
+    found, _ = discover(still, measured)
+    assert found.verdict in ("unexplained", "process_noise")

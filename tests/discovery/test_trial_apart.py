@@ -35,7 +35,7 @@ def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the
     measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(seconds=10.0)), how)
     found, _ = discover(mass(), measured)
     assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
-    assert says(found.sentence, "'2'", "no explanation of the")
+    assert says(found.sentence, "rial '2'", "explanation", "left out")
     assert "it was left out" in found.sentence
 
 

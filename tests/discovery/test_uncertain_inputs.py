@@ -39,7 +39,7 @@ def test_what_a_stated_error_explains_as_well_is_not_named():
     found, augmented = discover(_stating(mass(), sd=2.0, wander=0.3), measured)
     assert (found.verdict, found.effects, augmented.effects) == ("no_gap", (), ())
     (said,) = (one.what for one in found.findings if one.kind == "stated errors")
-    assert "states of 'push' explain" in said and said in found.sentence
+    assert "stated errors of 'push' explain" in said and said in found.sentence
 
 
 def test_a_term_beside_a_stated_error_is_named_with_its_number_in_its_interval():

@@ -40,8 +40,8 @@ def test_a_coupling_says_to_what():
     ("verdict", "before", "words"),
     [
         ("no_gap", 0.11, ("Simulation and data", "noise")),
-        ("no_gap", 0.4, ("Nothing", "white noise", "does not grow")),
-        ("unexplained", 0.4, ("Nothing", "simulation and data", "more")),
+        ("no_gap", 0.4, ("no missing effect", "white noise", "does not grow")),
+        ("unexplained", 0.4, ("No effect is named", "simulation and data", "more")),
     ],
 )
 def test_where_nothing_is_named_it_says_what_is_left(verdict, before, words):
@@ -63,9 +63,9 @@ def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(bic, un
     rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=bic)
     size = GapSize(1, 1, 1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
     said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert says(said, "Nothing is named") == unproven
+    assert says(said, "No effect is named") == unproven
     assert (says(said, "equation", "omega", "not")) == unproven
-    assert ("agree to within the noise" in said) != unproven
+    assert ("agree within the noise" in said) != unproven
 
 
 def test_two_effects_are_both_told():
@@ -85,7 +85,7 @@ def test_a_wrong_parameter_is_told_beside_the_files_number():
 @pytest.mark.parametrize(
     ("kind", "name", "number", "said"),
     [
-        ("input_error", "input_delay", Estimate(0.04, 0.03, 0.05, "s"), "driving signal x acts late by 0.04 s"),
+        ("input_error", "input_delay", Estimate(0.04, 0.03, 0.05, "s"), "x acts later than recorded, by 0.04 s"),
         (
             "input_error",
             "input_delay",
@@ -97,23 +97,23 @@ def test_a_wrong_parameter_is_told_beside_the_files_number():
             "sensor_error",
             "sensor_gain",
             Estimate(1.2, 1.1, 1.3, "1"),
-            "x reads 1.2 (95 % 1.1-1.3) times what it should",
+            "x reads 1.2 (95 % 1.1-1.3) times the true value",
         ),
         (
             "sensor_error",
             "sensor_gain",
             Estimate(0.0178, 0.0175, 0.0181, "1"),
-            "should, as radians do that are taken for",
+            "true value, as if radians were read as",
         ),
         (
             "sensor_error",
             "sensor_gain",
             Estimate(-1.01, -1.03, -0.99, "1"),
-            "times what it should, as the other sign does",
+            "times the true value, as if its sign were reversed",
         ),
         ("sensor_error", "sensor_offset", Estimate(-0.2, -0.3, -0.1, "m"), "x reads low by 0.2 m (95 % 0.1-0.3)"),
         ("sensor_error", "sensor_drift", Estimate(0.2, 0.1, 0.3, "m/s"), "measured x drifts high by 0.2 m/s"),
-        ("sensor_error", "sensor_lag", Estimate(0.04, 0.03, 0.05, "s"), "measured x is seen late by 0.04 s"),
+        ("sensor_error", "sensor_lag", Estimate(0.04, 0.03, 0.05, "s"), "measured x lags by 0.04 s"),
     ],
 )
 def test_signals(kind, name, number, said):
@@ -128,7 +128,7 @@ def test_random_pushes():
         "equation", "v", "process_noise", "", {"strength": Estimate(3.0, float("nan"), float("nan"), "N")}
     )
     said = sentence(mass(), (), verdict="process_noise", effects=(push,), where=(Whereabouts("equation", "v", 1.0),))
-    assert says(said, "3.00 N", "equation", "no effect that repeats")
+    assert says(said, "3.00 N", "equation", "no deterministic effect")
 
 
 def test_a_shape_without_a_name_says_over_which_states():
@@ -192,10 +192,10 @@ def test_what_is_not_borne_out_says_by_which_test():
 @pytest.mark.parametrize(
     ("bounds", "said"),
     [
-        ((20.0, 28.0), "is 31.2 N/m (95 % 30.8-31.6) where the file says 24 N/m, outside its bounds, 20 to 28 N/m."),
-        ((-float("inf"), 28.0), "where the file says 24 N/m, above its bound, 28 N/m."),
-        ((35.0, float("inf")), "where the file says 24 N/m, below its bound, 35 N/m."),
-        ((20.0, 40.0), "where the file says 24 N/m. With it"),
+        ((20.0, 28.0), "is 31.2 N/m (95 % 30.8-31.6), but 24 N/m in the file, outside its bounds, 20 to 28 N/m."),
+        ((-float("inf"), 28.0), "but 24 N/m in the file, above its bound, 28 N/m."),
+        ((35.0, float("inf")), "but 24 N/m in the file, below its bound, 35 N/m."),
+        ((20.0, 40.0), "but 24 N/m in the file. With it"),
     ],
 )
 def test_a_number_outside_its_bounds_is_said_to_lie_there(bounds, said):
@@ -208,7 +208,7 @@ def test_a_number_outside_its_bounds_is_said_to_lie_there(bounds, said):
 def test_what_clearly_moved_within_its_bounds_is_said():
     clear = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
     lost = Correction("b", 1.0, Estimate(1.01, 0.9, 1.1, "N m s/rad"))
-    assert says(sentence(corrections=(clear, lost)), "moved: inertia", "0.11 kg m^2", "0.1126 kg m^2")
+    assert says(sentence(corrections=(clear, lost)), "inertia", "0.11 kg m^2", "0.1126 kg m^2")
     assert "moved" not in sentence(corrections=(lost,))
 
 
@@ -216,5 +216,5 @@ def test_where_names_explain_too_little_it_is_not_said_that_the_data_do_not_bear
     rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
     size = GapSize(1, 1, 1, 0.001, {"theta": (0.054, 0.054, 0.0087)}, 14)
     said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert says(said, "missing", "equation", "omega", "most")
+    assert says(said, "No effect", "equation", "omega", "most")
     assert "bear it out" not in said

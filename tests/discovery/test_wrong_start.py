@@ -20,7 +20,7 @@ def test_a_start_elsewhere_than_the_file_says_is_the_only_thing_named():
     found, augmented = discover(begun(3.0, 0.0), record(mass(), 7))
     assert found.verdict == "wrong_initial_condition"
     assert next((one.kind, one.name) for one in found.effects) == ("state", "wrong_initial_condition")
-    assert "Only the start is wrong" in found.sentence
+    assert "Only the initial condition is wrong" in found.sentence
     start = next(one.estimates["initial"] for one in found.effects if one.place == "x")
     assert start.low < start.value < start.high < 2.0
     assert augmented.states[0].initial == float(f"{start.value:.6g}")

@@ -3,14 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from texts import says
 
 from gaitdisc.engines.engine import Motion, read_model
 from gaitdisc.engines.expansion import FASTEST, _slowed, expanded
 from gaitdisc.engines.mapping import drafted, with_input_changed
-from gaitdisc.engines.own_runs import own_runs
-from gaitdisc.results.discovery import Runs
+from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, left_by, root_mean_square, stretches_of
+from gaitdisc.engines.written import written_model
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
@@ -124,13 +123,21 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     whole = sprung.run(Motion(np.array([[0.3]]), np.array([[0.5]]), np.zeros((1, 1))), controls[None], 100.0)
     seen = np.rad2deg(whole[:, :, :1])
     measured = Measured(Drive.of([controls], 100.0), seen, ("1",), ("pivot",))
-    span = t[None, :]
-    runs = Runs(np.zeros(1, int), span, np.zeros((1, 0)), seen, seen, seen, ("1",))
-    both = (drafted(plain, degrees=True),) * 2
-    found = own_runs((plain, sprung), both, measured, runs, whole + np.array([0.02, 0.1]))
-    before, after, unit = found.errors["pivot"]
-    assert says(found.said, "MuJoCo", "over the held-out", "pivot")
-    assert unit == "deg" and after < 1e-4 and before > 0.5
-    assert found.share == pytest.approx(after / before)
-    nothing = own_runs((sprung, sprung), both, measured, runs, whole)
-    assert nothing.share == pytest.approx(1.0)
+    at, units = stretches_of(measured, 50.0, 6), {"pivot": "deg"}
+    mapping, begun = drafted(plain, degrees=True), whole + np.array([0.02, 0.1])
+    by_hand = mapping.with_effect(Term("pivot_moment", "port", "unnamed", "-6*sin(pivot) - (pivot - sin(pivot))*6"))
+    forced = written_model(plain, by_hand)
+    assert forced.engine.pushes and not forced.absent and forced.text == plain.path.read_text()
+    models = (plain, sprung, forced.engine)
+    left = [left_by(Driven(one, mapping, measured.drive.inputs), measured, at, begun) for one in models]
+    before, after, pushed = (float(root_mean_square(one)[0]) for one in left)
+    assert after < 1e-4 and pushed < 1e-4 and before > 0.5
+    found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), 2)
+    assert says(found.said, "MuJoCo", "pivot") and not found.leave_mere_noise
+
+
+def test_white_noise_is_mere_noise_and_a_slow_bend_of_half_its_size_is_not():
+    rng, at = np.random.default_rng(4), Stretches(np.zeros(8, int), np.zeros(8, int), 200, 100.0)
+    noise, bend = rng.normal(size=(8, 200, 1)), 0.5 * np.sin(np.arange(200) / 16)[None, :, None]
+    runs = [OwnRuns(one, one, at, "MuJoCo", {"x": "rad"}, np.ones(1), 2) for one in (noise, noise + bend)]
+    assert [one.leave_mere_noise for one in runs] == [True, False]

@@ -72,10 +72,11 @@ def test_a_process_that_dies_is_told_and_replaced(model):
     os.kill(dead.pid, signal.SIGKILL)
     dead.wait()
     assert np.isfinite(model.accelerations(AT, {})).all()  # it was started anew
-    model._process.stdin.write(b"no question")
     model._process.stdin.close()
+    model._process.poll = lambda: None  # it died between two questions, and nobody knows yet
     with pytest.raises((GaitdiscError, ValueError)):
-        model._conversed("described")
+        model._query("described")
+    del model._process.poll
     model._process.kill()
     model._process.wait()  # the next test begins with a process of its own
 

@@ -43,15 +43,6 @@ def test_muscles_and_residuals_of_computed_muscle_control_explain_the_motion(wal
     assert engine.mass_kg == pytest.approx(72.6, abs=0.05) and len(engine.paths) == 18
 
 
-def test_a_short_forward_run_stays_with_the_record(walk):
-    engine, motion = walk
-    part = slice(100, 105)  # 20 ms
-    arms = engine.arms(motion.time[part], motion.q[part], motion.actuators)
-    moments = np.einsum("sa,sac->sc", motion.forces[part], arms)
-    run = engine.forward(motion.time[part], (motion.q[100], motion.v[100]), moments)
-    assert np.degrees(np.abs(run[-1] - motion.q[104]).max()) < 1.0
-
-
 def test_a_force_by_hand_moves_its_coordinate(walk):
     engine, motion = walk
     at = Motion(motion.q[:1], motion.v[:1], np.zeros((1, 0)))

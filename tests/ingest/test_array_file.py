@@ -91,18 +91,18 @@ def test_paths_of_both_versions(mat, path, part, expected):
 @pytest.mark.parametrize(
     ("path", "said"),
     [
-        ("dato.knee", r"a variable of numbers is needed at 'dato.knee'; it has .*, the nearest is 'data'"),
+        ("dato.knee", r"'dato.knee' must name a variable of numbers; it has .*, the nearest is 'data'"),
         ("data.knees", r"the struct has .*knee.*. Correct the path"),
         ("RKNEE", r"it holds 2 elements. Write part = \"1\" to \"2\""),
-        ("RKNEE{3}", r"it has 2 elements and no element 3. They count from 1"),
+        ("RKNEE{3}", r"it has 2 elements and no element 3. Elements are counted from 1"),
         ("data", r"it is a struct of "),
         ("data.name", r"it is text"),
-        ("data.knee(:,4)", r"it is 4 x 3. Columns count from 1"),
-        ("data.knee(2,2)", r"it is 4 x 3. Columns count from 1"),
-        ("data.knee.x", r"'x' follows an array of 4 x 3, which is no struct"),
-        ("data..knee", r"'..knee' is no path"),
-        ("wrong", r"it is complex numbers, which no recording has"),
-        ("lost", r"1 numbers in it are infinite"),
+        ("data.knee(:,4)", r"it is 4 x 3. Columns are counted from 1"),
+        ("data.knee(2,2)", r"it is 4 x 3. Columns are counted from 1"),
+        ("data.knee.x", r"'x' follows an array of 4 x 3, which is not a struct"),
+        ("data..knee", r"'..knee' is not a path"),
+        ("wrong", r"it is complex numbers, which a recording cannot contain"),
+        ("lost", r"it contains 1 infinite numbers"),
     ],
 )
 def test_what_is_not_there_is_said_in_one_sentence(mat, path, said):
@@ -128,12 +128,12 @@ def test_objects_are_never_unpickled(tmp_path, monkeypatch):
     np.savez(path, knee=np.array([_Bomb()], dtype=object))
     called = []
     monkeypatch.setattr(pickle, "load", lambda *_, **__: called.append(1))
-    with pytest.raises(ReadError, match=r"'knee'.*holds Python objects"):
+    with pytest.raises(ReadError, match=r"'knee'.*contains Python objects"):
         open_arrays(path).numbers("knee")
     bare = tmp_path / "b.npz"
     with zipfile.ZipFile(bare, "w") as packed:
         packed.writestr("knee.npy", pickle.dumps(_Bomb()))
-    with pytest.raises(ReadError, match=r"b.npz.*file; it cannot"):
+    with pytest.raises(ReadError, match=r"b.npz.*cannot"):
         open_arrays(bare).numbers("knee")
     assert not called
 

@@ -69,17 +69,17 @@ def test_times_may_be_a_variable(visual3d):
 @pytest.mark.parametrize(
     ("channels", "said"),
     [
-        ({}, r"needs the study's \[channels\] to say which variable .* export.mat holds RKNEE_ANGLE, RHEE, FP1"),
-        ({"RKNEE_ANGLE": "knee_angle_r @ 100 Hz"}, r"needs one column for 'knee_angle_r', .* it is 200 x 3"),
-        ({"RHEE": "RHEE @ 100 Hz"}, r"the marker 'RHEE' of 'RHEE' needs a unit"),
-        ({"RHEE(:,1)": "heel [furlong] @ 100 Hz"}, r"needs a unit of the closed list; found 'furlong'"),
+        ({}, r"the study's \[channels\] must state .* each variable .* export.mat holds RKNEE_ANGLE, RHEE, FP1"),
+        ({"RKNEE_ANGLE": "knee_angle_r @ 100 Hz"}, r"must have one column for 'knee_angle_r', .* its shape is 200 x 3"),
+        ({"RHEE": "RHEE @ 100 Hz"}, r"the marker 'RHEE' of 'RHEE' must have a unit"),
+        ({"RHEE(:,1)": "heel [furlong] @ 100 Hz"}, r"must be in the list of units; found 'furlong'"),
         ({"FP1(:,3)": "ground_force_r_vy [N] @ TIME"}, r"it has 2000 samples, 'TIME' has 200 times"),
-        ({"FP1(:,3)": "ground_force_r_vy [N] @ 0 Hz"}, r"needs a rate between 0.01 Hz and 1 MHz.* gives 0 Hz"),
-        ({"FP1(:,3)": "ground_force_r_vy [N] @ FRAMERATE"}, r"at 'FRAMERATE'; it has .*the nearest is 'FRAME_RATE'"),
+        ({"FP1(:,3)": "ground_force_r_vy [N] @ 0 Hz"}, r"must have a rate between 0.01 Hz and 1 MHz.* gives 0 Hz"),
+        ({"FP1(:,3)": "ground_force_r_vy [N] @ FRAMERATE"}, "'FRAMERATE'.*the nearest is 'FRAME_RATE'"),
         ({"RKNEE_ANGLE(:,1)": "knee_angle_r [rad] @ 100 Hz"}, r"rad"),
         (
             {"RHEE(:,1)": "a [V] @ 100 Hz", "RHEE(:,2)": "b [V] @ 50 Hz"},
-            r"all signals must share one time base; a has 200 samples at 100 Hz, b 200 at 50",
+            r"all signals must have one time base; a has 200 samples at 100 Hz, b 200 at 50",
         ),
     ],
 )
@@ -175,7 +175,7 @@ def test_what_is_no_data_set_of_numbers_is_refused(tmp_path):
         file.create_dataset("huge", (2**20, 2**20), np.float32, chunks=(1, 1024))
     with hdf5_file(tmp_path / "a.h5") as file:
         for name, said in (
-            ("group", r"a\.h5: 'group' .*none"),
+            ("group", r"a\.h5: 'group' "),
             ("words", r"a\.h5: 'words' .*another type"),
             ("huge", r"a\.h5: .*4294967296 bytes.*'huge' claims 4398046511104"),
             ("absent", r"a\.h5 .*HDF5.*absent"),
@@ -195,5 +195,5 @@ def test_a_text_of_variable_length_is_read_beside_and_within_a_time(tmp_path, mo
         worker.write_text("import sys, time; sys.stdin.readline(); time.sleep(60)")
         monkeypatch.setattr("gaitdisc.ingest.hdf5.TEXT_LIMIT_S", 0.1)
         monkeypatch.setattr("gaitdisc.ingest.reader_process.WORKER", worker)
-        with pytest.raises(ReadError, match=r"'units'.*'t'.*after 0\.6 s"):
+        with pytest.raises(ReadError, match=r"'units'.*'t'.*0\.6 s"):
             attributes(file, "t", path, ("units",))

@@ -97,7 +97,7 @@ def test_a_rate_that_is_no_multiple_is_reported(tmp_path, write_c3d, some_points
     path.write_bytes(content[:at] + np.float32(1003).tobytes() + content[at + 4 :])
     trial = reader.read(path)
     (said,) = (finding.what for finding in trial.findings if finding.kind == "analog rate")
-    assert says(said, "1003 Hz", "10.03 times", "100 Hz", "10 samples a frame", "1000 Hz")
+    assert says(said, "1003 Hz", "10.03 times", "100 Hz", "10 samples per frame", "1000 Hz")
     assert trial.stream("signals").rate_hz == 1000
 
 
@@ -158,7 +158,7 @@ def test_the_second_reader_is_used_and_named(tmp_path, write_c3d, some_points, s
     assert trial.stream("markers").source.reader.startswith("c3d")
     np.testing.assert_allclose(trial.stream("markers").values[:, 0], some_points[0, 0] / 1000, rtol=1e-6)
     said = [finding.what for finding in trial.findings if finding.kind == "second reader"]
-    assert said[0].endswith(f"as ezc3d could not: {crash}")
+    assert said[0].endswith(f"because ezc3d failed: {crash}")
 
 
 def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkeypatch):
@@ -221,7 +221,7 @@ def test_every_sample_is_read_or_refused_in_words(gait_data, reader):
             assert trial.streams, path.name
     assert len(paths) == 30
     assert set(refused) == {"bad_parameter_section", "sgi_int", "sgi_real"}
-    assert all("of it points" in words for words in refused.values())
+    assert all("points" in words for words in refused.values())
 
 
 def test_sixteen_emg_channels_with_equal_labels_stay_sixteen(gait_data, reader):

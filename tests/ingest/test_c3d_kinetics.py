@@ -57,7 +57,7 @@ def test_without_a_plate_the_size_of_the_numbers_decides_and_is_a_warning():
     (_, channels), findings = house_kinetics(_kinetics(), NO_PLATE, None, "a.c3d")
     assert _units(channels)["ankle_angle_r_moment"] == "N m/kg"
     assert (findings[0].severity, findings[0].kind) == ("warning", "per body mass")
-    assert says(findings[0].what, "force is beyond 11")
+    assert says(findings[0].what, "force exceeds 11")
     (_, channels), findings = house_kinetics(_kinetics(700, 90), NO_PLATE, None, "a.c3d")
     assert _units(channels)["ankle_angle_r_moment"] == "N m"
 
@@ -66,7 +66,7 @@ def test_without_a_plate_the_size_of_the_numbers_decides_and_is_a_warning():
 def test_forces_and_moments_that_contradict_each_other_are_left_and_named(reaction, ankle):
     (_, channels), findings = house_kinetics(_kinetics(reaction, ankle), NO_PLATE, 60.0, "a.c3d")
     assert set(_units(channels).values()) == {"N", "N m", "W"}
-    assert says(findings[0].what, "left", "the file states")
+    assert says(findings[0].what, "units are those of the file")
     assert findings[0].severity == "warning"
 
 
@@ -81,13 +81,13 @@ def test_a_positive_push_off_is_turned_and_the_ground_is_not():
 def test_a_negative_push_off_is_as_it_should_be():
     (values, _), findings = house_kinetics(_kinetics(ankle=-1.4), NO_PLATE, None, "a.c3d")
     np.testing.assert_array_equal(values[:, 3], -1.4 * PUSH_OFF)
-    assert "plantarflexion is negative already" in findings[-1].what
+    assert "plantarflexion is already negative" in findings[-1].what
 
 
 def test_somebody_who_stands_is_taken_as_plug_in_gait_and_said_so():
     (values, _), findings = house_kinetics(_kinetics(ankle=0.1), NO_PLATE, None, "a.c3d")
     np.testing.assert_array_equal(values[:, 3], -0.1 * PUSH_OFF)
-    assert says(findings[-1].what, "Plug-in Gait counts")
+    assert says(findings[-1].what, "as in Plug-in Gait")
     assert findings[-1].spoils
 
 

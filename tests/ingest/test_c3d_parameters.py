@@ -97,14 +97,14 @@ def test_what_is_no_c3d_file_is_named(tmp_path):
     (tmp_path / "processor.c3d").write_bytes(bytes([2, 80]) + bytes(2046))
     said = {
         "zip": "is a ZIP archive",
-        "empty": "is empty (0 bytes)",
-        "text": "it looks like text",
+        "empty": "has 0 bytes",
+        "text": "looks like text",
         "short": "has 52 bytes",
         "picture": "is a PNG picture",
         "folder": "is a folder",
         "zeros": "bytes 0 and 0",
         "processor": "has 0",
-        "missing": "is not there",
+        "missing": "does not exist",
     }
     for name, words in said.items():
         with pytest.raises(ReadError) as refusal:
@@ -174,7 +174,7 @@ def test_more_frames_than_16_bits_hold(file):
 
 
 def test_a_header_that_misses_the_data_is_refused(file):
-    with pytest.raises(ReadError, match=r"block 3, POINT:DATA_START.*4"):
+    with pytest.raises(ReadError, match=r"POINT:DATA_START.*4"):
         expected_layout(replace(file[0], data_block=3), file[1])
 
 

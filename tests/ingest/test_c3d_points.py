@@ -43,7 +43,7 @@ def test_markers_come_in_metres(unit, factor):
 def test_an_absent_unit_is_inferred_and_reported(scale, unit):
     found, findings = length_unit(_parameters(), WALK_MM * scale, "a.c3d")
     assert found == unit
-    assert f"so they are read as {unit}" in findings[0].what
+    assert f"and are read as {unit}" in findings[0].what
 
 
 def test_an_absent_unit_that_the_numbers_do_not_tell_is_refused():
@@ -53,7 +53,7 @@ def test_an_absent_unit_that_the_numbers_do_not_tell_is_refused():
 
 @pytest.mark.parametrize(("unit", "scale", "looks"), [("m", 1.0, "mm"), ("mm", 1e-3, "m")])
 def test_a_unit_that_the_numbers_contradict_is_refused(unit, scale, looks):
-    with pytest.raises(UnitError, match=rf"markers in {unit} are .* looks like {looks}"):
+    with pytest.raises(UnitError, match=rf"markers in {unit} must be .* looks like {looks}"):
         length_unit(_parameters(UNITS=(unit,)), WALK_MM * scale, "a.c3d")
 
 
@@ -101,14 +101,14 @@ def test_radians_are_converted_and_unknown_angles_keep_their_label():
 
 def test_angles_that_look_like_radians_are_reported():
     _, _, findings = _streams([[1.0, 0, 0]], ["RKneeAngles"], ANGLES=("RKneeAngles",))
-    assert says(findings[0].what, "angle is beyond 1 deg")
+    assert says(findings[0].what, "angle exceeds 1 deg")
 
 
 def test_a_place_at_exactly_the_origin_was_not_seen():
     streams, _, findings = _streams([[0.0, 0, 0, 300, 400, 0]], ["A", "B"], UNITS=("mm",))
     assert np.isnan(streams["markers"][0][0, :3]).all()
     assert streams["markers"][0][0, 5] == 0
-    assert "1 places of markers" in findings[0].what
+    assert "1 marker positions" in findings[0].what
 
 
 def test_equal_and_missing_labels_are_made_unique():
@@ -138,7 +138,7 @@ def test_outputs_to_which_one_model_adds_a_word_are_known_by_their_own_labels():
     assert [names[3], names[6], names[9]] == ["LAbsAnkleAngle.x", "LPelvisAngles.x", "LPelvisAngles_TOR.x"]
     assert streams["moments"][1][0].name == "knee_angle_l_moment"
     (said,) = [finding for finding in findings if finding.kind == "model suffix"]
-    assert said.severity == "note" and "LKneeAngles_M" in said.what and "_M; taken as LKneeAngles" in said.what
+    assert said.severity == "note" and "LKneeAngles_M" in said.what and "_M; read as LKneeAngles" in said.what
 
 
 @pytest.mark.parametrize("labels", [("LKneeAngles", "LKneeAngles_M"), ("LKneeAngles_M", "LHipAngles_F")])
@@ -239,7 +239,7 @@ def real(gait_data, tmp_path):
 @pytest.mark.parametrize(("group", "name"), [("ANALOG", "GEN_SCALE"), ("POINT", "SCALE")])
 def test_a_scale_of_everything_that_cannot_be_used_is_refused(real, reader, group, name, number):
     _with_float(real, group, name, number)
-    said = rf"finite scales other than 0; {group}:{name} of walk\.c3d is {number:g}\. Export the trial again"
+    said = rf"must be finite and not 0; {group}:{name} of walk\.c3d is {number:g}\. Export the trial again"
     with pytest.raises(ReadError, match=said):
         read_trial(real, reader=reader)
 
@@ -261,7 +261,7 @@ def test_a_channel_without_a_scale_is_missing_and_named(real, reader, number):
     trial = read_trial(real, reader=reader)
     (said,) = [f for f in trial.findings if f.kind == "scale"]
     assert said.severity == "warning" and said.file == "walk.c3d"
-    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; taken" in said.what
+    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; treated" in said.what
     emg, before = trial.stream("emg").values, sound.stream("emg").values
     gone = np.isnan(emg).all(axis=0)
     assert gone.sum() == 1

@@ -84,7 +84,7 @@ def test_an_unknown_unit_and_one_of_another_quantity_are_refused():
 def test_names_that_a_text_table_cannot_hold_are_refused():
     check_written_names(["R Tib Ant", "µ"], "a.csv")
     for name in ("a\tb", "a\nb", " a"):
-        with pytest.raises(ChannelError, match=r"a\.csv.*table holds names"):
+        with pytest.raises(ChannelError, match=r"a\.csv.*names in a text table"):
             check_written_names([name], "a.csv")
 
 
@@ -100,8 +100,7 @@ KIND = {"v": ("force", "N"), "p": ("pressure_centre", "m"), "m": ("moment", "N m
 
 
 @pytest.mark.parametrize(
-    "label",
-    ["{}", "1_{}", "2_{}", "{}_r", "{}_l", "{}_1", "{}_2", "R_{}", "L_{}", "right_{}", "left_{}"],
+    "label", ["{}", "1_{}", "2_{}", "{}_r", "{}_l", "{}_1", "{}_2", "R_{}", "L_{}", "right_{}", "left_{}"]
 )
 @pytest.mark.parametrize("stem", ["ground_force", "grf", "FP1_force", "FP2"])
 def test_the_last_letters_say_force_place_or_moment(stem, label):
@@ -205,5 +204,5 @@ def test_names_known_to_the_vocabulary_are_no_guess():
 def test_forces_and_powers_of_muscles_are_no_emg(title, unit):
     column = _column("soleus_r", title)
     assert (column.channel.name, column.channel.quantity, column.channel.unit) == ("soleus_r", "signal", unit)
-    assert column.guessed == f"{title} of a muscle, no EMG"
+    assert column.guessed == f"{title} of a muscle, not EMG"
     assert _column("soleus_r").channel.name == "emg_sol_r"

@@ -68,8 +68,8 @@ def test_what_can_be_no_persons_is_named_with_its_line(tmp_path):
     found, notes = _read(tmp_path, "subject,mass_kg,height_cm,sex\nS1,700,1.7,x\nS2,sixty,,f\n", "manifest.csv")
     assert found == {"s1": Measured(), "s2": Measured(sex="f")}
     heavy, small, sex, words = notes
-    assert says(heavy, "manifest.csv, line 2", "body mass", "700", "5 to 300 kg")
-    assert says(small, "manifest.csv, line 2", "stature", "1.7 cm", "0.4 to 2.5 m")
+    assert says(heavy, "manifest.csv, line 2", "body mass", "700", "5 and 300 kg")
+    assert says(small, "manifest.csv, line 2", "stature", "1.7 cm", "2.5 m")
     assert says(sex, "manifest.csv, line 2", "sex 'x'")
     assert says(words, "manifest.csv, line 3", "body mass 'sixty'")
 

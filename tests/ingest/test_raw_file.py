@@ -45,7 +45,7 @@ def test_a_folder_and_an_empty_file_are_refused(tmp_path):
         read_raw(tmp_path)
     with pytest.raises(ReadError, match=r"empty\.mot.*\(2 bytes\)"):
         read_raw(tmp_path / "empty.mot")
-    with pytest.raises(ReadError, match="nor its folder"):
+    with pytest.raises(ReadError, match="no such folder"):
         read_raw(tmp_path / "no" / "a.mot")
 
 

@@ -70,7 +70,7 @@ def test_a_crash_is_said(playing, process):
 
 def test_what_waits_for_ever_is_ended_by_the_clock(playing, process):
     playing("time.sleep(100)")
-    assert says(process.read(_request("a.c3d", limit_s=0.1))[0]["said"], "after 0.6 s")
+    assert says(process.read(_request("a.c3d", limit_s=0.1))[0]["said"], "within 0.6 s")
 
 
 @pytest.fixture

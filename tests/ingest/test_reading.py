@@ -60,7 +60,7 @@ def test_what_cannot_be_joined_is_refused(tmp_path):
         read_trial([one, _csv(tmp_path, "b.csv", "time,emg_sol_l")])
     trial = read_trial([_csv(tmp_path, "a.csv", "time,x [V]"), _csv(tmp_path, "b.csv", "time,y [V]", 200.0)])
     assert trial.streams["signals"].names == ("x",)
-    assert says(trial.findings[0].what, "left", "time base differs")
+    assert says(trial.findings[0].what, "excluded", "time base differs")
 
 
 def test_unknown_endings_are_refused_with_the_list(tmp_path):
@@ -68,7 +68,7 @@ def test_unknown_endings_are_refused_with_the_list(tmp_path):
         read_trial(tmp_path / "walk.cvs")
     with pytest.raises(ReadError, match=r"walk.*ending is ''"):
         read_trial(tmp_path / "walk")
-    with pytest.raises(ReadError, match="a trial needs a file"):
+    with pytest.raises(ReadError, match="a trial must have at least one file"):
         read_trial([])
 
 

@@ -46,7 +46,7 @@ def test_radians_paths_and_a_wrong_count_of_a_moco_file(gait_data):
     assert walk["hip_flexion_r"][0] == pytest.approx(np.degrees(0.3965801380677928))
     assert walk["pelvis_tx"][0] == 0.00987536
     np.testing.assert_allclose(walk["knee_angle_r_beta"], walk["knee_angle_r"], atol=0.01)  # in degrees in this one
-    assert any(says(finding.what, "40 columns, 32") for finding in trial.findings)
+    assert any(says(finding.what, "40 columns", "32") for finding in trial.findings)
 
 
 def test_simm_header_trailing_tabs_and_capital_time_of_an_emg_file(gait_data):
@@ -67,7 +67,7 @@ def test_emg_without_sides(gait_data):
     assert emg.names[:2] == ("emg_sol_r", "emg_gas")
     assert emg["emg_sol_r"][0] == 9.669363727051634438e-03
     assert emg.rate_hz == 2000.0
-    assert any("the label names no side" in finding.what for finding in trial.findings)
+    assert any("the label does not name the side" in finding.what for finding in trial.findings)
 
 
 def test_ground_forces_of_both_naming_habits(gait_data):
@@ -137,7 +137,7 @@ def test_round_trip(tmp_path_factory, recording):
 
 def test_the_writer_states_degrees_and_refuses_names_with_tabs(tmp_path):
     recording = Recording(np.arange(3.0), np.zeros((3, 1)), (Channel("a\tb", "signal", "1"),))
-    with pytest.raises(ChannelError, match="without tabs"):
+    with pytest.raises(ChannelError, match="tabs"):
         write_storage(recording, tmp_path / "a.mot")
     path = write_storage(Recording(np.arange(3.0), np.zeros((3, 1)), (KNOWN[6],)), tmp_path / "a.mot")
     assert says(path.read_text(), "inDegrees=yes\n", "endheader\ntime\thip_flexion_r\n0.0\t0.0")
@@ -157,7 +157,7 @@ def test_translations_are_never_scaled(tmp_path):
 def test_a_silent_header_is_inferred_or_refused(tmp_path):
     silent = HEAD.replace("inDegrees=yes\n", "")
     trial = read_storage(_written(tmp_path, silent + BODY))
-    assert any(finding.kind == "unit inferred" and "taken as deg" in finding.what for finding in trial.findings)
+    assert any(finding.kind == "unit inferred" and "read as deg" in finding.what for finding in trial.findings)
     still = "time\tknee_angle_r\tpelvis_tx\n" + "".join(f"{i / 100}\t0.5\t0\n" for i in range(60))
     with pytest.raises(UnitError, match=r"walk\.mot"):
         read_storage(_written(tmp_path, silent + still))
@@ -167,21 +167,17 @@ def test_a_silent_header_is_inferred_or_refused(tmp_path):
     ("change", "kind", "words"),
     [
         (lambda t: t.replace("inDegrees=yes", "inDegrees=no"), UnitError, "knee_angle_r reaches"),
-        (
-            lambda t: t[: t.index("0.3\t")],
-            ReadError,
-            r"should have 60 rows .*; it ends after 30, at line 37\. The file was",
-        ),
-        (lambda t: t[: t.index("0.3\t") + 12], ReadError, "needs 3 cells, one a column; line 38, the last line has 2"),
+        (lambda t: t[: t.index("0.3\t")], ReadError, r"must have 60 rows .*; it ends after 30, at line 37\. The file"),
+        (lambda t: t[: t.index("0.3\t") + 12], ReadError, "have 3 cells, one per column; line 38, the last line has 2"),
         (
             lambda t: t.replace("0.3\t", "0.305\t"),
             SamplingError,
             "between line 37 and line 38|between line 38 and line 39",
         ),
-        (lambda t: t.replace("0.3\t", "abc\t"), ReadError, "line 38, column 'time'; found 'abc'"),
+        (lambda t: t.replace("0.3\t", "abc\t"), ReadError, "line 38, column 'time'"),
         (lambda t: t.replace("pelvis_tx", "knee_angle_r"), ChannelError, "'knee_angle_r' in columns 2 and 3"),
         (lambda t: "\x00" + t, ReadError, "binary data"),
-        (lambda t: t.split("time")[0], ReadError, "needs a line of labels"),
+        (lambda t: t.split("time")[0], ReadError, "must have a line of labels"),
         (lambda t: t.split("0.0\t")[0], ReadError, "none follow line 7"),
     ],
 )
@@ -195,7 +191,7 @@ def test_a_last_number_that_was_cut_is_refused_where_all_lines_are_of_one_width(
     rows = "".join(f"{i / 100:12.8f}\t{40 * np.sin(i):14.8f}\n" for i in range(60))
     text = "Coordinates\ninDegrees=yes\nendheader\ntime\tknee_angle_r\n" + rows
     read_storage(_written(tmp_path, text[:-1]))
-    with pytest.raises(ReadError, match=r"27 characters.*line 64.*after 24"):
+    with pytest.raises(ReadError, match=r"27 characters.*line 64.*24"):
         read_storage(_written(tmp_path, text[:-4]))
 
 
@@ -233,15 +229,15 @@ def test_columns_that_we_wrote_ourselves_describe_themselves():
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        (["time,a", "0,1"], "header ends with the line 'endheader'; none of its 2 lines is that"),
+        (["time,a", "0,1"], "header ends with the line 'endheader'; none of its 2 lines is 'endheader'"),
         (["x", "endheadr", "time\ta"], "the nearest is 'endheadr'"),
-        (["endheader"], "needs a line of labels after 'endheader'.*; line 1 begins with ''"),
+        (["endheader"], "must have a line of labels after 'endheader'.*; line 1 begins with ''"),
         (["endheader", "knee\thip"], "line 2 begins with 'knee'"),
-        (["endheader", "time"], "line 2: there is time alone"),
+        (["endheader", "time"], "line 2: time is the only column"),
         (["endheader", "time\ta\t\tb"], "line 2: label 3 is blank"),
         (["endheader", "time\t[deg]"], "line 2: label 2 is blank"),
-        (["nRows=many", "endheader", "time\ta"], "line 1 needs a whole number after 'nrows'; found 'many'"),
-        (["inDegrees=maybe", "endheader", "time\ta"], "line 1 needs inDegrees=yes or inDegrees=no; found 'maybe'"),
+        (["nRows=many", "endheader", "time\ta"], "line 1 must have a whole number after 'nrows'; found 'many'"),
+        (["inDegrees=maybe", "endheader", "time\ta"], "line 1 must be inDegrees=yes or inDegrees=no; found 'maybe'"),
     ],
 )
 def test_what_is_no_header_is_refused_with_its_line(lines, words):

@@ -84,18 +84,18 @@ def test_the_study_names_and_units(tmp_path):
         (
             "time,foo\n0,1\n1,2\n",
             UnitError,
-            r"column 'foo' needs a unit; neither .*\. Write 'foo \[unit\]' in the header",
+            r"column 'foo' must have a unit; neither .*\. Write 'foo \[unit\]' in the header",
         ),
         ("time,Sol_r\n0,1\n1,2\n", UnitError, 'it seems to be emg_sol_r.*"Sol_r" = "emg_sol_r \\[unit\\]"'),
-        ("time,foo [furlong]\n0,1\n1,2\n", UnitError, "column 'foo \\[furlong\\]' needs a unit of the closed list"),
-        ("knee_angle_r,hip\n0,1\n", ReadError, r"needs a column 'time \[s\]' .*; line 1 is 'knee_angle_r,hip'"),
-        ("time [h],knee_angle_r\n0,1\n", ReadError, r"needs a column 'time \[s\]'"),
+        ("time,foo [furlong]\n0,1\n1,2\n", UnitError, "column 'foo \\[furlong\\]' must be in the list of units"),
+        ("knee_angle_r,hip\n0,1\n", ReadError, r"must have a column 'time \[s\]' .*; line 1 is 'knee_angle_r,hip'"),
+        ("time [h],knee_angle_r\n0,1\n", ReadError, r"must have a column 'time \[s\]'"),
         ("time,,a\n0,1,2\n", ReadError, "column 2 has none"),
         ("time,\n0,1\n", ReadError, "column 2 has none"),
         ("time,[deg]\n0,1\n", ReadError, "column 2 has none"),
-        ("time,knee_angle_r\n0,1\n1,x\n", ReadError, "line 3, column 'knee_angle_r'; found 'x'"),
-        ("time,knee_angle_r\n0,1\n1,2\n3,2\n", SamplingError, "needs a constant rate; between line"),
-        ("time,ground_force_r_vy\n0,1\n1,\n", ReadError, "ground_force_r_vy needs a number in every sample"),
+        ("time,knee_angle_r\n0,1\n1,x\n", ReadError, "line 3, column 'knee_angle_r'"),
+        ("time,knee_angle_r\n0,1\n1,2\n3,2\n", SamplingError, "must have a constant rate; between line"),
+        ("time,ground_force_r_vy\n0,1\n1,\n", ReadError, "ground_force_r_vy must have a number in every sample"),
         ("time,knee_angle_r\n", ReadError, "none follow line 1"),
         ("# nothing\n", ReadError, "walk.csv"),
     ],
@@ -116,10 +116,10 @@ def test_radians_called_degrees_are_refused(tmp_path):
 def test_bad_parquet_is_refused(tmp_path):
     path = tmp_path / "walk.parquet"
     for frame, words in [
-        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' holds others"),
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' has others"),
         (pd.DataFrame({"knee_angle_r": [0.0, 1.0]}), r"'time \[s\]'.*columns are knee_angle_r"),
-        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' is infinite"),
-        (pd.DataFrame({"time": [], "knee_angle_r": []}, dtype=float), "found no row"),
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' contains infinite"),
+        (pd.DataFrame({"time": [], "knee_angle_r": []}, dtype=float), "no row"),
     ]:
         frame.to_parquet(path)
         with pytest.raises(ReadError, match=words):
@@ -177,5 +177,5 @@ def test_a_line_of_units_below_the_header(tmp_path):
     np.testing.assert_allclose(trial.stream("emg")["emg_sol_r"], [1e-3, 2e-3])
     assert trial.stream("signals").names == ("foot",) and trial.stream("signals").rate_hz == 100.0
     path.write_text("time,knee_angle_r\ns,left\n0,1\n0.01,2\n")
-    with pytest.raises(ReadError, match=r"number is needed.*line 2"):
+    with pytest.raises(ReadError, match=r"line 2.*must contain a number"):
         read_table(path)

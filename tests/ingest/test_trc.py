@@ -70,14 +70,14 @@ def test_names_of_subjects_are_dropped_and_labels_mapped(tmp_path):
     ("old", "new", "kind", "words"),
     [
         ("PathFileType", "PathType", ReadError, "first line begins with 'PathFileType'"),
-        ("\tUnits", "", ReadError, "Units is absent"),
-        ("\tmm\n", "\tkg\n", UnitError, "found Units 'kg'"),
-        ("\t10\t2\t", "\tten\t2\t", ReadError, "NumFrames in line 3 needs a number above 0; found 'ten'"),
-        ("\t10\t2\t", "\t12\t2\t", ReadError, "should have 12 frames, .* ends after 10, at line 16"),
+        ("\tUnits", "", ReadError, "Units is"),
+        ("\tmm\n", "\tkg\n", UnitError, "Units is 'kg'"),
+        ("\t10\t2\t", "\tten\t2\t", ReadError, "NumFrames in line 3 must be above 0; found 'ten'"),
+        ("\t10\t2\t", "\t12\t2\t", ReadError, "have 12 frames,.* ends after 10, at line 16"),
         ("\n100\t", "\n50\t", SamplingError, "DataRate says 50 Hz, the times step by 0.01 s, which is 100 Hz"),
         ("LHEE", "RHEE", ChannelError, "'RHEE.x' in columns"),
-        ("\t41\t\t30\n", "\t41\n", ReadError, "needs 8 cells, one a column; line 11 has 6"),
-        ("\t41\t", "\tx\t", ReadError, "line 11, column 'LHEE.x'; found 'x'"),
+        ("\t41\t\t30\n", "\t41\n", ReadError, "must have 8 cells, one per column; line 11 has 6"),
+        ("\t41\t", "\tx\t", ReadError, r"line 11, column 'LHEE\.x'"),
         ("5\t0.040", "5\t0.035", SamplingError, "constant rate"),
     ],
 )
@@ -95,5 +95,5 @@ def test_wrong_counts_that_do_no_harm_are_reported(tmp_path):
 
 
 def test_a_header_without_markers_is_refused():
-    with pytest.raises(ReadError, match=r"of its markers.*line 4"):
+    with pytest.raises(ReadError, match=r"name its markers in line 4"):
         parsed_trc_header([*TEXT.split("\n")[:3], "Frame#\tTime\t\t"], "a.trc")

@@ -95,7 +95,7 @@ def test_the_same_labels_exchanged_in_both_trials_are_said_of_the_static_one():
     static = exchanged(static_of(PLUG_IN_GAIT), ("RHEE", "RTOE"))
     walk = exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE"))
     found = motion(walk, calibrated(static, marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
-    assert says(said(found)[0].what, "RHEE", "RTOE", "static trial makes")
+    assert says(said(found)[0].what, "RHEE", "RTOE", "static trial corrects")
     assert np.isnan(found.angles["ankle_angle_r"]).all()
     np.testing.assert_allclose(found.angles["ankle_angle_l"], KNOWN["ankle_angle_l"], atol=1e-6)
 
@@ -103,7 +103,7 @@ def test_the_same_labels_exchanged_in_both_trials_are_said_of_the_static_one():
 def test_a_pelvis_that_never_fits_refuses_the_trial_and_names_the_labels():
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     walk = exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RASI", "LASI"))
-    with pytest.raises(ShapeError, match=r"LASI.*RASI.*makes it fit"):
+    with pytest.raises(ShapeError, match=r"LASI.*RASI.*corrects"):
         motion(walk, calibration, (1, 0, 0))
 
 

@@ -105,10 +105,10 @@ def test_a_given_direction_is_made_level():
 
 @pytest.mark.parametrize("given", [(0, 0, 0), (0, 0, 1), (1, 0), (np.nan, 0, 0)])
 def test_a_direction_that_is_none_is_refused(given):
-    with pytest.raises(StrideError, match="level vector of three numbers"):
+    with pytest.raises(StrideError, match="horizontal vector of three numbers"):
         walking_frame(np.zeros((2, 3)), np.zeros((2, 3)), UP, 100.0, given)
 
 
 def test_a_pelvis_that_is_never_seen_is_refused():
-    with pytest.raises(StrideError, match="frame with the pelvis"):
+    with pytest.raises(StrideError, match="walking needs the pelvis"):
         walking_frame(np.full((2, 3), np.nan), np.zeros((2, 3)), UP, 100.0)

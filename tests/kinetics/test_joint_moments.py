@@ -126,9 +126,9 @@ def test_a_foot_without_its_heel_is_refused():
 def test_settings_that_cannot_be_are_refused():
     with pytest.raises(SamplingError, match=r"force_cutoff_hz.*0 Hz"):
         KineticsSettings(force_cutoff_hz=0.0)
-    with pytest.raises(SchemaError, match="dumas2007, deleva1996; 'winter'"):
+    with pytest.raises(SchemaError, match="dumas2007, deleva1996;"):
         KineticsSettings(inertia="winter")
-    with pytest.raises(SchemaError, match="of joint, distal; 'global'"):
+    with pytest.raises(SchemaError, match="'global'"):
         KineticsSettings(frame="global")
 
 
@@ -182,24 +182,24 @@ def test_an_unknown_sex_takes_the_mean():
 
 @pytest.mark.parametrize("mass", [0.7, 700.0, -60.0])
 def test_a_mass_that_is_no_persons_is_refused(mass):
-    with pytest.raises(UnitError, match=rf"mass.*5.*300 kg.*mass.*{mass:g} kg"):
+    with pytest.raises(UnitError, match=rf"mass.*5.*300 kg.*{mass:g} kg"):
         Person(mass)
 
 
 @pytest.mark.parametrize("mass", [None, np.nan])
 def test_a_person_without_mass_is_refused(mass):
-    with pytest.raises(UnitError, match=r"mass.*none.*PROCESSING:BODYMASS"):
+    with pytest.raises(UnitError, match=r"mass.*PROCESSING:BODYMASS"):
         Person(mass)
 
 
 def test_what_fits_no_leg_is_refused():
-    with pytest.raises(SchemaError, match=r"'f'.*'m'.*the sex given.*'w'"):
+    with pytest.raises(SchemaError, match=r"'f'.*'m'.*it is.*'w'"):
         Person(60.0, "w")
     with pytest.raises(UnitError, match=r"thigh.*0.1.*0.8 m.*thigh_r.*410 m"):
         leg_inertia(Person(60.0), "r", {"shank": 0.4, "thigh": 410.0}, FOOT)
     with pytest.raises(UnitError, match=r"the person's stature.*no"):
         leg_inertia(Person(60.0, "f"), "r", LENGTHS, FOOT, "deleva1996")
-    with pytest.raises(SchemaError, match="dumas2007, deleva1996; 'winter'"):
+    with pytest.raises(SchemaError, match="dumas2007, deleva1996;"):
         leg_inertia(Person(60.0), "r", LENGTHS, FOOT, "winter")
 
 

@@ -92,7 +92,7 @@ def test_a_force_without_its_point_is_refused(gait_data):
     values = np.array(forces.values)
     values[120:130, forces.index("ground_force_l_px")] = np.nan
     broken = replace(trial, streams={"forces": replace(forces, values=values)})
-    with pytest.raises(ReadError, match=r"ground_force_l.*_grf.mot.*\d+ N.*0\.200 s.*10 such"):
+    with pytest.raises(ReadError, match=r"ground_force_l.*_grf.mot.*\d+ N.*0\.200 s.*10"):
         platforms(broken)
 
 
@@ -226,7 +226,7 @@ def test_the_swing_between_two_steps_is_known_and_a_missed_stance_is_not():
 
 def test_a_step_left_out_is_unknown_though_events_call_it_swing():
     found = [plate("plate_1", (0.5, 1.0))]
-    two = [PlateStep("plate_1", "", 0.5, 1.0, "both feet stand on it")]
+    two = [PlateStep("plate_1", "", 0.5, 1.0, "both feet are on it")]
     loads = foot_loads(found, two, FRAMES, np.inf, {"r": [(0.3, 0.7)]})
     assert [at(loads["r"].known, t) for t in (0.4, 0.6)] == [True, False]
     assert not loads["r"].wrench.force.any()

@@ -67,5 +67,5 @@ def test_a_long_gap_stays_unknown():
 def test_frames_that_do_not_fit_are_refused():
     with pytest.raises(ShapeError, match=r"foot_r.*400 frames.*399 times"):
         segment_motions({"foot_r": turning()}, TIME[:-1], np.inf, ["foot_r"])
-    with pytest.raises(SamplingError, match="derivative needs 5 samples"):
+    with pytest.raises(SamplingError, match="5 samples"):
         segment_motion(Pose(np.zeros((3, 3)), np.tile(np.eye(3), (3, 1, 1))), 100.0)

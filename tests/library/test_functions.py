@@ -55,11 +55,11 @@ def test_observations_may_be_expressions():
 @pytest.mark.parametrize(
     ("function", "words"),
     [
-        (lambda *x: x, r"names each of its states.*'\*x'"),
-        (lambda x, a="two": -x, "a parameter of the simulation, a number or a dict of numbers; .*a='two'"),
+        (lambda *x: x, r"name each of its states.*'\*x'"),
+        (lambda x, a="two": -x, "a number or a dict of numbers;.*a='two'"),
         (lambda x: x + x.missing, "a derivative for each state.*raised AttributeError.*Call it yourself"),
         (lambda x: (x, x), "one for each derivative; .*returns 2 derivatives and has 1 arguments"),
-        (lambda x, *, push=0.0: -x, "a port stands in an equation"),
+        (lambda x, *, push=0.0: -x, "a port must be used in an equation"),
     ],
 )
 def test_what_is_no_such_function_is_refused_in_words(function, words):
@@ -183,15 +183,15 @@ def test_a_discovery_calls_a_function_to_write_it_down_and_tells_how_long_it_wil
     found, augmented = discover(watched, pd.concat(frames), progress=said.append)
     assert 0 < len(calls) < len(time)
     assert isinstance(augmented, Simulation) and found.verdict == "wrong_parameter"
-    assert any(re.fullmatch(r"1 of \d+ .*\d+ s left.*", line) for line in said)
+    assert any(re.fullmatch(r"1 of \d+ .*\d+ s remain.*", line) for line in said)
 
 
 def test_how_a_function_without_equations_is_called_is_said():
     arrays, points = simulation_from_function(many_at_once), simulation_from_function(one_at_a_time)
     assert isinstance(arrays, PythonSimulation) and isinstance(points, PythonSimulation)
-    assert says(arrays.manner, "many_at_once", "since its equations", "not")
+    assert says(arrays.manner, "many_at_once", "because its equations", "not")
     assert says(points.manner, "one_at_a_time", "called one point")
-    assert says(points.manner, "turns a number")
+    assert says(points.manner, "converts a number")
 
 
 def test_a_function_that_mixes_up_points_is_called_point_by_point():
@@ -217,7 +217,7 @@ def test_vectors_need_the_arguments_that_they_are_given_to():
 
 
 def test_a_unit_of_nothing_is_refused():
-    with pytest.raises(SimulationError, match=r"none.*'angel'.*rate, torque, length"):
+    with pytest.raises(SimulationError, match=r"'angel'.*rate, torque, length"):
         simulation_from_function(pendulum, {"angel": "rad"})
 
 
@@ -247,7 +247,7 @@ def test_a_function_that_returns_no_numbers_is_refused_with_what_it_returned(ret
 
 def test_a_function_with_noise_in_it_is_refused():
     rng = np.random.default_rng(0)
-    with pytest.raises(SimulationError, match="noise belongs to"):
+    with pytest.raises(SimulationError, match="Noise belongs to"):
         simulation_from_function(lambda x: -x + rng.normal())
 
 

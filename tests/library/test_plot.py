@@ -121,7 +121,7 @@ def test_a_discovery_is_drawn_in_degrees_with_what_is_left_and_after_loading(tmp
     gd.plot.discovery(found, ax=ax)
     assert ax.get_ylabel() == "theta [deg]"
     left = gd.plot.discovery(found, "theta", left=True)
-    assert left.get_title() == "theta: what is left" and "simulated" in left.get_legend().get_texts()[0].get_text()
+    assert left.get_title() == "theta: residual" and "initial model" in left.get_legend().get_texts()[0].get_text()
     with pytest.raises(ChannelError, match="theta, the nearest is 'theta'"):
         gd.plot.discovery(found, "thta")
 
@@ -132,7 +132,7 @@ def test_a_mismatch_and_its_gap_are_drawn():
     both, gap = gd.plot.mismatch(found, "ankle_angle_r"), gd.plot.mismatch(found, "ankle_angle_r", gap=True)
     np.testing.assert_allclose(gap.lines[1].get_ydata(), found.curves["gap"][:, 0])
     assert [text.get_text() for text in both.get_legend().get_texts()][1] == found.first
-    with pytest.raises(ChannelError, match="'knee_angle_r' is to be drawn"):
+    with pytest.raises(ChannelError, match="'knee_angle_r' cannot be drawn"):
         gd.plot.mismatch(found, "knee_angle_r")
 
 

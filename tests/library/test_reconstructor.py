@@ -52,7 +52,7 @@ def test_named_readings_are_found_by_name_and_recordings_at_their_rate():
     np.testing.assert_array_equal(model.predict(turned), model.predict(two))
     with pytest.raises(ShapeError, match=r"still; 'still'.*not.*more"):
         model.predict(turned[["a", "more"]])
-    with pytest.raises(ShapeError, match=r"none.*'a'.*both"):
+    with pytest.raises(ShapeError, match=r"'a'.*both"):
         gd.Reconstructor(rate_hz=50.0).fit(two, two[["a"]])
     channels = tuple(gd.Channel(name, "signal", "1") for name in two)
     np.testing.assert_array_equal(model.predict(gd.Recording(T, two.to_numpy(), channels)), model.predict(two))
@@ -114,7 +114,7 @@ def test_scikit_learn_clones_chains_and_searches_it():
     assert whole.score(TABLE, Y) == pytest.approx(clone(model).fit(TABLE, Y).score(TABLE, Y), abs=1e-3)
     search = GridSearchCV(model, {"kind": ["linear", "delay ridge"]}, cv=TimeSeriesSplit(2)).fit(X, Y)
     assert search.best_params_ == {"kind": "delay ridge"}  # its history reads the phase
-    with pytest.raises(TrainingError, match=r"settings kind, rate_hz.*found 'alpha'"):
+    with pytest.raises(TrainingError, match=r"kind, rate_hz.*found 'alpha'"):
         model.set_params(alpha=1.0)
 
 

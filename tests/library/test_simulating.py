@@ -33,11 +33,7 @@ def test_a_decay_follows_the_exponential():
 
 def test_inputs_may_be_a_mapping_a_table_or_a_recording():
     u = np.sin(TIME)
-    given = (
-        {"u": u},
-        pd.DataFrame({"u": u}),
-        gd.Recording(TIME, u[:, None], (Channel("u", "signal", "1"),)),
-    )
+    given = ({"u": u}, pd.DataFrame({"u": u}), gd.Recording(TIME, u[:, None], (Channel("u", "signal", "1"),)))
     runs = [gd.simulate(driven, TIME, one, {"x": 0.0}) for one in given]
     assert runs[0].names == ("x", "u")
     for run in runs[1:]:
@@ -58,12 +54,12 @@ def test_units_are_those_of_the_simulation():
 @pytest.mark.parametrize(
     ("keywords", "error", "words"),
     [
-        ({}, SimulationError, r"'u' is not among the inputs given \(none\)"),
-        ({"inputs": {"u": np.zeros(3)}}, ShapeError, r"'u' has one value a time; found \(3,\) at 201 times"),
+        ({}, SimulationError, r"'u' is not among the given inputs \(none\)"),
+        ({"inputs": {"u": np.zeros(3)}}, ShapeError, r"'u' must have one value per time; .* \(3,\), for 201 times"),
         ({"inputs": {"u": np.full(201, np.nan)}}, SimulationError, "'u' is missing at t = 1 s"),
-        ({"inputs": {"u": np.zeros(201)}}, SimulationError, "the state 'x' has no initial value"),
+        ({"inputs": {"u": np.zeros(201)}}, SimulationError, "the state 'x' has none"),
         ({"inputs": {"u": np.zeros(201)}, "start": [1.0, 2.0]}, ShapeError, "a number for each state: x"),
-        ({"inputs": {"u": np.zeros(201)}, "start": {"y": 1.0}}, SimulationError, "none called 'y'"),
+        ({"inputs": {"u": np.zeros(201)}, "start": {"y": 1.0}}, SimulationError, "there is no 'y'"),
     ],
 )
 def test_what_is_missing_is_named(keywords, error, words):
@@ -72,9 +68,9 @@ def test_what_is_missing_is_named(keywords, error, words):
 
 
 def test_time_that_is_uneven_or_one_sample_is_refused():
-    with pytest.raises(SamplingError, match="a constant rate"):
+    with pytest.raises(SamplingError, match="a constant"):
         gd.simulate(lambda x: -x, [0.0, 0.1, 0.4], start=[1.0])
-    with pytest.raises(ShapeError, match="three or more"):
+    with pytest.raises(ShapeError, match="three"):
         gd.simulate(lambda x: -x, [0.0], start=[1.0])
 
 
@@ -138,10 +134,10 @@ def test_a_table_with_times_is_read_at_the_times_of_the_run():
 
 
 def test_inputs_without_names_and_a_span_in_place_of_times_are_refused():
-    with pytest.raises(SimulationError, match=r"ndarray, without names.*inputs=\{'u'"):
+    with pytest.raises(SimulationError, match=r"without names.*inputs=\{'u'"):
         gd.simulate(driven, TIME, np.sin(TIME), start=[0.5])
     for time in ((0.0, 5.0), 5.0):
-        with pytest.raises(ShapeError, match=r"three or more.*np\.linspace"):
+        with pytest.raises(ShapeError, match=r"three.*np\.linspace"):
             gd.simulate(lambda x: -x, time, start=[0.5])
 
 

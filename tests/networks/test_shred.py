@@ -94,7 +94,7 @@ def test_missing_readings_in_training(echo):
     there = np.isfinite(holes.x[610:, 0])
     error = (told - echo.y[610:])[:, 0] ** 2
     assert np.mean(error[there]) < 0.3 < np.mean(error[~there])
-    with pytest.raises(TrainingError, match="needs finite numbers"):
+    with pytest.raises(TrainingError, match="must be finite"):
         train(holes.rows(slice(0, 500)), build, TrainingSettings(epochs=1))
 
 

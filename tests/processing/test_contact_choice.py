@@ -89,7 +89,7 @@ def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
     assert says(against([*left, *(("r", time) for time in moved)]).spoils, "1 contact: 50 ms", "more")
     missed = against([*left, *(("r", time) for time in np.delete(right, 12))])
     assert missed.severity == "warning"
-    assert says(missed.spoils, f"{right[12]:.2f} s", "detector has a", "none")
+    assert says(missed.spoils, f"{right[12]:.2f} s", "detector finds a", "not")
     late = against([*(("l", time) for _, time in left), *(("r", time + 0.15) for time in right)])
     assert says(late.spoils, "50 ms more")
 

@@ -61,7 +61,7 @@ def test_findings_of_one_kind_share_a_line(trial, tmp_path):
 def test_calibration_trials_are_refused_as_walking(gait_data):
     seen = inspected_file(gait_data / "treadmill_walk_ik" / "S01DN603_ik.mot")
     assert seen.light == "red"
-    assert "not used as walking" in seen.refusal
+    assert "not used as a walk" in seen.refusal
 
 
 def test_check_refuses_what_run_refuses_of_several_trials_and_no_more(folder):

@@ -145,7 +145,7 @@ def test_swapped_sides_are_refused(pieces):
     swapped = replace(pieces[0], streams={**pieces[0].streams, "kinematics": replace(kinematics, channels=channels)})
     study, person = _study(_planned(1), **OVERGROUND)
     (found,) = pooled_cycles(study, person, lambda _: swapped)
-    assert "left and right are swapped" in found.refusals[0].reason
+    assert "left and right are exchanged" in found.refusals[0].reason
 
 
 def test_a_contact_that_an_event_misses_costs_its_strides_and_not_the_trial(pieces):
@@ -280,7 +280,7 @@ def test_one_recording_saved_twice_is_counted_once(pieces):
     (found,) = pooled_cycles(study, person, lambda planned: files[int(planned.files[0][0])])
     assert set(found.kept["trial"]) == {1, 3}
     (refusal,) = found.refusals
-    assert refusal.condition == "walk 2" and says(refusal.reason, "samples are those", "P01", "1")
+    assert refusal.condition == "walk 2" and says(refusal.reason, "samples are identical", "P01", "1")
 
 
 EMG = Recording(

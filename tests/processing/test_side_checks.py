@@ -26,7 +26,7 @@ def test_belts_whose_places_are_exchanged_are_named(belts):
     forces = {key: belts.stream(key) for key in ("markers", "forces")}
     (finding,) = side_findings(replace(belts, streams=forces, surfaces=swapped), {})
     assert finding.kind == "swapped plates"
-    assert "plate_1 and plate_2 are swapped" in finding.what
+    assert "plate_1 and plate_2 are exchanged" in finding.what
 
 
 def test_forces_that_bear_the_other_foots_name_are_found_in_a_published_walk(gait_data):
@@ -78,7 +78,7 @@ def test_an_edge_under_the_sole_explains_what_is_missing_and_never_too_much(plat
     for gain, severity in ((0.77, "note"), (1.3, "warning")):
         (said,) = (one for one in plate_words(gained(cut, 2, gain)) if "plate_2" in one.what)
         assert said.severity == severity, said.what
-        assert (says(said.what, "449 N", "body weight need")) == (gain > 1)
+        assert (says(said.what, "449 N", "body weight")) == (gain > 1)
         assert ("edge" in said.what) == (gain < 1)
 
 
@@ -89,7 +89,7 @@ def test_two_plates_that_are_exchanged_have_no_foot_under_their_force(plates):
     moved = replace(walk, surfaces=swapped)
     said = plate_words(moved)
     assert sum(len(one.spans) for one in said) == 2 and all(one.severity == "warning" for one in said)
-    assert any("swapped" in one.what or "cm beside the nearest foot" in one.what for one in said)
+    assert any("exchanged" in one.what or "cm from the nearest foot" in one.what for one in said)
     assert standing_weight_n(replace(static, surfaces=swapped)) is None  # nobody stands on the plate that is loaded
 
 

@@ -85,7 +85,7 @@ def test_a_hip_of_turned_sign_is_left_out(plug_in_gait, tables, names):
     for trial in (plug_in_gait, tables):
         findings, gone = said_of(planted(trial, np.negative, *names))
         assert gone == set(names)
-        assert all("sign is turned" in finding.what for finding in findings)
+        assert all("sign is reversed" in finding.what for finding in findings)
 
 
 def test_an_offset_of_one_knee_is_left_out_where_markers_do_not_show_it(plug_in_gait, tables):
@@ -102,7 +102,7 @@ def test_moments_of_a_thousandth_are_left_out(plug_in_gait, tables):
         small = planted(trial, lambda moment: moment / 1000, *legs, stream="moments")
         (finding,), gone = said_of(small)
         assert set(legs) <= gone
-        assert says(finding.what, f"{unit}", "more", "unit is another")
+        assert says(finding.what, f"{unit}", "at least", "another unit")
         one = planted(trial, lambda moment: moment / 1000, "knee_angle_l_moment", stream="moments")
         (finding,), gone = said_of(one)
         assert gone == {finding.channel} == {"knee_angle_l_moment"}
@@ -125,7 +125,7 @@ def test_moments_of_turned_sign_are_left_out_without_powers(tables):
     for name, beside in (("hip_flexion_r", "hip_flexion_r"), ("ankle_angle_l", "ground_force_l_vy")):
         (finding,), gone = said_of(planted(tables, np.negative, f"{name}_moment", stream="moments"))
         assert gone == {f"{name}_moment"}
-        assert finding.what.startswith(f"{name}_moment goes with {beside} (r = 0.")
+        assert finding.what.startswith(f"{name}_moment correlates with {beside} (r = 0.")
 
 
 def test_an_unusual_joint_keeps_its_curves(tables, plug_in_gait):

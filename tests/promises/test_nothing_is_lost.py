@@ -150,7 +150,7 @@ def test_a_file_of_somebody_else_is_left_as_it_is(lab, monkeypatch, capsys, name
     assert contents(lab) == before
     assert mine.name in said or mine.parent.name in said, said
     if name != "chapter":  # which has a rule of its own: its folder is another one, or deleted
-        assert "was not written by gaitdisc" in said and "or give --overwrite." in said
+        assert "was not written by gaitdisc" in said and "or use --overwrite." in said
 
 
 @pytest.mark.parametrize("name", ONTO_AN_INPUT)
@@ -270,7 +270,7 @@ def test_what_writes_in_python_replaces_its_own_files_alone(tmp_path, write, nam
     path = write(tmp_path / "own" / name)
     assert write(tmp_path / "own" / name) == path
     path.write_bytes(path.read_bytes() + b"\n")
-    with pytest.raises(WriteError, match=rf"{name} .*changed since gd\.\w+.*overwrite=True"):
+    with pytest.raises(WriteError, match=rf"{name} .*changed after gd\.\w+.*overwrite=True"):
         write(path)
     write(path, overwrite=True)
     other = tmp_path / "other" / name

@@ -63,7 +63,7 @@ def test_missing_channel_names_the_nearest():
 
 
 def test_a_doubled_name_is_refused():
-    with pytest.raises(ChannelError, match="has 'knee_angle_r' 2 times"):
+    with pytest.raises(ChannelError, match="'knee_angle_r' 2 times"):
         Recording(np.arange(3) / 100, np.zeros((3, 2)), (KNEE, KNEE))
 
 
@@ -76,7 +76,7 @@ def test_a_rate_that_is_not_constant_names_the_step():
 
 def test_time_that_runs_backwards_or_is_not_a_number():
     for time in (np.array([0.0, -0.01, -0.02]), np.array([0.0, np.nan, 0.02]), np.zeros(3)):
-        with pytest.raises(SamplingError, match="constant rate"):
+        with pytest.raises(SamplingError, match="constant"):
             Recording(time, np.zeros((3, 1)), (KNEE,))
 
 
@@ -105,7 +105,7 @@ def test_a_channel_is_taken_by_its_name_and_one_name_is_one_channel():
     with pytest.raises(ChannelError, match=r"marker.*RHEE.x, RHEE.y, RHEE.z"):
         walk["RHEE"]
     for other in (["RHEE.x"], slice(0, 10), 0):
-        with pytest.raises(ChannelError, match=rf"taken by its name; found {type(other).__name__}"):
+        with pytest.raises(ChannelError, match=rf"selected by its name; found {type(other).__name__}"):
             walk[other]
 
 

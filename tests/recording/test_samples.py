@@ -26,7 +26,7 @@ def test_rows_and_other_outputs():
 
 
 def test_shapes():
-    with pytest.raises(ShapeError, match=r"samples need y.*\(10, 1\).*\(9, 1\)"):
+    with pytest.raises(ShapeError, match=r"y of the samples.*\(10, 1\).*\(9, 1\)"):
         samples().with_outputs(np.zeros((9, 1)))
 
 

@@ -67,7 +67,7 @@ def test_between_takes_whole_strides():
 
 
 def test_order_and_shape():
-    with pytest.raises(StrideError, match="starts or overlaps"):
+    with pytest.raises(StrideError, match="starts, overlaps"):
         Strides(np.array([0.0, 0.5]), np.array([1.0, 1.5]), "r", "force")
     with pytest.raises(ShapeError, match="as many ends as starts"):
         Strides(np.array([0.0, 0.5]), np.array([1.0]), "r", "force")

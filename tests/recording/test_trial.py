@@ -80,7 +80,7 @@ def test_the_severest_comes_first():
 
 
 def test_unknown_severity():
-    with pytest.raises(ValueError, match="severity is one of"):
+    with pytest.raises(ValueError, match="severity must be one of"):
         Finding("fatal", "gap", "a", "b", "c")
 
 
@@ -105,8 +105,8 @@ def test_sides_are_read_only():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"knee_width_m": {"r": 102.0}}, r"knee_width_m of side 'r' is between 0\.03 and 0\.25 m; found 102 m"),
-        ({"mass_kg": 0.7}, "mass_kg is between 5 and 300 kg; found 0.7 kg"),
+        ({"knee_width_m": {"r": 102.0}}, r"knee_width_m of side 'r' must be between 0\.03 and 0\.25 m; found 102 m"),
+        ({"mass_kg": 0.7}, "mass_kg must be between 5 and 300 kg; found 0.7 kg"),
         ({"mass_kg": 700.0}, "found 700 kg"),
         ({"height_m": 1580.0}, r"found 1580 m\. Give it in m"),
         ({"inter_asis_m": float("nan")}, "found nan m"),

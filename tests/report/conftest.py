@@ -255,7 +255,7 @@ def reconstruction():
         (Channel("a", "angle", "deg"),),
         (Channel("late", "angle", "deg"),),
         "temporal: first 70 % fitted",
-        "25 readings of each sensor, 0.04 s apart",
+        "25 samples of each sensor, 0.04 s apart",
         {"linear": "a line", "delay ridge": "a line through the history"},
         whose.assign(**errors),
         whose.assign(strides=5, n_fitted=100, **numbers),

@@ -63,7 +63,7 @@ def test_why_no_models_are_fitted_is_said(tmp_path):
     why = Refusal("P01", "", "P01 has 2 of 'walk'.")
     first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
     assert any(says(sentence, "models are fitted", "P01") for sentence in first.sentences)
-    assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
+    assert "does not compare a device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
 
 
 def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path):

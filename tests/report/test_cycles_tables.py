@@ -34,7 +34,7 @@ def test_means_and_spatiotemporal_values_are_tidy():
 
 def test_the_overview_counts_cycles_plates_and_muscles():
     table = overview_table([made_cycles(each=4, out=1)])
-    assert table.rows[0][4:8] == ("4 / 1", "4 / 1", "1, 1", "1 live, 4 cycles")
+    assert table.rows[0][4:8] == ("4 / 1", "4 / 1", "1, 1", "1 usable, 4 cycles")
     assert emg_counts(made_cycles(each=4)) == {"emg_ta_l": 4}
 
 
@@ -44,7 +44,7 @@ def test_the_overview_counts_cycles_plates_and_muscles():
         ({}, "–"),
         ({"detectors": {"markers": 1}, "contact_offset_s": 0.0598, "offset_steps": 1}, "+60 ms (1 step that a plate"),
         ({"detectors": {"markers": 1}, "contact_offset_s": 0.04, "offset_steps": 3}, "+40 ms (3 steps that a plate"),
-        ({"detectors": {"angles": 1}}, "not moved: no plate saw a step"),
+        ({"detectors": {"angles": 1}}, "not shifted: no plate recorded a step"),
     ],
 )
 def test_by_how_much_contacts_were_moved_is_said(fields, said):

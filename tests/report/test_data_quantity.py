@@ -27,7 +27,7 @@ def quantity(participant, rises):
         for model, more in (("nominal", less - 0.1), ("augmented", less), ("exo", less))
     ]
     table = pd.DataFrame(rows, columns=pd.Index(QUANTITY_COLUMNS))
-    return DataQuantity(participant, "first", table, {180.0: "the training part has 52.2 s"})
+    return DataQuantity(participant, "first", table, {180.0: "the training part is 52.2 s"})
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_what_is_drawn_is_what_lies_beside_it(run):
 def test_sentences_say_how_much_is_enough_and_what_was_left_away(run):
     first, left = quantity_sentences(run)
     assert says(first, "2 participants", "0.01")
-    assert says(first, "52 s", "(R² 0.90", "30 s")
+    assert says(first, "52 s", "0.90", "30 s")
     assert first.endswith("medians and ranges over participants.")
     assert left.endswith("180 s.")
 
@@ -105,10 +105,10 @@ def test_one_row_a_length_with_what_differs(ablated):
 
 def test_what_is_enough_is_said_with_n(ablated):
     said = " ".join(length_sentences(ablated()))
-    assert says(said, "1 s", "60 s", "none")
-    assert says(said, "whole training part", "60 s", "no")
-    assert says(said, "n = 11 participants", "no", "no")
-    assert says(" ".join(length_sentences(ablated(0.0))), "no difference is shown")
+    assert says(said, "1 s", "60 s", "not")
+    assert says(said, "entire training part", "60 s", "no")
+    assert says(said, "n = 11 participants", "non-significant", "not")
+    assert says(" ".join(length_sentences(ablated(0.0))), "do not differ significantly")
 
 
 def test_too_few_get_a_reason(ablated):

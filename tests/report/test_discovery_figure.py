@@ -41,6 +41,6 @@ def test_each_bin_has_its_own_mean_and_spread():
 
 def test_where_numbers_were_fitted_within_their_bounds_the_figure_says_so():
     moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
-    said = "its numbers fitted within their"
+    said = "its parameters fitted within their"
     assert said in discovery_figures(manufactured(corrections=(moved,)))[0].caption
     assert said not in discovery_figures(manufactured())[0].caption

@@ -16,10 +16,10 @@ from gaitdisc.results.provenance import made_now
 @pytest.mark.parametrize(
     ("section", "says", "no_word_of"),
     [
-        (SIMULATION, "Trials were cut into short runs.", "Inverse dynamics"),
+        (SIMULATION, "Trials were divided into short runs.", "Inverse dynamics"),
         (ENGINE, "The engine computed the accelerations along the smoothed record", "Inverse dynamics"),
-        (TRACKED, "Each block of the time was predicted with numbers of the rest of it", "short runs. Each run"),
-        (DEVICE, "The Nominal walk calibrated a moment model", "short runs. Each run"),
+        (TRACKED, "Each block of time was predicted", "short runs. The initial state"),
+        (DEVICE, "A moment model of this person was calibrated", "short runs. The initial state"),
     ],
 )
 def test_a_page_says_how_its_own_answer_was_made(tmp_path, unpainted, section, says, no_word_of):

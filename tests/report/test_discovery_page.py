@@ -64,7 +64,7 @@ def test_where_has_share_stride_and_region():
 def test_a_rival_is_listed_with_what_would_distinguish_it():
     table = explanations_table(manufactured(rivals=(replace(CUBIC, tied=True),)))
     assert table.rows[0][1] == "cubic_stiffness@ankle_moment"
-    assert table.rows[0][4:6] == ("640", "yes") and says(table.rows[0][6], "wider range", "both sides")
+    assert table.rows[0][4:6] == ("640", "yes") and says(table.rows[0][6], "wider range", "both")
 
 
 def test_accounts_are_listed_with_what_each_closes_of_the_held_out_gap():
@@ -84,7 +84,7 @@ def test_what_moved_within_its_bounds_has_a_table_of_its_own():
     moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
     table = corrections_table(manufactured(corrections=(moved,)))
     assert table.rows == (("inertia", "0.11 kg m^2", "0.1126 kg m^2", "0.1118 kg m^2", "0.1134 kg m^2"),)
-    assert "no finding" in table.caption
+    assert "not effects" in table.caption
     assert corrections_table(manufactured()).rows == ()
 
 
@@ -99,8 +99,8 @@ def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
     table = gap_table(manufactured(verdict="no_gap", effects=(), held_out=size))
     assert says(table.caption, "9 independent samples")
-    assert says(table.caption, "nothing", "of cubic stiffness", "ankle_moment")
-    assert "Where nothing is named" not in gap_table(manufactured()).caption
+    assert says(table.caption, "no effect is named", "of cubic stiffness", "ankle_moment")
+    assert "If no effect is named" not in gap_table(manufactured()).caption
 
 
 def test_every_held_out_trial_has_its_errors():

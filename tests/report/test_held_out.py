@@ -132,8 +132,8 @@ def test_few_strides_have_a_mean_and_no_interval(response_residual):
     assert figure.numbers["low"].isna().all()
     assert figure.numbers["mean"].notna().all()
     assert "n = 3 strides" in figure.caption
-    assert says(figure.caption, "no", "5 whole strides")
-    assert "Too few strides" in figure.alt
+    assert says(figure.caption, "no", "5 complete strides")
+    assert "too few strides" in figure.alt
     none = replace(
         response_residual, residuals={key: values[:0] for key, values in response_residual.residuals.items()}
     )

@@ -30,7 +30,7 @@ def test_the_first_sentence_is_the_answer():
     first, *rest = mismatch_sentences(compare_walks(walk("model", 0, gap=-8.0), walk("measured", 1)))
     assert re.match(r"In measured.*right ankle.* [78]\.\d deg", first)
     assert says(first, "more", "model", "12", "55 %")
-    assert says(first, "stride-to-stride sd", "p < .001); 3.")
+    assert says(first, "stride-to-stride SD", "p < .001); 3.")
     assert says(first, "the whole curve")
     assert says(rest[-1], "right", "95 %")
 
@@ -38,7 +38,7 @@ def test_the_first_sentence_is_the_answer():
 def test_no_gap_is_said_with_what_could_have_been_seen():
     first, second = mismatch_sentences(compare_walks(walk("model", 2), walk("measured", 3)))
     assert says(first, "model", "measured", "3 channels (20", "20 strides, p =")
-    assert says(second, "no", "none", "four such comparisons")
+    assert says(second, "not", "four of five such comparisons")
     assert "deg" in second
 
 
@@ -77,7 +77,7 @@ def test_what_is_smaller_than_a_clinician_would_call_one_is_not_named():
     assert found.ordered() == []
     assert not len(found.regions)
     said = mismatch_sentences(found)
-    assert says(said[0], "model", "measured", "more", "right")
+    assert says(said[0], "model", "measured", "significantly", "right")
     assert "by less than 2.0 deg" in said[0]
     assert compare_walks(one, other, smallest=Smallest(angle_deg=1.0)).ordered() == ["ankle_angle_r"]
 

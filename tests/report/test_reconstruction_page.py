@@ -69,7 +69,7 @@ def test_the_sentences_recommend_and_refuse_the_name(reconstruction):
     said = reconstruction_sentences(reconstruction)
     rmse = reconstruction.over_participants().loc["delay ridge", "rmse_deg"]
     assert math.isfinite(rmse) and f"RMSE of {rmse:.2f} deg" in said[0] and "by delay ridge" in said[0]
-    assert said[1].startswith("Beside it: linear")
+    assert said[1].startswith("For comparison: linear")
     assert "describe these participants" in said[2]
     assert "calls the norm" in said[-1]
 
@@ -83,9 +83,9 @@ def test_a_split_that_leaks_is_said(reconstruction, word):
 def test_who_errs_least_in_whom_is_said(reconstruction):
     second = reconstruction.summary.assign(participant="P02", rmse_deg=[1.0, 1.25])
     both = replace(reconstruction, summary=pd.concat([reconstruction.summary, second]))
-    assert any(says(line, "least in 1 of 2") for line in reconstruction_sentences(both))
+    assert any(says(line, "smallest error in 1 of 2") for line in reconstruction_sentences(both))
     alike = replace(both, summary=pd.concat([reconstruction.summary, second.assign(rmse_deg=[4.0, 1.0])]))
-    assert any(says(line, "least in every one", "2") for line in reconstruction_sentences(alike))
+    assert any(says(line, "smallest error in all", "2") for line in reconstruction_sentences(alike))
 
 
 def test_what_calibration_brings_is_said(reconstruction):
@@ -95,7 +95,7 @@ def test_what_calibration_brings_is_said(reconstruction):
         summary=pd.concat([reconstruction.summary, more]),
         models={**reconstruction.models, "delay ridge, calibrated": "the same, corrected"},
     )
-    [said] = [s for s in reconstruction_sentences(with_it) if s.startswith("Corrected")]
+    [said] = [s for s in reconstruction_sentences(with_it) if s.startswith("After correction")]
     assert says(said, "0.62", "1.25 deg (-50 %)")
 
 

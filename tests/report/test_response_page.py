@@ -130,7 +130,7 @@ def test_numbers_that_were_not_computed(run_maker, tmp_path):
 @pytest.mark.usefixtures("unpainted")
 def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
     (tmp_path / "report").write_text("a file, no folder")
-    with pytest.raises(GaitdiscError, match="to be written whole"):
+    with pytest.raises(GaitdiscError, match="cannot be written"):
         write_report(run, tmp_path / "report")
 
 

@@ -32,7 +32,7 @@ def variants():
     models = (("nominal", 0.5), ("augmented", 0.6), ("exo", 0.7))
     rows = [
         (word, "knee_angle_r", model, "network", r2, 50)
-        for word in ("as the study has it", "EMG 4 Hz")
+        for word in ("as in the study", "EMG 4 Hz")
         for model, r2 in models
     ]
     table = pd.DataFrame(rows, columns=pd.Index(VARIANT_COLUMNS))
@@ -99,7 +99,7 @@ def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
     with pytest.raises(SchemaError, match=r"a saved result.*run.json.*study.toml"):
         draw_saved(tmp_path)
     (tmp_path / "discovery.json").write_text(json.dumps({"verdict": "no_gap"}))
-    with pytest.raises(SchemaError, match="without a hash"):
+    with pytest.raises(SchemaError, match="without its own hash"):
         draw_saved(tmp_path)
 
 

@@ -61,16 +61,16 @@ def test_the_device_model_makes_it_worse(response):
 
 def test_ridge_wins(response):
     set_r2(response, "augmented", "ridge", 0.96)
-    assert says(participant_sentences(response)[3], "ridge beats", "(0.96", "0.94", "nothing")
+    assert says(participant_sentences(response)[3], "ridge exceeds", "(0.96", "0.94", "no advantage")
     set_r2(response, "augmented", "ridge", 0.94)
     assert participant_sentences(response)[3].endswith("the networks are no better.")
 
 
 def test_no_better_than_noise(response):
     set_r2(response, "nominal", "network", 0.49)
-    assert says(participant_sentences(response)[4], "the Nominal model", "not", "above")
+    assert says(participant_sentences(response)[4], "the Nominal model", "not exceed")
     set_r2(response, "exo", "network", 0.4)
-    assert says(participant_sentences(response)[4], "Nominal and Exo", "not", "above")
+    assert says(participant_sentences(response)[4], "Nominal and Exo", "not exceed")
 
 
 def test_one_variable_no_better_than_noise_is_named_though_the_median_is_fine(response):
@@ -88,8 +88,8 @@ def test_what_was_not_computed_is_said(response):
     assert says(participant_sentences(response)[0], "2 of 3 variables", "not")
     response.r2["r2"] = np.nan
     headline, verdict = participant_sentences(response)
-    assert says(headline, "explains an amount", "not")
-    assert says(verdict, "Whether the Discrepancy", "helps", "not")
+    assert says(headline, "explains a share", "not")
+    assert says(verdict, "not computed whether the Discrepancy")
 
 
 def test_the_study_over_participants(run_maker, refusal):
@@ -102,7 +102,7 @@ def test_the_study_over_participants(run_maker, refusal):
     assert says(who, "3 participants", "left", "P13")
     assert says(models, "Nominal 0.80 [0.80, 0.80]", "Augmented 0.82 [0.81, 0.83]")
     assert says(verdict, "raises R²", "0.02", "better", "2 of 3 participants")
-    assert says(ridge, "0.83 [0.83, 0.83]", "beats", "network", "2 of 3 participants")
+    assert says(ridge, "0.83 [0.83, 0.83]", "exceeds the network", "2 of 3 participants")
     assert "0.51" in null
 
 
@@ -111,7 +111,7 @@ def test_a_study_where_it_does_not_help(run_maker):
 
 
 def test_one_participant_carries_no_test(run_maker):
-    assert "One participant carries no test" in study_sentences(run_maker(1, outputs=OUTPUTS))[0]
+    assert "One participant is not enough for a test" in study_sentences(run_maker(1, outputs=OUTPUTS))[0]
 
 
 def test_nobody(run_maker, refusal):

@@ -33,10 +33,10 @@ def test_the_numbers_lie_under_the_name_of_their_table(tmp_path):
 
 def test_a_finding_is_written_in_five_cells_and_as_csv():
     gap = Finding("warning", "gap", "a.c3d", "0.2 s missing", "the windows", "knee_angle_r")
-    table = seen_table([gap], "Seen, n = 1.", "what was seen")
+    table = seen_table([gap], "Seen, n = 1.", "finding")
     assert table.rows == (("warning", "a.c3d", "knee_angle_r", "gap: 0.2 s missing", "the windows"),)
-    assert table.columns[3] == "what was seen"
-    assert table.numbers["what was seen"].tolist() == ["gap: 0.2 s missing"]
+    assert table.columns[3] == "finding"
+    assert table.numbers["finding"].tolist() == ["gap: 0.2 s missing"]
 
 
 def test_who_is_left_out_as_a_whole_is_left_out_of_all_walks():

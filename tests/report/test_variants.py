@@ -65,14 +65,14 @@ def test_the_table_stars_what_is_shown_to_differ():
 
 def test_the_sentences_name_the_largest_falls_and_what_they_cannot_say():
     first, second, last = modalities_sentences(variant_run())
-    assert first.startswith("Of joint angles")
+    assert first.startswith("Among joint angles")
     assert "EMG soleus (0.2" in second
     assert "cannot replace" in last
 
 
 def test_nobody_is_no_figure():
     assert modalities_figure(variant_run(0)) is None
-    assert modalities_sentences(variant_run(0)) == ("Nobody's models could be fitted.",)
+    assert modalities_sentences(variant_run(0)) == ("No participant's models could be fitted.",)
 
 
 MODELS = {"nominal": 0.8, "augmented": 0.9, "exo": 0.91}
@@ -140,7 +140,7 @@ def test_the_sentences_say_where_the_order_fails():
     assert says(said[0], "fails", "2 of 4 cases", "4 Hz", "4 Hz (EMG)")
     assert says(said[-1], "EMG 4 Hz", "left", "P00, P01")
     assert said[-1].endswith("too short; found 3 s")
-    assert "rise above what noise reaches" in sensitivity_sentences(variant_run_sensitivity(four_hz=0.4))[1]
+    assert "exceed the noise null" in sensitivity_sentences(variant_run_sensitivity(four_hz=0.4))[1]
 
 
 NO_TESTS = pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
@@ -160,10 +160,7 @@ def variant_run_page(question, variants):
 
 
 def test_a_page_stands_alone_and_is_the_same_each_time(tmp_path):
-    for question, variants in (
-        ("modalities", ("all inputs", "EMG")),
-        ("sensitivity", ("as the study has it", "EMG 4 Hz")),
-    ):
+    for question, variants in (("modalities", ("all inputs", "EMG")), ("sensitivity", ("as in the study", "EMG 4 Hz"))):
         run = variant_run_page(question, variants)
         page = write_variants(run, tmp_path / question)
         text = page.read_text(encoding="utf-8")
@@ -177,5 +174,5 @@ def test_a_page_stands_alone_and_is_the_same_each_time(tmp_path):
 def test_nobody_is_said(tmp_path):
     run = VariantRun("a study", "exo", "sensitivity", (), NO_TESTS, (), (0.0, 0.0))
     assert variant_tables(run) == []
-    assert variant_sentences(run) == ("Nobody's models could be fitted.",)
-    assert "Nobody" in write_variants(run, tmp_path).read_text(encoding="utf-8")
+    assert variant_sentences(run) == ("No participant's models could be fitted.",)
+    assert "No participant" in write_variants(run, tmp_path).read_text(encoding="utf-8")

@@ -43,7 +43,7 @@ def test_every_length_is_judged_on_the_same_samples(quantity):
 
 
 def test_a_length_that_the_trial_does_not_have_is_told(quantity):
-    assert quantity.left_away[500.0].startswith("the training part has")
+    assert quantity.left_away[500.0].startswith("the training part is")
 
 
 def test_the_last_seconds_are_other_seconds(ten, nominal, exo, settings):

@@ -144,20 +144,20 @@ def test_missing_samples_are_missing_in_the_residual(exo, settings):
 
 
 def test_walks_that_do_not_belong_together(nominal, exo, settings):
-    with pytest.raises(ChannelError, match=r"one participant; found P01.*P02"):
+    with pytest.raises(ChannelError, match=r"P01.*P02"):
         fit_response(nominal, replace(exo, subject="P02"), settings)
     renamed = replace(exo, channels=(exo.channels[0], exo.channels[1].renamed("subtalar_angle_r")))
-    with pytest.raises(ChannelError, match="apart in ankle_angle_r, subtalar_angle_r"):
+    with pytest.raises(ChannelError, match="differ in ankle_angle_r, subtalar_angle_r"):
         fit_response(nominal, renamed, settings)
 
 
 def test_walks_that_are_too_short_or_unusable_at_the_end(nominal, exo, settings):
-    with pytest.raises(SamplingError, match=r"holding out the.*60 s"):
+    with pytest.raises(SamplingError, match=r"too short to hold out.*60 s"):
         fit_response(nominal, exo, replace(settings, held_out_s=60.0))
     usable = exo.usable.copy()
     usable[-800:, 1] = False
     short = ResponseSettings(settings.outputs, training=settings.training)
-    with pytest.raises(TrainingError, match=r"50.*least.*750.*ankle_angle_r not"):
+    with pytest.raises(TrainingError, match=r"least.*50.*750.*ankle_angle_r not"):
         fit_response(nominal, replace(exo, usable=usable), short)
 
 
@@ -303,9 +303,7 @@ def test_what_is_left_away_is_counted_with_its_reason(nominal):
     samples, dropped = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
     assert len(samples) == dropped.kept == 5750
     assert np.isfinite(samples.phi).all()
-    assert says(
-        dropped.finding().line(), "P01", "left", "250 of 6000 samples left", "200 outside", "50", "knee_angle_r not"
-    )
+    assert says(dropped.finding().line(), "P01", "left", "250 of 6000 samples", "200 outside", "50", "knee_angle_r not")
     usable[:3000] = False
     assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].finding().severity == "warning"
 
@@ -313,5 +311,5 @@ def test_what_is_left_away_is_counted_with_its_reason(nominal):
 def test_an_output_that_is_not_there(nominal):
     with pytest.raises(ChannelError, match=r"'ankle_angl_r'.*P01.*2 channels"):
         gait_samples(nominal, ("ankle_angl_r",))
-    with pytest.raises(ChannelError, match=r"least.*channel to predict"):
+    with pytest.raises(ChannelError, match=r"predict at least one channel"):
         gait_samples(nominal, ())

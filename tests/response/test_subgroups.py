@@ -59,7 +59,7 @@ def test_who_lacks_points_of_the_stride_is_left_out_by_name():
     people[2].residuals["nominal"][:, 50, 0] = np.nan
     table, said = responder_table(people)
     assert "P03" not in set(table["participant"])
-    assert says(said, "n = 6 participants; left", "missing points: P03")
+    assert says(said, "n = 6 participants;", "missing points: P03")
 
 
 def test_five_are_too_few_and_it_is_said():

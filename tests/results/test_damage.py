@@ -171,7 +171,7 @@ def test_a_run_of_before_the_hash_says_so(folder):
     with pytest.raises(SchemaError, match=r"run\.json.*version of gaitdisc"):
         load_run(folder)
     [line] = damaged_units(folder)
-    assert line.startswith("modalities/people/P01/variants.json, ") and says(line, "5 more: without a hash")
+    assert line.startswith("modalities/people/P01/variants.json, ") and says(line, "5 more: without its own hash")
 
 
 def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(folder):

@@ -57,7 +57,7 @@ def test_runs_are_given_sample_by_sample_under_the_trials_name():
 
 
 def test_another_verdict_is_a_defect():
-    with pytest.raises(ValueError, match="verdict is one of"):
+    with pytest.raises(ValueError, match="verdict must be one of"):
         manufactured(verdict="perhaps")
 
 

@@ -31,7 +31,7 @@ def test_the_same_discovery_gives_the_same_bytes(tmp_path):
 
 def test_a_folder_that_cannot_be_made_is_reported(tmp_path):
     (tmp_path / "found").write_text("a file")
-    with pytest.raises(WriteError, match=r"held_out.csv.*be written whole"):
+    with pytest.raises(WriteError, match=r"held_out.csv.*cannot be written"):
         save_discovery(manufactured(), tmp_path / "found")
 
 

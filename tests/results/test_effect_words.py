@@ -63,7 +63,7 @@ def test_places_and_names_as_they_are_said():
         ("input_delay", "sensor_lag", "sharp push"),
         ("periodic_forcing", "one_sided_spring", "another cadence"),
         ("wrong_parameter", "input_gain", "drive switched off"),
-        ("wrong_parameter", "viscous_damping", "measurement of the parameter itself"),
+        ("wrong_parameter", "viscous_damping", "separate measurement of the parameter"),
         ("my_own", "cubic_stiffness", "longer trials"),
         ("one_sided_spring", "one_sided_spring", "two places"),
     ],

@@ -29,7 +29,7 @@ def test_r2_of(response):
 def test_columns_fit_the_outputs(response):
     with pytest.raises(ShapeError, match=r"residuals\[nominal\].*2.*P01"):
         replace(response, residuals={"nominal": np.zeros((3, 101, 2))})
-    with pytest.raises(ShapeError, match="101 points a stride"):
+    with pytest.raises(ShapeError, match="101 points per stride"):
         replace(response, residuals={"nominal": np.zeros((3, 51, 1))})
 
 
@@ -58,7 +58,7 @@ def test_it_comes_back_as_it_was(quantity, tmp_path):
 
 
 def test_a_table_without_its_columns(quantity):
-    with pytest.raises(SchemaError, match="that of P01 lacks n_training"):
+    with pytest.raises(SchemaError, match="of P01 lacks n_training"):
         DataQuantity("P01", "first", quantity.table.drop(columns="n_training"), {})
 
 
@@ -112,7 +112,7 @@ def test_a_table_of_variants_without_a_column_is_refused():
 
 
 def test_a_question_is_one_of_two():
-    with pytest.raises(SchemaError, match="is of the question 'why'"):
+    with pytest.raises(SchemaError, match="belongs to the question 'why'"):
         Variants("P01", "why", TABLE, {})
 
 

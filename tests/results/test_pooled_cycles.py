@@ -10,6 +10,7 @@ from made_cycles import made_cycles
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.laboratory import clinical_axes
 from gaitdisc.results.leg_curves import BY_NAME, NORMAL, PROFILE, VARIABLES, legs_of
 
 
@@ -113,14 +114,14 @@ def test_a_moment_whose_end_is_not_known_is_kept_and_one_with_an_earlier_gap_is_
     assert np.isfinite(alone[:95]).all() and np.isnan(alone[95:]).all()
 
 
-def test_every_variable_is_a_channel_of_the_vocabulary_and_has_a_place_of_its_own():
+def test_every_variable_is_a_channel_of_the_vocabulary_and_has_an_axis():
     for variable in VARIABLES:
         for side in "lr":
             channel = vocabulary().named(variable.channel(side))
             assert channel is not None, variable.name
             assert variable.unit.removesuffix("/kg") == channel.unit or (variable.unit, channel.unit) == ("%", "N")
-    places = [(one.kind != "kinematics", one.row, one.column) for one in VARIABLES]
-    assert len(set(places)) == len(places)
+    assert clinical_axes().keys() == BY_NAME.keys()
+    assert all(low < high for low, high in clinical_axes().values())
 
 
 def test_the_profile_is_the_nine_curves_of_the_paper():

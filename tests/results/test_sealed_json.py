@@ -1,4 +1,4 @@
-"""What is kept: JSON with a hash of its own, units of a study, kinds; what was changed since is refused and named."""
+"""What is kept: JSON with a hash of its own, units of a study, kinds; what was changed after is refused and named."""
 
 import json
 import pickle
@@ -59,10 +59,10 @@ def test_another_order_and_another_editors_line_ends_change_nothing(tmp_path):
     ("changed", "words"),
     [
         (lambda text: text.replace("100.0", "999.0"), "walk.json.*edited|walk.json.*changed"),
-        (lambda text: text.replace(OWN, "other"), "walk.json.*without a hash of its own: an older version of gaitdisc"),
+        (lambda text: text.replace(OWN, "other"), "walk.json.*without its own hash: an older version of gaitdisc"),
         (lambda text: text[:-8], "walk.json.*not readable as JSON"),
         (lambda text: "[" * 100_000, "walk.json.*nested too deeply"),
-        (lambda text: "[1, 2]", "walk.json.*no JSON object"),
+        (lambda text: "[1, 2]", "walk.json.*not a JSON object"),
     ],
 )
 def test_what_was_changed_is_refused(tmp_path, changed, words):
@@ -200,7 +200,7 @@ def test_no_result_is_refused(tmp_path):
 def test_a_fitted_model_has_neither_page_nor_citations(tmp_path):
     (tmp_path / "model.json").touch()
     for refused in (draw_saved, citations_of):
-        with pytest.raises(SchemaError, match=r"holds model\.json, a fitted model"):
+        with pytest.raises(SchemaError, match=r"model\.json, a fitted model"):
             refused(tmp_path)
 
 

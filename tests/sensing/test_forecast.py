@@ -52,7 +52,7 @@ def test_persistence_looks_back_within_its_own_trial():
 def test_without_strides():
     still = walk(3.0)
     none = Samples(still.x, still.y, still.inputs, still.outputs, still.time, np.full(300, np.nan))
-    with pytest.raises(StrideError, match=r"0.*100 of 100 percents"):
+    with pytest.raises(StrideError, match=r"0.*100 of 100"):
         phase_average([none])
 
 

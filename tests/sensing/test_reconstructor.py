@@ -17,11 +17,11 @@ def test_states_are_what_no_sensor_measures():
 def test_refusals(pair):
     with pytest.raises(ChannelError, match="no sensor measures; a"):
         sensing(("a",), ("a",), Lags(), 100.0)
-    with pytest.raises(ChannelError, match=r"sensors, each once.*none"):
+    with pytest.raises(ChannelError, match=r"none.*sensors"):
         sensing(("a",), (), Lags(), 100.0)
-    with pytest.raises(ChannelError, match="each once; found a, a"):
+    with pytest.raises(ChannelError, match="once; found a, a"):
         sensing(("a", "b"), ("a", "a"), Lags(), 100.0)
-    with pytest.raises(SchemaError, match="'forest' is none"):
+    with pytest.raises(SchemaError, match="'forest'"):
         fit_reconstructor("forest", pair.what, pair.parts.fitted(), pair.parts.checked())
 
 
@@ -72,7 +72,7 @@ def test_a_network_takes_the_gpu_where_there_is_one():
 
     assert fitting_device(tuple(KINDS), "cpu") == "cpu"
     assert fitting_device(tuple(KINDS), "auto") == ("cuda" if torch.cuda.is_available() else "cpu")
-    with pytest.raises(TrainingError, match=r"training is to.*'gpu'.*'auto'"):
+    with pytest.raises(TrainingError, match=r"requested device.*'gpu'.*'auto'"):
         fitting_device(("linear",), "gpu")
 
 
@@ -86,5 +86,5 @@ def test_the_latent_state_decoded_is_what_the_model_estimates(pair, untrained, k
 
 def test_a_model_without_a_recurrent_network_has_no_latent_state(pair):
     ridge = fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
-    with pytest.raises(TrainingError, match=r"the model is 'delay ridge'.*none"):
+    with pytest.raises(TrainingError, match="the model is 'delay ridge'"):
         latent_states(ridge, pair.parts.tested())

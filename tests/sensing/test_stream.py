@@ -57,7 +57,7 @@ def test_what_stands_for_a_dropped_reading(pair, fitted, way):
     states = np.array([stream.update(row) for row in lost.values[:200]])
     np.testing.assert_allclose(states, kept(lost, way).values[:200], rtol=1e-10)
     assert np.isfinite(states[50:]).all()
-    with pytest.raises(SchemaError, match="'zero' is none"):
+    with pytest.raises(SchemaError, match="'zero'"):
         Stream(fitted["delay ridge"], "zero")
 
 
@@ -81,7 +81,7 @@ def test_a_masked_model_has_learnt_to_do_without(pair):
 
 
 def test_a_reading_with_too_many_values(fitted):
-    with pytest.raises(ShapeError, match=r"found an array.*\(2,\)"):
+    with pytest.raises(ShapeError, match=r"the array.*\(2,\)"):
         Stream(fitted["linear"]).update([1.0, 2.0])
 
 
@@ -136,5 +136,5 @@ def test_the_penalty_is_rehearsed_on_another_person(pair, delayed):
 
 
 def test_too_few_strides_are_refused_in_words(pair):
-    with pytest.raises(StrideError, match=r"500 strides.*more.*P01"):
+    with pytest.raises(StrideError, match=r"500 strides.*P01"):
         first_strides(pair.parts.training, 500, pair.what.reach_s)

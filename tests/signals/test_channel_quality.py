@@ -56,7 +56,7 @@ def planted(made, fault):
         ("gap", "1 gap, 0.400 s"),
         ("flat", "3 deg throughout"),
         ("clipped", "stops at 50 deg, in 2"),
-        ("jump", "leaps from one sample to the next, in 1 place, 0.05 s in all"),
+        ("jump", "jumps from one sample to the next, in 1 place, 0.05 s in all"),
     ],
 )
 def test_each_planted_fault_is_found_and_no_other(made, fault, words):

@@ -191,9 +191,9 @@ def test_the_finding_says_when_how_much_and_where(made):
     (finding,) = late_change_findings(*made.wandering(224, 0.3, 1, shift_sd=2.0))
     assert finding.kind == "late change"
     assert finding.what.startswith("gait changes at 1")
-    assert "stride-to-stride sd (p = 0.003)" in finding.what
+    assert "stride-to-stride SD (p = 0.003)" in finding.what
     assert finding.spans[0][0] == pytest.approx(179, abs=6)
-    assert says(finding.spoils, "leave the trial")
+    assert says(finding.spoils, "the trial")
 
 
 def test_one_odd_stride_late_is_no_change(made):
@@ -205,10 +205,10 @@ def test_one_odd_stride_late_is_no_change(made):
 
 def test_too_few_strides_are_refused_and_noted(made):
     recording, strides = made.wandering(20, 0.0, 0)
-    with pytest.raises(StrideError, match=r"24 whole strides.*walk\.mot.*19.*'r'"):
+    with pytest.raises(StrideError, match=r"24 complete strides.*walk\.mot.*19.*'r'"):
         late_change(recording, strides)
     (finding,) = late_change_findings(recording, strides)
-    assert finding.severity == "note" and says(finding.what, "not looked for", "walk.mot", "19 of side 'r'")
+    assert finding.severity == "note" and says(finding.what, "not tested", "walk.mot", "19 of side 'r'")
 
 
 def test_same_seed_same_p(made):

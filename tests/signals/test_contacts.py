@@ -53,10 +53,10 @@ def test_two_feet_are_not_compared():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (([2.0, 1.0],), "out of order or missing"),
-        (([1.0, np.nan],), "out of order or missing"),
-        (([1.0], "x"), "found side 'x', detector 'force'"),
-        (([1.0], "r", "eye"), "Detectors are force, markers, angles, events, oscillator"),
+        (([2.0, 1.0],), "missing or out of order"),
+        (([1.0, np.nan],), "missing or out of order"),
+        (([1.0], "x"), "the side is 'x', the detector 'force'"),
+        (([1.0], "r", "eye"), "are force, markers, angles, events, oscillator"),
     ],
 )
 def test_contacts_that_are_none_are_refused(arguments, words):
@@ -92,7 +92,7 @@ def test_events_become_contacts_with_foot_off():
 
 def test_contacts_without_a_foot_are_counted():
     found = event_contacts(trial(("initial contact", "r", 2.0), ("initial contact", "", 3.0)))
-    assert says(found["r"].note, "1 contacts", "left")
+    assert says(found["r"].note, "1 contacts", "excluded")
 
 
 @pytest.mark.parametrize(
@@ -136,14 +136,14 @@ def test_one_contact_a_stride_at_the_same_percent(made, stride_s):
     assert 19 <= len(found["l"]) <= 21
     assert max(percent) < 7  # the made knee is straightest at 97 %
     assert np.std(percent) < 1.5
-    assert found["r"].note.startswith("end of the knee's extension")
+    assert found["r"].note.startswith("end of knee extension")
 
 
 def test_without_a_knee_the_hip_stands_in(made):
     walk, contacts = made.walk(20)
     found = angle_contacts(walk.selected(["hip_flexion_r"]), ("r",))["r"]
     percent = np.array([(np.interp(t, contacts, np.arange(21)) * 100) % 100 for t in found.time[1:-1]])
-    assert says(found.note, "hip flexion peak", "86 %")
+    assert says(found.note, "peak hip flexion", "86 %")
     assert np.all((percent > 80) & (percent < 95))
 
 
@@ -155,7 +155,7 @@ def test_no_hip_is_refused(made):
 
 def test_a_hip_that_does_not_swing_is_refused(made):
     walk, _ = made.walk(5)
-    with pytest.raises(StrideError, match=r"5 deg.*walk\.mot, hip_flexion_r: 0\.\d deg"):
+    with pytest.raises(StrideError, match=r"5 deg.*walk\.mot, hip_flexion_r:"):
         angle_contacts(walk.with_values(walk.values / 100))
 
 
@@ -289,7 +289,7 @@ def test_one_heel_in_front_of_the_pelvis_or_behind_it_tells_the_foot(missing):
     assert found["l"].time == pytest.approx([1.605], abs=1e-3)
     ahead["SACR"] = np.where(slow < 1.3, 0.55, 0.05) if missing == "LHEE" else np.where(slow < 1.3, 0.05, 1.15)
     near = Recording(slow, np.stack([x for one in ahead.values() for x in (one, zero, zero)], axis=1), names)
-    with pytest.raises(StrideError, match="heel missing there"):
+    with pytest.raises(StrideError, match="heel marker is missing"):
         plate_contacts(forces_, near, **given)
 
 

@@ -91,7 +91,7 @@ def test_a_swing_without_a_direction_is_refused():
 
 def test_a_given_direction_is_made_a_unit_vector():
     assert given_direction((0, -3, 0)).forward.tolist() == [0, -1, 0]
-    with pytest.raises(StrideError, match="right angles and not"):
+    with pytest.raises(StrideError, match="perpendicular and not"):
         given_direction((0, 0, 1))
 
 
@@ -101,5 +101,5 @@ def test_positions_and_names():
     assert pelvis_position(walk, ["SACR", "SACR"])[0].tolist() == [0, 0, 0.9]
     with pytest.raises(ChannelError, match=r"nearest is 'RHEE\.x'"):
         marker_position(walk, "RHEEL")
-    with pytest.raises(ChannelError, match="a pelvis marker is needed"):
+    with pytest.raises(ChannelError, match="pelvis marker is required"):
         pelvis_position(walk, [])

@@ -32,6 +32,13 @@ def test_a_knee_of_the_other_sign_is_refused(made):
         verify_sides(walk.with_values(-walk.values), right_strides(contacts))
 
 
+def test_a_knee_that_bends_most_in_stance_is_stiff_where_the_other_swings(made):
+    walk, contacts = made.walk(12)
+    values = walk.values.copy()
+    values[:, walk.index("knee_angle_r")] = walk["knee_angle_l"]
+    assert verify_sides(walk.with_values(values), right_strides(contacts)) == pytest.approx(20, abs=2)
+
+
 def test_a_stiff_or_missing_knee_tells_nothing(made):
     walk, contacts = made.walk(12)
     assert np.isnan(verify_sides(walk.with_values(walk.values / 100), right_strides(contacts)))

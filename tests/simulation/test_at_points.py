@@ -22,5 +22,5 @@ def test_one_number_serves_all_points():
 def test_late_signals_are_asked_for():
     program = compiled_program([parsed("delay(a, 0.1) + a")], ["a"])
     assert at_points(program, [np.ones(2)], np.array([[5.0], [6.0]]))[0].tolist() == [6.0, 7.0]
-    with pytest.raises(SimulationError, match="signals are needed"):
+    with pytest.raises(SimulationError, match="signals must be given"):
         at_points(program, [np.ones(2)])

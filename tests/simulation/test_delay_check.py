@@ -27,16 +27,16 @@ def late(what, value=0.2):
     [
         (
             late("x, -1"),
-            r"line 6, \[equations\] x: a delay of a state is 0 s or more: .*; 'delay\(x, -1\)' is -1",
+            r"line 6, \[equations\] x: the delay of a state must not be negative.*; 'delay\(x, -1\)' is -1",
         ),
-        (late("x, -late"), r"'delay\(x, -late\)' is -0.2 s \(-late\). Write it without the sign"),
+        (late("x, -late"), r"'delay\(x, -late\)' is -0.2 s \(-late\). Write the delay without the minus sign"),
         (late("x, late", -0.3), r"'delay\(x, late\)' is -0.3 s \(late\)"),
         (
             late("x, 1e9"),
-            r"a delay is shorter than a day \(86400 s\); 'delay\(x, 1000000000.*' is 1e\+09 s. Write seconds",
+            r"must be shorter than a day \(86400 s\); 'delay\(x, 1000000000.*' is 1e\+09 s. Write the delay",
         ),
-        (late("x, 0/0"), r"a delay is a number of seconds; 'delay\(x, 0/0\)' is nan s. Write a number of 0 or more"),
-        (late("u, late - 1e308*10"), r"is -inf s \(late - .*Write a number of 0 or more"),
+        (late("x, 0/0"), r"must be a number of seconds; 'delay\(x, 0/0\)' is nan s. Write a number that is not"),
+        (late("u, late - 1e308*10"), r"is -inf s \(late - .*Write a number that is not negative"),
         (
             late("x, 1") + '[[effects]]\nequation = "x"\nterm = "delay(x, -2)"\n',
             r"\[effects\] 0: .*'delay\(x, -2\)' is -2",

@@ -38,7 +38,7 @@ def test_samples_taken_by_a_shaken_clock_are_moved_to_even_times():
     before = np.abs(_x(_shaken(0.09)) - truth)[5:-5].max()
     assert np.abs(even.observed[:, 0] - truth)[5:-5].max() < 0.2 * before
     assert np.ptp(np.diff(even.time)) < 1e-9
-    assert "moved to even times" in finding.what and finding.kind == "clock"
+    assert "resampled to even times" in finding.what and finding.kind == "clock"
 
 
 def test_a_phase_that_a_shaken_clock_took_is_moved_and_stays_below_one():
@@ -53,7 +53,7 @@ def test_samples_taken_evenly_and_stamped_late_are_left_as_they_are():
     x = _x(np.arange(COUNT) / RATE)
     even, rate, (finding,) = on_even_time(_trial(_shaken(0.09), x), ("u",), "walk.csv")
     np.testing.assert_array_equal(even.observed[:, 0], x)
-    assert rate == RATE and "the samples themselves lie evenly" in finding.what
+    assert rate == RATE and "the samples are evenly spaced" in finding.what
 
 
 def test_a_clock_that_shakes_more_is_refused():
@@ -68,7 +68,7 @@ def test_missing_rows_are_empty_in_the_channels_and_bridged_in_the_inputs():
     assert np.flatnonzero(np.isnan(even.observed[:, 0])).tolist() == [100, 101, 102, 250]
     np.testing.assert_allclose(even.inputs[:, 0], np.cos(np.arange(COUNT) / RATE), atol=1e-3)
     assert [one.kind for one in findings] == ["gap in time", "bridged"]
-    assert says(findings[0].what, "4 rows", "400") and "at most 0.03 s together" in findings[1].what
+    assert says(findings[0].what, "4 rows", "400") and "at most 0.03 s in a row" in findings[1].what
 
 
 def test_a_gap_of_percent_stride_is_bridged_through_its_turn():
@@ -83,7 +83,7 @@ def test_a_gap_of_percent_stride_is_bridged_through_its_turn():
 
 @pytest.mark.parametrize(
     ("first", "rows", "words"),
-    [(50, 21, r"21 rows \(0.21 s\) without one from t = 0.5 s on. Cut the trial"), (0, 3, r"3 rows \(0.03 s\)")],
+    [(50, 21, r"21 rows \(0.21 s\) without a value from t = 0.5 s on. Split the trial"), (0, 3, r"3 rows \(0.03 s\)")],
 )
 def test_a_gap_of_an_input_that_is_too_long_or_at_an_end_is_refused(first, rows, words):
     inputs = np.ones((COUNT, 1))

@@ -36,8 +36,8 @@ def test_units_that_fit(ankle, expression, unit):
         ("theta", "deg", r"its column, 'deg'; 'theta' is in rad. Write 57.2958\*theta."),
         ("-theta", "deg", r"'theta' is in rad. Write -57.2958\*theta."),
         ("57.2958*theta", "rad", r"its column, 'rad'; 'theta' is in rad. Write 1\*theta."),
-        ("theta", "m", r"its column, 'm'; 'theta' is of another kind. Correct the unit, or the expression."),
-        ("tau*omega", "N m", r"'tau\*omega' is of another kind"),
+        ("theta", "m", r"its column, 'm'; 'theta' has another kind of unit. Correct the unit or expression."),
+        ("tau*omega", "N m", r"'tau\*omega' has another kind of unit"),
     ],
 )
 def test_units_that_do_not_fit_are_refused_with_the_mend(ankle, expression, unit, words):

@@ -45,7 +45,7 @@ def test_ports_and_equations_take_effects():
 
 @dataclass
 class Balloon:
-    """A callable object without a hash, and without an answer to ==."""
+    """A callable object without its own hash, and without an answer to ==."""
 
     lift: np.ndarray
 
@@ -70,7 +70,7 @@ def test_an_object_that_computes_needs_no_hash():
 )
 def test_a_function_gives_a_derivative_for_each_row_and_state(given, found):
     model = python_simulation("falling", given, [State("v")])
-    with pytest.raises(SimulationError, match=rf"'falling'.*\(2, 1\).*it gave {found}"):
+    with pytest.raises(SimulationError, match=rf"'falling'.*\(2, 1\).*it returned {found}"):
         compile_simulation(model).rates(0.0, np.ones((2, 1)), np.zeros((2, 0)))
 
 

@@ -57,7 +57,7 @@ def test_equations_come_as_a_mapping_too():
 def test_a_start_belongs_to_a_state(ankle):
     moved = ankle.with_starts({"omega": 0.5})
     assert [state.initial for state in moved.states] == [ankle.states[0].initial, 0.5]
-    with pytest.raises(SimulationError, match=r"a start belongs.*'k'"):
+    with pytest.raises(SimulationError, match=r"must be a state.*'k'"):
         ankle.with_starts({"k": 1.0})
     with pytest.raises(SimulationError, match=r"finite number; initial.*nan"):
         ankle.with_starts({"omega": float("nan")})

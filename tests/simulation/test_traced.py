@@ -161,7 +161,7 @@ def grown(x):
     [
         (halved, "branches in more than 64 ways"),
         (grown, "too long"),
-        (math.gamma, "turns a number into a float"),
+        (math.gamma, "converts a number into a float"),
         (lambda x: x % 1.0, "TypeError"),
         (lambda x: x + math.inf, "computes with inf"),
     ],

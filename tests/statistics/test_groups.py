@@ -29,7 +29,7 @@ def test_groups_that_are_there_are_found(sizes):
     truth = np.repeat(np.arange(len(sizes)), sizes)
     assert adjusted_rand(found.labels, truth) == 1.0
     assert found.p < 0.05 and found.stability > 0.9
-    assert found.why.startswith(f"Sub-groups: {len(sizes)} groups part")
+    assert found.why.startswith(f"Sub-groups: {len(sizes)} groups separate")
 
 
 def test_one_cloud_has_none_and_says_so():
@@ -73,7 +73,7 @@ def test_the_order_of_participants_does_not_matter(order):
 
 
 def test_missing_numbers_and_too_few_are_refused():
-    with pytest.raises(ComparisonError, match="1 of the numbers missing"):
+    with pytest.raises(ComparisonError, match="1 values missing"):
         find_groups(np.where(np.arange(12).reshape(6, 2) == 3, np.nan, 1.0))
     with pytest.raises(ComparisonError, match=r"6 participants.*\(5, 2\)"):
         find_groups(np.ones((5, 2)))
@@ -93,7 +93,7 @@ def test_the_second_comes_in_the_order_of_the_first():
 
 
 @pytest.mark.parametrize(
-    ("index", "words"), [(list("abd"), "'c' is in one of them"), (list("abb"), "'c' is in one|'b' stands twice")]
+    ("index", "words"), [(list("abd"), "'c' is in only one"), (list("abb"), "'c' is in only one|'b' occurs twice")]
 )
 def test_other_labels_and_doubled_ones_are_refused(index, words):
     with pytest.raises(ShapeError) as refusal:
@@ -138,7 +138,7 @@ def test_it_is_nan_with_a_reason_where_it_means_nothing():
     constant, missing, rounding, fine = why_no_r2(y, f)
     assert says(constant, "0.3", "4 samples")
     assert says(missing, "1 of 4 samples")
-    assert says(rounding, "the measured part", "100000")
+    assert says(rounding, "the measured values", "100000")
     assert fine == ""
     assert why_no_r2(y[:1], f[:1])[0] == "1 samples are too few"
     assert np.isnan(r2(y[:0], f[:0])).all()

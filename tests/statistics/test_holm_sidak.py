@@ -73,9 +73,9 @@ def test_a_p_of_zero_and_of_one():
     assert holm_sidak([0.0, 1.0]).adjusted.tolist() == [0.0, 1.0]
 
 
-@pytest.mark.parametrize(("p", "words"), [([], "found no test"), ([0.1, np.nan], "found nan"), ([1.2], "found 1.2")])
+@pytest.mark.parametrize(("p", "words"), [([], "there is no test"), ([0.1, np.nan], "found nan"), ([1.2], "found 1.2")])
 def test_what_is_no_p_is_refused(p, words):
-    with pytest.raises(ComparisonError, match=rf"p between 0 and 1; {words}"):
+    with pytest.raises(ComparisonError, match=rf"lie between 0 and 1; {words}"):
         holm_sidak(p)
 
 

@@ -107,7 +107,7 @@ def test_points_with_too_few_strides_have_no_mean():
 
 
 def test_too_few_strides():
-    with pytest.raises(StrideError, match=r"5 whole strides.*4"):
+    with pytest.raises(StrideError, match=r"5 complete strides.*4"):
         mean_over_strides(np.zeros((4, 101, 1)))
 
 

@@ -69,16 +69,7 @@ def test_numbers_put_off_hold_the_true_ones_within_their_bounds():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [
-        "leg",
-        "exo ankle",
-        "elbow",
-        "standing",
-        "chain",
-    ],
-)
+@pytest.mark.parametrize("name", ["leg", "exo ankle", "elbow", "standing", "chain"])
 def test_each_is_named_and_nothing_is_invented(name):
     lines = joints_and_chains.run([name], 1, joints_and_chains.Record(0.02, 0.05, 6.0))
     assert all(": 1 of 1" in line for line in lines), lines

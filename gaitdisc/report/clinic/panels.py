@@ -17,10 +17,12 @@ from gaitdisc.results.leg_curves import FEET, KINEMATICS, NORMAL, VARIABLES, Cli
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.words import SIDE_WORDS, label, number, sideless
 
-WIDTH, HEIGHT = 240, 165
-LEFT, RIGHT, TOP, BOTTOM = 34, 236, 8, 143  # of the axes
+WIDTH, HEIGHT, GAP = 300, 172, 12  # of a third of a sheet, and between two
+LEFT, MARGIN, TOP, BOTTOM = 34, 4, 15, 150  # of the axes
 DASHES = {"l": "", "r": "5 1.6", "": ""}  # so that left and right differ in grey print too
 BAR = 5  # height of a bar below the curves
+AMPLIFIED_V = 0.005  # surface EMG is below 5 mV on the skin
+SPANS = 6  # parts of a row: a panel takes two or three
 SHORT = {"l": "L", "r": "R"}
 MOST_SINGLE = 12  # cycles of a leg that are drawn one by one
 
@@ -51,8 +53,15 @@ class Panel:
     normal: tuple[tuple[int, int], ...] = ()
     # tuple of (int, int, bool), where two sets of cycles differ, and whether that is as large as what matters
     differs: tuple[tuple[int, int, bool], ...] = ()
-    row: int = 0  # place in the sheet
-    column: int = 0  # place in the sheet
+    axis: tuple[float, float] | None = None  # its ends, wherever no curve goes beyond; fitted where there is none
+    span: int = 2  # parts of the row
+    about: str = ""  # what else stands above the curves
+
+    @property
+    def signs(self) -> str:
+        """What up and down mean, above the curves; and whether the axis is another than elsewhere."""
+        words = [f"{arrow} {word}" for arrow, word in (("↑", self.up), ("↓", self.down)) if word]
+        return "   ".join([*words, *([self.about] if self.about else []), *(["(wider axis)"] if self.is_wider else [])])
 
     @property
     def alt(self) -> str:
@@ -70,18 +79,31 @@ class Panel:
             parts.append(f"reference {number(low, 1)} to {number(high, 1)}, {self.band.people} people")
         return f"{self.title} [{self.unit}] over the cycle: {'; '.join(parts)}"
 
-    def span(self) -> tuple[float, float]:
-        """Lowest and highest value of the axis."""
-        parts = [line.values for line in self.lines]
-        if self.band is not None:
-            parts += [self.band.mean - self.band.sd, self.band.mean + self.band.sd]
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest value of the axis: as given, or farther where a mean curve goes beyond."""
+        parts = [line.values for line in self.lines if self.axis is None or line.look != "single"]
+        if self.band is not None and self.axis is None:
+            parts += [self.band.mean - 2 * self.band.sd, self.band.mean + 2 * self.band.sd]
         low, high = min(float(np.nanmin(p)) for p in parts), max(float(np.nanmax(p)) for p in parts)
         pad = 0.06 * max(high - low, 1e-6)
-        low, high = low - pad, high + pad
-        return (min(low, 0.0), high) if self.normal else (low, high)
+        if self.axis is None:
+            return (min(low - pad, 0.0) if self.normal else low - pad), high + pad
+        return (low - pad if low < self.axis[0] else self.axis[0]), (
+            high + pad if high > self.axis[1] else self.axis[1]
+        )
+
+    @property
+    def is_wider(self) -> bool:
+        """Whether a curve goes beyond the ends that the axis has on other pages."""
+        return self.axis is not None and self.ends() != self.axis
+
+    @property
+    def width(self) -> int:
+        """Width of the drawing, as much wider as its parts of the row are."""
+        return self.span * WIDTH // 2 + (self.span - 2) * GAP // 2
 
 
-def ticks(low: float, high: float, most: int = 4) -> list[float]:
+def ticks(low: float, high: float, most: int = 5) -> list[float]:
     """Round numbers between two values, at most so many."""
     rough = (high - low) / most
     power = 10.0 ** np.floor(np.log10(rough))
@@ -92,115 +114,111 @@ def ticks(low: float, high: float, most: int = 4) -> list[float]:
 
 def svg(panel: Panel) -> str:
     """Drawing of a panel; every word in it is escaped."""
-    low, high = panel.span()
+    low, high = panel.ends()
 
     def y(value: float | NDArray[np.float64]) -> NDArray[np.float64]:
         return BOTTOM - (np.asarray(value) - low) / (high - low) * (BOTTOM - TOP)
 
     parts = [
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
+        f'<svg viewBox="0 0 {panel.width} {HEIGHT}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
         f'data-low="{low:.5g}" data-high="{high:.5g}">'
     ]
     parts += _band(panel, y)
     parts += _axes(panel, low, high, y)
-    for first, last in panel.normal:
-        parts.append(
-            f'<rect class="normal" x="{_x(first):.1f}" y="{BOTTOM - BAR}" {_wide(first, last)} height="{BAR}"/>'
-        )
-    for first, last, matters in panel.differs:
-        kind = "matters" if matters else "small"
-        parts.append(f'<rect class="{kind}" x="{_x(first):.1f}" y="{TOP}" {_wide(first, last)} height="{BAR}"/>')
+    bars = [("normal", first, last, BOTTOM - BAR) for first, last in panel.normal]
+    bars += [("matters" if matters else "small", first, last, TOP) for first, last, matters in panel.differs]
+    for kind, first, last, at in bars:
+        x, end = _x(panel, first), _x(panel, last)
+        parts.append(f'<rect class="{kind}" x="{x:.1f}" y="{at}" width="{end - x:.1f}" height="{BAR}"/>')
     for side, percent in panel.foot_off:
-        at, colour = _x(percent), SIDES[side].colour
+        at, colour = _x(panel, percent), SIDES[side].colour
         parts.append(
             f'<path class="off" stroke="{colour}" d="M{at:.1f} {BOTTOM}V{BOTTOM - 14}M{at:.1f} {TOP + 14}V{TOP}"/>'
         )
-    parts += [_path(line, y) for line in sorted(panel.lines, key=lambda one: one.look != "single")]
+    parts += [_path(panel, line, y) for line in sorted(panel.lines, key=lambda one: one.look != "single")]
     parts.append(f'<path class="cursor" d="M0 {TOP}V{BOTTOM}"/></svg>')
     return "".join(parts)
 
 
-def _x(percent: float) -> float:
-    return LEFT + percent / 100 * (RIGHT - LEFT)
+def _x(panel: Panel, percent: float) -> float:
+    return LEFT + percent / 100 * (panel.width - MARGIN - LEFT)
 
 
-def _wide(first: float, last: float) -> str:
-    return f'width="{_x(last) - _x(first):.1f}"'
-
-
-def _points(values: Sequence[float] | NDArray[np.float64]) -> str:
+def _points(panel: Panel, values: Sequence[float] | NDArray[np.float64]) -> str:
     step = 100 / (len(values) - 1)
-    return " ".join(f"{_x(k * step):.1f} {value:.1f}" for k, value in enumerate(values) if np.isfinite(value))
+    held = np.clip(values, TOP, BOTTOM)  # a band or a single cycle may go beyond a fixed axis
+    return " ".join(f"{_x(panel, k * step):.1f} {value:.1f}" for k, value in enumerate(held) if np.isfinite(value))
 
 
-def _path(line: Line, y) -> str:
+def _path(panel: Panel, line: Line, y) -> str:
+    values = line.values[:: 2 if line.look == "single" else 1]
     dash = DASHES[line.side] if line.look == "mean" else "2 2" if line.look == "before" else ""
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
     return (
         f'<path class="{line.look}" data-side="{line.side}" stroke="{SIDES[line.side].colour}"{dashed} '
-        f'd="M{_points(y(line.values))}"/>'
+        f'd="M{_points(panel, y(values))}"/>'
     )
 
 
 def _band(panel: Panel, y) -> list[str]:
     if panel.band is None:
         return []
-    above, below = y(panel.band.mean + panel.band.sd), y(panel.band.mean - panel.band.sd)
-    back = _points(below).split(" ")
-    pairs = [f"{back[i]} {back[i + 1]}" for i in range(0, len(back), 2)]
-    return [
-        f'<path class="band" d="M{_points(above)}L{" ".join(reversed(pairs))}Z"/>',
-        f'<path class="middle" d="M{_points(y(panel.band.mean))}"/>',
-    ]
+    parts = []
+    for kind, many in (("band2", 2), ("band", 1)):
+        above, below = (y(panel.band.mean + sign * many * panel.band.sd) for sign in (1, -1))
+        back = _points(panel, below).split(" ")
+        pairs = [f"{back[i]} {back[i + 1]}" for i in range(0, len(back), 2)]
+        parts.append(f'<path class="{kind}" d="M{_points(panel, above)}L{" ".join(reversed(pairs))}Z"/>')
+    return [*parts, f'<path class="middle" d="M{_points(panel, y(panel.band.mean))}"/>']
 
 
 def _axes(panel: Panel, low: float, high: float, y) -> list[str]:
-    parts = [f'<path class="axis" d="M{LEFT} {TOP}V{BOTTOM}H{RIGHT}"/>']
+    right = panel.width - MARGIN
+    parts = [f'<path class="axis" d="M{LEFT} {TOP}V{BOTTOM}H{right}"/>']
     places = ticks(low, high)
     digits = next(d for d in range(12) if all(round(value, d) == value for value in places))
     for value in places:
         at = float(y(value))
         if value == 0:
-            parts.append(f'<path class="zero" d="M{LEFT} {at:.1f}H{RIGHT}"/>')
+            parts.append(f'<path class="zero" d="M{LEFT} {at:.1f}H{right}"/>')
         parts.append(f'<path class="axis" d="M{LEFT - 3} {at:.1f}H{LEFT}"/>')
         parts.append(f'<text x="{LEFT - 5}" y="{at + 3.6:.1f}" text-anchor="end">{number(value, digits)}</text>')
     for percent, anchor in ((0, "start"), (50, "middle"), (100, "end")):
         words = f"{percent} %" if percent == 100 else str(percent)
-        parts.append(f'<text x="{_x(percent):.1f}" y="{BOTTOM + 13}" text-anchor="{anchor}">{words}</text>')
-    if panel.up:
-        parts.append(f'<text class="sign" x="{LEFT + 4}" y="{TOP + 6}">↑ {escape(panel.up)}</text>')
-    if panel.down:
-        parts.append(f'<text class="sign" x="{LEFT + 4}" y="{BOTTOM - 4}">↓ {escape(panel.down)}</text>')
+        parts.append(f'<text x="{_x(panel, percent):.1f}" y="{BOTTOM + 13}" text-anchor="{anchor}">{words}</text>')
+    if panel.signs:
+        parts.append(f'<text class="sign" x="{LEFT}" y="{TOP - 5}">{escape(panel.signs)}</text>')
     return parts
 
 
 def sheet(reading: ClinicalReading, *kinds: str) -> list[Panel]:
-    """Mean curves of both legs over the reference's band, a panel for each variable of these kinds that is there."""
+    """Mean curves of both legs and every cycle faint behind, over the reference's bands; a panel for each variable.
+
+    Beside the title the number of cycles, and of angles the coefficient of multiple correlation.
+    """
     found = []
     for variable in _present(reading, *kinds):
         own = {side: leg for side, leg in reading.legs.items() if variable.name in leg.cycles}
-        lines = tuple(Line(side, leg.mean(variable.name)) for side, leg in own.items())
-        counts = ", ".join(f"{SHORT[side]} {len(leg.cycles[variable.name])}" for side, leg in own.items())
-        found.append(_panel(reading, variable, lines, counts))
-    return found
+        lines = [
+            Line(side, one, "single") for side, leg in own.items() for one in leg.cycles[variable.name][:MOST_SINGLE]
+        ]
+        lines += [Line(side, leg.mean(variable.name)) for side, leg in own.items()]
+        note = ", ".join(f"{SHORT[side]} {len(leg.cycles[variable.name])}" for side, leg in own.items())
+        known = [reading.consistency.get((variable.name, side), float("nan")) for side in own]
+        if variable.kind == KINEMATICS and np.isfinite(known).any():
+            note += f"; CMC {', '.join(number(one, 2) if np.isfinite(one) else '–' for one in known)}"
+        found.append(_panel(reading, variable, tuple(lines), note))
+    return in_rows(found)
 
 
-def consistency_sheet(reading: ClinicalReading) -> list[Panel]:
-    """Every cycle faint behind the mean, with the coefficient of multiple correlation of each leg."""
-    found = []
-    for variable in _present(reading, KINEMATICS):
-        lines: list[Line] = []
-        words = []
-        for side, leg in reading.legs.items():
-            if variable.name not in leg.cycles:
-                continue
-            each = leg.cycles[variable.name]
-            lines += [Line(side, one, "single") for one in each[:MOST_SINGLE]]
-            lines.append(Line(side, each.mean(axis=0)))
-            known = reading.consistency.get((variable.name, side), float("nan"))
-            words.append(f"{SHORT[side]} {number(known, 2) if np.isfinite(known) else '–'}")
-        found.append(_panel(reading, variable, tuple(lines), f"CMC {', '.join(words)}", banded=False))
-    return found
+def in_rows(panels: Sequence[Panel]) -> list[Panel]:
+    """Panels in rows of three, the last of two where that fills the sheet.
+
+    >>> [one.span for one in in_rows([Panel(*"abcdef", ())] * 7)]
+    [2, 2, 2, 3, 3, 3, 3]
+    """
+    pairs = {0: 0, 1: 4, 2: 2}[len(panels) % 3]
+    return [replace(one, span=2 if k < len(panels) - pairs else 3) for k, one in enumerate(panels)]
 
 
 def contrast_sheet(contrast: Contrast, side: str) -> list[Panel]:
@@ -216,14 +234,18 @@ def contrast_sheet(contrast: Contrast, side: str) -> list[Panel]:
         panel = _panel(contrast.second, variable, lines, "")
         differs = tuple((one.first, one.last, one.matters) for one in spans)
         found.append(replace(panel, differs=differs, foot_off=tuple(o for o in panel.foot_off if o[0] == side)))
-    return found
+    return in_rows(found)
 
 
 def emg_sheet(pooled: PooledCycles) -> list[Panel]:
-    """Envelopes in percent of the leg's own peak, a panel for each muscle, over the bar of normal walking."""
+    """Envelopes in percent of the leg's own peak, a panel for each muscle, over the bar of normal walking.
+
+    Beside the title the number of cycles, above the curves the peak of the mean, of channels in volts.
+    """
     feet, curves = pooled.kept["side"].to_numpy(), pooled.curves
     panels: dict[str, list[Line]] = {}
     counts: dict[str, list[str]] = {}
+    peaks: dict[str, dict[str, float]] = {}
     for column, channel in enumerate(pooled.channels):
         if channel.quantity != "emg" or not channel.side:
             continue
@@ -231,19 +253,33 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
         own = own[np.isfinite(own).all(axis=1)]
         if len(own) and own.mean(axis=0).max() > 0:
             mean = own.mean(axis=0)
+            peaks.setdefault(sideless(channel.name), {})[channel.side] = mean.max() if channel.unit == "V" else np.nan
             panels.setdefault(sideless(channel.name), []).append(Line(channel.side, 100 * mean / mean.max()))
             counts.setdefault(sideless(channel.name), []).append(f"{SHORT[channel.side]} {len(own)}")
     kept = pooled.kept
     means = {side: float(kept.loc[kept["side"] == side, "stance_percent"].mean()) for side in FEET}
     offs = tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
     found = []
-    for place, (muscle, lines) in enumerate(panels.items()):
+    for muscle, lines in panels.items():
         short = muscle.removeprefix("emg_")
-        note = ", ".join(counts[muscle])
+        note = ", ".join(sorted(counts[muscle]))
         title = label(f"{muscle}_r").removeprefix("EMG ").rpartition(",")[0]
         shown = (muscle, title, "% of own peak", "", "", note, tuple(lines), None, offs, NORMAL.get(short, ()))
-        found.append(Panel(*shown, row=place // 4, column=place % 4))
-    return found
+        found.append(Panel(*shown, axis=(-5.0, 105.0), about=_peak_words(peaks[muscle])))
+    return in_rows(found)
+
+
+def _peak_words(volts: dict[str, float]) -> str:
+    """Largest of the mean envelope; what was amplified before it was recorded has no microvolts.
+
+    >>> _peak_words({"r": 0.000085, "l": 0.000102}), _peak_words({"r": 0.085})
+    ('peak L 102, R 85 µV', 'peak R 85 mV, amplified')
+    """
+    known = {side: volts[side] for side in FEET if np.isfinite(volts.get(side, np.nan))}
+    if not known:
+        return ""
+    factor, unit = (1e6, "µV") if max(known.values()) < AMPLIFIED_V else (1e3, "mV, amplified")
+    return f"peak {', '.join(f'{SHORT[side]} {number(factor * one, 0)}' for side, one in known.items())} {unit}"
 
 
 def panel_numbers(panels: list[Panel]) -> pd.DataFrame:
@@ -264,10 +300,8 @@ def _present(reading: ClinicalReading, *kinds: str) -> list[ClinicalVariable]:
     return [variable for variable in VARIABLES if variable.kind in kinds and variable.name in names]
 
 
-def _panel(
-    reading: ClinicalReading, variable: ClinicalVariable, lines: tuple[Line, ...], note: str, banded: bool = True
-) -> Panel:
-    band = reading.bands.get(variable.name) if banded else None
+def _panel(reading: ClinicalReading, variable: ClinicalVariable, lines: tuple[Line, ...], note: str) -> Panel:
+    band = reading.bands.get(variable.name)
     offs = tuple((s, leg.stance_percent) for s, leg in reading.legs.items() if np.isfinite(leg.stance_percent))
     words = (variable.name, variable.words, variable.unit, variable.up, variable.down, note)
-    return Panel(*words, lines, band, offs, row=variable.row, column=variable.column)
+    return Panel(*words, lines, band, offs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,6 @@ from markupsafe import Markup
 from gaitdisc.report.clinic.panels import (
     MOST_SINGLE,
     Panel,
-    consistency_sheet,
     contrast_sheet,
     emg_sheet,
     panel_numbers,
@@ -22,9 +22,13 @@ from gaitdisc.report.clinic.panels import (
 )
 from gaitdisc.report.clinic.values import (
     ENGLISH,
+    MARKS,
+    TIERS,
     PageWords,
+    change_table,
     contrast_sentences,
     files_table,
+    laboratory_sentences,
     noted_sentences,
     numbers_table,
     outstanding_sentences,
@@ -44,7 +48,6 @@ from gaitdisc.results.study_run import StudyRun
 from gaitdisc.whole_file import write_whole
 from gaitdisc.words import NONE, SIDE_WORDS, counted, number
 
-FEWEST_COLUMNS = 4  # so that few panels are no larger than many
 SCRIPT = Path(__file__).parents[1] / "templates" / "cursor.js"
 MOMENT_SIGNS = (
     "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
@@ -55,9 +58,13 @@ EMG = (
     "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
     "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
 )
-CONSISTENCY = (
-    f"Single cycles thin (the first {MOST_SINGLE}), mean thick. CMC: coefficient of multiple correlation of a leg's "
-    f"cycles (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
+CYCLES = (
+    f"Means thick, single cycles thin (the first {MOST_SINGLE}). CMC: coefficient of multiple correlation of a leg's "
+    f"cycles, L, R (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
+)
+CONTRAST = (
+    "Dotted: {}; unbroken or dashed: {}. Bars above: where they differ by a permutation test of the cycles, corrected "
+    "for the whole cycle, all curves and both legs; black where by 5 deg or more."
 )
 RANKS = {"red": 0, "amber": 1, "green": 2}
 COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")
@@ -85,12 +92,16 @@ def write_person_page(
     shown = {
         "say": say,
         "title": person.title,
+        "laboratory": say.laboratory.name,
+        "logo": Markup(say.laboratory.logo),
+        "said": laboratory_sentences(person, say),
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
         "reference": _reference(reference, main.pooled.condition),
         "created": provenance.created[:10],
         "main": _condition(main, beside, "", say),
         "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
-        "contrasts": [_contrast(one, beside, say) for one in person.contrasts],
+        "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
+        "contrasts": [_contrast(one, beside, say) for one in person.contrasts if one is not person.before_after],
         "method": _method(person),
         "files": _saved(files_table(list(person.readings)), beside, "", say),
         "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
@@ -115,13 +126,14 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     if not reading.legs:
         return words
     profile = profile_table(reading)
-    kinematics = _sheet(sheet(reading, KINEMATICS), band_words(reading), (beside, f"{stem}kinematics"), say)
+    angles = sheet(reading, KINEMATICS)
+    save_table(panel_numbers(angles), beside / f"{stem}cycles.csv")
     return {
         **words,
-        "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile, say)) if reading.profile else ""},
+        "kinematics": _sheet(angles, f"{band_words(reading)} {CYCLES}", (beside, f"{stem}kinematics"), say),
+        "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
         "kinetics": _sheet(sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS, (beside, f"{stem}kinetics"), say),
         "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg"), say),
-        "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles"), say),
         "distances": _saved(values_table(reading), beside, stem, say),
         "numbers": _saved(numbers_table(reading), beside, stem, say),
         "profile": _saved(profile, beside, stem, say) if profile else None,
@@ -131,19 +143,10 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
 def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str], say: PageWords) -> dict[str, Any]:
     beside, name = place
     if panels:
-        save_table(panel_numbers(panels), beside / f"{name}.csv")
-    used = sorted({panel.column for panel in panels})  # a column that nothing stands in is closed
-    drawn = [
-        {"panel": one, "svg": Markup(svg(one)), "row": one.row + 1, "column": used.index(one.column) + 1}
-        for one in map(say.panel, panels)
-    ]
-    return {
-        "panels": drawn,
-        "columns": max(FEWEST_COLUMNS, len(used)),
-        "caption": caption,
-        "file": f"{beside.name}/{name}.csv",
-        "profile": "",
-    }
+        means = [replace(one, lines=tuple(line for line in one.lines if line.look != "single")) for one in panels]
+        save_table(panel_numbers(means), beside / f"{name}.csv")
+    drawn = [{"panel": one, "svg": Markup(svg(one))} for one in map(say.panel, panels)]
+    return {"panels": drawn, "caption": caption, "file": f"{beside.name}/{name}.csv"}
 
 
 def _saved(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
@@ -158,13 +161,11 @@ def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any
     for side in contrast.second.legs:
         panels = contrast_sheet(contrast, side)
         if panels:
-            caption = (
-                f"Dotted: {first}; unbroken or dashed: {second}. Bars above: where they differ by a permutation test "
-                f"of the cycles, corrected for the whole cycle, all curves and both legs; black where by 5 deg or more."
-            )
-            one = _sheet(panels, caption, (beside, f"{stem}-{SIDE_WORDS[side]}"), say)
+            one = _sheet(panels, CONTRAST.format(first, second), (beside, f"{stem}-{SIDE_WORDS[side]}"), say)
             sheets.append({**one, "heading": say(SIDE_WORDS[side]).capitalize()})
-    return {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast), "sheets": sheets}
+    changes = _saved(change_table(contrast), beside, f"{stem}-", say)
+    words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}
+    return {**words, "sheets": sheets, "changes": changes}
 
 
 def _reference(reference: ClinicalReference | None, condition: str) -> str:
@@ -183,7 +184,7 @@ def band_words(reading: ClinicalReading) -> str:
     if not people:
         return "No band: there is no reference for this condition."
     count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
-    return f"Band: mean ± standard deviation over the legs of {count} controls."
+    return f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs of {count} controls."
 
 
 def _method(person: PersonSession) -> list[str]:
@@ -199,28 +200,33 @@ def _method(person: PersonSession) -> list[str]:
         found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
     found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
     found.append(
-        "What stands out: rules that take one number of a leg's mean cycle; limits within which all numbers of one "
-        "more healthy person lie with probability .95, by the reference's spread and its number of people."
+        "What stands out: rules that take one number of a leg's mean cycle. □ outside mean ± 2 standard deviations of "
+        "the reference; ■ beyond limits within which all numbers of one more healthy person lie with probability 0.95 "
+        "(t · sd · √(1 + 1/n), n people). From 10 controls on, mean and limits are those at the person's own speed."
     )
     return found
 
 
+def index_rows(person: PersonSession, name: str, say: PageWords = ENGLISH) -> list[dict[str, str]]:
+    """Rows of the index for a person and session, with the name of the page."""
+    return [_row(reading, person, name, say) for reading in person.readings]
+
+
 def write_index(
     run: StudyRun,
-    sessions: Sequence[tuple[PersonSession, str]],
+    rows: list[dict[str, str]],
     reference: ClinicalReference | None,
     folder: Path,
     say: PageWords = ENGLISH,
 ) -> Path:
     """Write `index.html`: a row a person, session and condition with its page's name, those without a result first."""
-    rows = [_row(reading, one, name, say) for one, name in sessions for reading in one.readings]
-    known = {reading.pooled.subject for one, _ in sessions for reading in one.readings}
+    known = {row["subject"] for row in rows}
     whole = [refusal for refusal in run.refusals if refusal.participant not in known]
     for refusal in whole:
         who = {"light": "red", "subject": refusal.participant, "person": refusal.participant, "page": ""}
         own = {"condition": refusal.condition or NONE, "why": refusal.reason}
         rows.append({**who, **own, **dict.fromkeys(("cycles", "score", "noted"), NONE)})
-    rows.sort(key=lambda row: RANKS[row["light"]])
+    rows = sorted(rows, key=lambda row: RANKS[row["light"]])
     cells = [tuple(row[key] for key in COLUMNS) for row in rows]
     table = words_table("people", "People of the run.", HEADINGS, cells)
     save_tables([table], folder)
@@ -242,8 +248,8 @@ def write_index(
 def _row(reading: ClinicalReading, person: PersonSession, name: str, say: PageWords) -> dict[str, str]:
     pooled = reading.pooled
     score = reading.profile.both if reading.profile else None
-    sentences = noted_sentences(reading.noted, say)
-    first = f"{len(reading.noted)}: {sentences[0].partition(';')[0]}" if sentences else NONE
+    tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
+    first = "\n".join(f"{mark} {each[0].partition(';')[0]}{_more(each)}" for mark, each in tiers if each) or NONE
     return {
         "light": reading.light,
         "subject": pooled.subject,
@@ -251,10 +257,14 @@ def _row(reading: ClinicalReading, person: PersonSession, name: str, say: PageWo
         "condition": pooled.condition,
         "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
         "score": number(score.value, 1) if score else NONE,
-        "noted": first if not reading.silent else say("not said"),
+        "noted": first if not reading.silent else NONE,
         "why": "; ".join(reading.reasons) or NONE,
         "page": f"people/{name}.html" if name else "",
     }
+
+
+def _more(sentences: Sequence[str]) -> str:
+    return f" (+{len(sentences) - 1})" if len(sentences) > 1 else ""
 
 
 def _reference_words(reference: ClinicalReference | None) -> str:

@@ -14,26 +14,43 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.report.clinic.laboratory import Laboratory
 from gaitdisc.report.clinic.panels import Panel, ticks
 from gaitdisc.report.cycles_tables import VALUES, mean_cell
 from gaitdisc.report.panels import SIDES
 from gaitdisc.report.table import Table, words_table
-from gaitdisc.results.clinical_reference import ClinicalReading, Contrast, DifferingSpan, Noted, Profile, Score
+from gaitdisc.results.clinical_reference import (
+    FEW,
+    SCORE_LEAST,
+    ClinicalReading,
+    Contrast,
+    DifferingSpan,
+    Noted,
+    PersonSession,
+    Profile,
+    Score,
+)
 from gaitdisc.results.leg_curves import BY_NAME, FEET, PROFILE, VARIABLES
 from gaitdisc.whole_file import write_whole
 from gaitdisc.words import NONE, SIDE_WORDS, counted, number, p_words, unit_text
 
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 240, 365, 104, 232, 6, 346
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 330, 205, 110, 322, 2, 190
 TEMPLATES = ("person.html.j2", "people.html.j2")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
     "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",
-    "curve", "file", "what", "version", "cycle", "to", "state", "person", "condition", "cycles L, R",
-    "profile score [deg]", "why", "green", "amber", "red", "not said", "gait profile score", "Time and distance",
-    "None of {} values lies beyond the limits of the reference.", "Nothing is said to stand out: {}.",
+    "curve", "file", "what", "version", "cycle", "to", "state", "person", "condition", "cycles L, R", "Side affected",
+    "both", "profile score [deg]", "why",
+    "green", "amber", "red", "gait profile score", "Time and distance",
+    "None of {} values lies outside 2 standard deviations of the reference.", "Nothing is said to stand out: {}.",
+    "A sentence needs {} cycles of a leg; there are {}.",
+    "With {} controls the 95 % limits are wide: smaller differences may be there.",
+    "Beyond what one more healthy person shows (95 % limits of this page)",
+    "Outside 2 standard deviations of the controls, within those limits",
 )  # fmt: skip
 HEADER = ("English", "other")
 LARGEST_BYTES = 2**20
-MOST = 6  # sentences of what stands out
+MOST = 6  # sentences of a tier
+MANY = 20  # controls from whom on limits lie within four standard deviations (docs/clinic.md)
 MOST_SPANS = 6
 
 
@@ -45,8 +62,8 @@ def values_table(reading: ClinicalReading) -> Table:
         if not each:
             continue
         means = {side: float(own.mean()) for side, own in each.items()}
-        spreads = {side: float(own.std(ddof=1)) if len(own) > 1 else np.nan for side, own in each.items()}
-        left, right = (means.get(side, np.nan) for side in FEET)
+        spreads = {side: float(own.std(ddof=1)) if len(own) >= FEW else np.nan for side, own in each.items()}
+        left, right = (means[side] if len(each.get(side, ())) >= FEW else np.nan for side in FEET)
         uneven = 100 * (left - right) / ((left + right) / 2) if left * right > 0 else None
         limits = reading.spatiotemporal.get(value)
         cells = [mean_cell(means[s], spreads[s], len(each[s]), digits) if s in each else NONE for s in FEET]
@@ -60,7 +77,10 @@ def values_table(reading: ClinicalReading) -> Table:
         records.append(record)
     people = max((one.people for one in reading.spatiotemporal.values()), default=0)
     known = f"reference mean ± standard deviation over legs, {people} people" if people else "no reference"
-    caption = f"Mean ± standard deviation (cycles); {known}; asymmetry: left less right over their mean."
+    caption = (
+        f"Mean ± standard deviation (cycles), of {FEW} cycles or more; {known}; asymmetry: left less right over their "
+        f"mean."
+    )
     columns = ("value", "left", "right", "reference", "asymmetry")
     return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
 
@@ -74,16 +94,17 @@ def numbers_table(reading: ClinicalReading) -> Table:
             one.rule, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit}",
             f"{number(limits.low, one.digits)} to {number(limits.high, one.digits)}",
             f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))}", str(limits.people),
-            str(one.cycles), one.words or NONE,
+            str(one.cycles), f"{MARKS[one.tier]} {one.words}".strip(),
         ))  # fmt: skip
         records.append({
             "rule": one.rule, "words": one.words, "side": one.side, "value": one.value, "unit": one.unit,
             "low": limits.low, "high": limits.high, "reference_mean": limits.mean, "reference_sd": limits.sd,
-            "people": limits.people, "cycles": one.cycles,
+            "people": limits.people, "cycles": one.cycles, "tier": one.tier,
         })  # fmt: skip
     caption = (
-        f"All values that the rules look at, n = {len(rows)}; {len(reading.noted)} stand out. Limits: within them all "
-        f"values of one more healthy person lie, with probability .95."
+        f"All values that the rules look at, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
+        f"deviations, ■ beyond the limits, within which all values of one more healthy person lie with probability "
+        f"0.95. Reference: at this person's speed where it follows the speed."
     )
     columns = ("value of", "side", "value", "limits", "reference", "people", "cycles", "stands out")
     return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -116,12 +137,41 @@ def files_table(readings: list[ClinicalReading]) -> Table:
     return words_table("files", f"Files, n = {len(rows)}.", ("file", "SHA-256"), rows)
 
 
-def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
-    """Bars of a profile; left above right, the reference's mean and spread behind."""
-    rows: list[tuple[str, dict[str, Score]]] = [
+def change_table(contrast: Contrast) -> Table:
+    """Values of both legs in the first and the second of two, and the profile scores."""
+    pair = (contrast.first, contrast.second)
+    columns = ("value", *(f"{SIDE_WORDS[side]}, {one.pooled.where}" for side in FEET for one in pair))
+    rows = []
+    for value, (words, unit, digits) in VALUES.items():
+        each = [one.legs[side].values.get(value) if side in one.legs else None for side in FEET for one in pair]
+        if any(own is not None for own in each):
+            spreads = [own.std(ddof=1) if own is not None and len(own) >= FEW else np.nan for own in each]
+            cells = [
+                mean_cell(float(own.mean()), float(spread), len(own), digits) if own is not None else NONE
+                for own, spread in zip(each, spreads, strict=True)
+            ]
+            rows.append((f"{words} [{unit}]", *cells))
+    scores = [one.profile.legs.get(side) if one.profile else None for side in FEET for one in pair]
+    if any(scores):
+        rows.append(("gait profile score [deg]", *(number(one.value, 1) if one else NONE for one in scores)))
+    caption = (
+        f"Mean ± standard deviation (cycles). A profile score that changes by {SCORE_LEAST:g} deg or more matters."
+    )
+    numbers = pd.DataFrame(rows, columns=pd.Index(columns))
+    return Table("changes", caption, columns, tuple(rows), numbers)
+
+
+def profile_rows(profile: Profile) -> list[tuple[str, dict[str, Score]]]:
+    """Scores of both legs, curve by curve, the profile scores last."""
+    rows = [
         (BY_NAME[n].words, {s: profile.variables[n, s] for s in FEET if (n, s) in profile.variables}) for n in PROFILE
     ]
-    rows.append(("gait profile score", dict(profile.legs)))
+    return [*rows, ("gait profile score", dict(profile.legs))]
+
+
+def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
+    """Bars of a profile; left above right, the reference's mean and spread behind."""
+    rows = profile_rows(profile)
     shown = [score for _, scores in rows for score in scores.values()]
     ends = [(score.value, score.reference_mean + score.reference_sd) for score in shown]
     top = 1.08 * max(1e-6, *(end for both in ends for end in both if np.isfinite(end)))
@@ -171,7 +221,7 @@ def _bars(scores: dict[str, Score], at: float, height: float, x) -> list[str]:
 
 @dataclass(frozen=True)
 class PageWords:
-    """Words of a page, each in the other language where the table has it.
+    """Words of a page, each in the other language where the table has it, and what its laboratory says.
 
     >>> say = PageWords({"knee flexion": "Knieflexion", "step length": "Schrittlänge"})
     >>> say("knee flexion"), say("step length [m]"), say("cadence")
@@ -179,6 +229,7 @@ class PageWords:
     """
 
     other: Mapping[str, str] = field(default_factory=dict)
+    laboratory: Laboratory = field(default_factory=Laboratory)
 
     def __call__(self, text: str) -> str:
         """Word in the other language, English where the table lacks it; a unit in brackets stays."""
@@ -186,8 +237,9 @@ class PageWords:
         return self.other.get(text) or self.other.get(word, word) + bracket + unit
 
     def panel(self, panel: Panel) -> Panel:
-        """Panel with its title and sign words."""
-        return replace(panel, title=self(panel.title), up=self(panel.up), down=self(panel.down))
+        """Panel with its title and sign words, on the axis of its curve."""
+        axis = self.laboratory.axes.get(panel.name, panel.axis)
+        return replace(panel, title=self(panel.title), up=self(panel.up), down=self(panel.down), axis=axis)
 
     def table(self, table: Table) -> Table:
         """Table with its headings and words; its numbers and its CSV stay."""
@@ -247,42 +299,74 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
     return PageWords(other)
 
 
-def noted_sentences(noted: Sequence[Noted], say: Callable[[str], str] = str) -> list[str]:
-    """One sentence a rule and direction, the farthest first, both legs in one; at most six."""
-    together: dict[tuple[str, str], list[Noted]] = {}
+TIERS = {
+    2: "Beyond what one more healthy person shows (95 % limits of this page)",
+    1: "Outside 2 standard deviations of the controls, within those limits",
+}
+MARKS = {2: "■", 1: "□", 0: NONE}
+
+
+def noted_sentences(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = str) -> list[str]:
+    """One sentence for all that says one thing, both legs in one, at its highest tier; at most six, farthest first."""
+    together: dict[str, list[Noted]] = {}
     for one in noted:
-        together.setdefault((one.rule, one.words), []).append(one)
-    return [_noted(sorted(own, key=lambda one: one.side), say) for own in together.values()][:MOST]
+        together.setdefault(one.group or one.rule, []).append(one)
+    return [_noted(own, say) for own in together.values() if own[0].tier == tier][:MOST]
 
 
 def _noted(own: Sequence[Noted], say: Callable[[str], str]) -> str:
-    first = own[0]
-    unit, limits = unit_text(first.unit), first.limits
-    low, high, mean = (number(value, first.digits) for value in (limits.low, limits.high, limits.mean))
-    sd = number(limits.sd, max(first.digits, 1))
-    each = ", ".join(
-        f"{say(SIDE_WORDS[one.side])} {number(one.value, one.digits)} {unit} "
-        f"({one.cycles} {say('cycle' if one.cycles == 1 else 'cycles')})"
-        for one in own
+    """Value of the farthest rule beside its limits; what else says the same after it."""
+    by_rule: dict[str, list[Noted]] = {}
+    for one in own:
+        by_rule.setdefault(one.words, []).append(one)
+    first, limits = own[0], own[0].limits
+    unit, (low, high) = unit_text(first.unit), (limits.low, limits.high) if first.tier == 2 else limits.band
+    low, high, mean = (number(value, first.digits) for value in (low, high, limits.mean))
+    sd, word = number(limits.sd, max(first.digits, 1)), say("limits") if first.tier == 2 else "2 sd:"
+    parts = [f"{say(words)}: {_each(each, first.tier, say)}" for words, each in by_rule.items()]
+    text = (
+        f"{parts[0]}; {word} {low} {say('to')} {high} {unit}, "
+        f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}"
     )
-    words = say(first.words)
-    return (
-        f"{words[0].upper()}{words[1:]}: {each}; {say('limits')} {low} {say('to')} {high} {unit}, "
-        f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}."
-    )
+    more = "".join(f"; {part}" for part in parts[1:])
+    return f"{text[0].upper()}{text[1:]}{more}."
 
 
-def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = str) -> list[str]:
-    """What stands out, or why nothing does."""
+def _each(own: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
+    found = []
+    for one in sorted(own, key=lambda one: one.side):
+        cycles = f"{one.cycles} {say('cycle' if one.cycles == 1 else 'cycles')}"
+        less = f", {MARKS[one.tier]}" if one.tier < tier else ""
+        value = f"{number(one.value, one.digits)} {unit_text(one.unit)} ({cycles}{less})"
+        found.append(f"{say(SIDE_WORDS[one.side])} {value}".strip())
+    return ", ".join(found)
+
+
+def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = str) -> dict[str, list[str]]:
+    """What stands out by its tier, and after it what could not be said, or why nothing is."""
     if reading.silent:
-        return [say("Nothing is said to stand out: {}.").format(reading.silent)]
-    found = noted_sentences(reading.noted, say)
-    if found:
-        return found
+        return {"": [say("Nothing is said to stand out: {}.").format(reading.silent)]}
+    tiers = {f"{MARKS[tier]} {say(words)}": noted_sentences(reading.noted, tier, say) for tier, words in TIERS.items()}
+    found = {words: sentences for words, sentences in tiers.items() if sentences}
+    rest = []
+    if not found:
+        rest.append(
+            say("None of {} values lies outside 2 standard deviations of the reference.").format(len(reading.numbers))
+        )
+    few = [f"{leg.count} {say(SIDE_WORDS[side])}" for side, leg in reading.legs.items() if leg.count < FEW]
+    if few:
+        rest.append(say("A sentence needs {} cycles of a leg; there are {}.").format(FEW, ", ".join(few)))
     people = max((band.people for band in reading.bands.values()), default=0)
-    few = "" if people >= 20 else f" With {people} controls the limits are wide: smaller differences may be there."
-    silent = say("None of {} values lies beyond the limits of the reference.").format(len(reading.numbers))
-    return [f"{silent}{few}"]
+    if people < MANY:
+        rest.append(say("With {} controls the 95 % limits are wide: smaller differences may be there.").format(people))
+    return {**found, **({"": rest} if rest else {})}
+
+
+def laboratory_sentences(person: PersonSession, say: PageWords = ENGLISH) -> list[str]:
+    """Side affected and comment, as the laboratory says them of the person."""
+    subject, house = person.readings[0].pooled.subject, say.laboratory
+    affected, comment = house.affected.get(subject), house.comments.get(subject, "").strip()
+    return [*([f"{say('Side affected')}: {say(affected)}."] if affected else []), *([comment] if comment else [])]
 
 
 def quality_sentence(reading: ClinicalReading) -> str:
@@ -292,6 +376,8 @@ def quality_sentence(reading: ClinicalReading) -> str:
     kinetic = int(pooled.kept["kinetic"].astype(bool).sum())
     plates = f", {kinetic} on a plate" if kinetic else ""
     out = f", {len(pooled.left_out)} left out" if len(pooled.left_out) else ""
+    gone = len({refusal.condition for refusal in pooled.refusals})
+    out += f", {counted(gone, 'trial')} left out" if gone else ""
     ground = "over ground" if pooled.over_ground else "on a treadmill"
     why = f": {'; '.join(reading.reasons)}" if reading.reasons else ""
     return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}. {reading.light}{why}."
@@ -313,20 +399,37 @@ def score_words(score: Score, unit: str = "deg") -> str:
 
 
 def score_sentences(reading: ClinicalReading) -> list[str]:
-    """Gait profile score and gait deviation index, or why there is none."""
+    """Gait profile score and gait deviation index and what they mean, or why there is none."""
     found = []
     if reading.profile is None:
         found.append(f"No gait profile score: {reading.no_profile}.")
     else:
         each = [f"{SIDE_WORDS[side]} {score_words(score)}" for side, score in reading.profile.legs.items()]
-        both = [f"both {score_words(reading.profile.both)}"] if reading.profile.both else []
-        found.append(f"Gait profile score: {'; '.join([*both, *each])}.")
+        both = reading.profile.both
+        means = f" {_meaning(both)}" if both and np.isfinite(both.reference_sd) else ""
+        found.append(
+            f"Gait profile score: {'; '.join([*([f'both {score_words(both)}'] if both else []), *each])}.{means}"
+        )
     if reading.deviation_index:
         each = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
-        found.append(f"Gait deviation index: {', '.join(each)} (controls 100 ± 10).")
+        far = max(0.0, (100 - min(reading.deviation_index.values())) / 10)
+        found.append(
+            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lower leg lies "
+            f"{number(far, 1)} standard deviations of the controls below their mean."
+        )
     else:
         found.append(f"No gait deviation index: {reading.no_index}.")
     return found
+
+
+def _meaning(score: Score) -> str:
+    more = score.value - score.reference_mean
+    word = "more" if more >= 0 else "less"
+    return (
+        f"All curves together lie {number(score.value, 1)} deg (root mean square) from the controls' mean, "
+        f"{number(abs(more), 1)} deg {word} than a control's do; differences from {SCORE_LEAST:g} deg on matter "
+        f"(Baker 2012)."
+    )
 
 
 def contrast_sentences(contrast: Contrast) -> list[str]:

@@ -1,18 +1,19 @@
 "use strict";
 // One cursor over all panels: the percent under the pointer, and every curve's value there.
-const LEFT = 34, RIGHT = 236, TOP = 8, BOTTOM = 143;
+const LEFT = 34, MARGIN = 4, TOP = 15, BOTTOM = 150;
 const panels = [...document.querySelectorAll("figure.panel")].map(figure => {
   const svg = figure.querySelector("svg");
+  const width = svg.viewBox.baseVal.width, right = width - MARGIN;
   const low = Number(svg.dataset.low), high = Number(svg.dataset.high);
   const curves = [...svg.querySelectorAll("path.mean, path.before")].map(path => ({
     side: path.dataset.side,
     y: path.getAttribute("d").slice(1).trim().split(/\s+/).map(Number).filter((_, i) => i % 2 === 1)
   }));
-  return {figure, svg, low, high, curves, cursor: svg.querySelector(".cursor"), output: figure.querySelector("output")};
+  return {figure, svg, width, right, low, high, curves, cursor: svg.querySelector(".cursor"), output: figure.querySelector("output")};
 });
 function show(percent) {
   for (const one of panels) {
-    const x = LEFT + percent / 100 * (RIGHT - LEFT);
+    const x = LEFT + percent / 100 * (one.right - LEFT);
     one.cursor.setAttribute("d", "M" + x.toFixed(1) + " " + TOP + "V" + BOTTOM);
     one.cursor.style.visibility = "visible";
     one.output.textContent = " " + percent + " %: " + one.curves.map(curve => {
@@ -28,8 +29,8 @@ function hide() {
 for (const one of panels) {
   one.svg.addEventListener("pointermove", event => {
     const box = one.svg.getBoundingClientRect();
-    const x = (event.clientX - box.left) / box.width * 240;
-    show(Math.max(0, Math.min(100, Math.round((x - LEFT) / (RIGHT - LEFT) * 100))));
+    const x = (event.clientX - box.left) / box.width * one.width;
+    show(Math.max(0, Math.min(100, Math.round((x - LEFT) / (one.right - LEFT) * 100))));
   });
   one.svg.addEventListener("pointerleave", hide);
 }

@@ -10,7 +10,7 @@ import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
-from gaitdisc.report.clinic.person_page import write_index, write_person_page
+from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.results.clinical_reference import PersonSession
 from gaitdisc.results.provenance import Refusal
 
@@ -25,7 +25,7 @@ frame.addEventListener("load", () => {{
   let said = "", moved = [];
   if (svg) {{
     const box = svg.getBoundingClientRect();
-    const there = {{clientX: box.left + 135 / 240 * box.width}};
+    const there = {{clientX: box.left + 165 / 300 * box.width}};
     svg.dispatchEvent(new frame.contentWindow.PointerEvent("pointermove", there));
     moved = [...page.querySelectorAll("figcaption output")].map(one => one.textContent);
     said = moved[0];
@@ -55,7 +55,7 @@ def pages(tmp_path_factory):
     session = PersonSession(f"P01 {HOSTILE}", (first, second), (contrast_of(first, second),))
     write_person_page(session, "P01", reference, PROVENANCE, folder)
     refused = Refusal("P02", "walk", f"a_file_of_a_very_long_name_{'x' * 90} {HOSTILE}")
-    write_index(made_run(person, refusals=(refused,)), [(session, "P01")], reference, folder)
+    write_index(made_run(person, refusals=(refused,)), index_rows(session, "P01"), reference, folder)
     return folder
 
 
@@ -73,7 +73,7 @@ def test_a_page_fits_a_telephone_and_a_desk_and_its_cursor_reads_every_panel(pag
     assert seen["wide"] <= seen["seen"]
     assert seen["said"].startswith(" 50 %: L ") and seen["moved"] == seen["panels"] > 20
     assert seen["images"] == 0 and seen["title"].endswith("gait report")
-    assert seen["columns"] == (1 if width == 400 else 5)
+    assert seen["columns"] == (1 if width == 400 else 3)
 
 
 def test_what_is_too_wide_is_seen_as_such(pages):
@@ -89,7 +89,7 @@ def test_the_index_fits_and_runs_nothing(pages, width):
     assert seen["images"] == 0 and seen["title"].endswith("people")
 
 
-def test_printed_on_a4_there_are_two_pages_before_the_appendix(pages):
+def test_printed_on_a4_there_are_two_pages_before_all_values(pages):
     printed = pages / "P01.pdf"
     page = (pages / "people" / "P01.html").as_uri()
     _ran("--no-pdf-header-footer", f"--print-to-pdf={printed}", page)
@@ -98,5 +98,5 @@ def test_printed_on_a4_there_are_two_pages_before_the_appendix(pages):
         text = subprocess.run(["pdftotext", "-layout", printed, "-"], capture_output=True, text=True, check=True).stdout
         sheets = text.split("\f")
         assert "Kinematics" in sheets[0] and "foot progression" in sheets[0]
-        assert "EMG" in sheets[1] and "Appendix" not in sheets[1]
-        assert "Appendix" in sheets[2]
+        assert "EMG" in sheets[1] and "All values" not in sheets[1]
+        assert "All values" in sheets[2]

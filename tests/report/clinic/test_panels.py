@@ -10,18 +10,19 @@ from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.report.clinic.panels import (
     BOTTOM,
     LEFT,
-    RIGHT,
+    MARGIN,
     TOP,
     Line,
     Panel,
-    consistency_sheet,
     contrast_sheet,
     emg_sheet,
+    in_rows,
     panel_numbers,
     sheet,
     svg,
     ticks,
 )
+from gaitdisc.report.clinic.values import PageWords
 from gaitdisc.results.clinical_reference import Band
 from gaitdisc.results.leg_curves import KINEMATICS, POWERS
 
@@ -43,7 +44,7 @@ def test_curves_lie_where_their_numbers_say():
     low, high = (float(root.attrib[key]) for key in ("data-low", "data-high"))
     path = next(one.attrib["d"] for one in root.iter() if one.attrib.get("class") == "mean")
     places = np.array(re.findall(r"[\d.]+", path), float).reshape(-1, 2)
-    assert len(places) == 101 and (places[0, 0], places[-1, 0]) == (LEFT, RIGHT)
+    assert len(places) == 101 and (places[0, 0], places[-1, 0]) == (LEFT, panel.width - MARGIN)
     values = low + (BOTTOM - places[:, 1]) / (BOTTOM - TOP) * (high - low)
     np.testing.assert_allclose(values, panel.lines[0].values, atol=(high - low) / (BOTTOM - TOP))
 
@@ -104,23 +105,44 @@ def test_a_panel_for_every_curve_with_both_legs_band_and_counts(reading):
     panels = sheet(reading, KINEMATICS)
     assert [panel.name for panel in panels][:4] == ["pelvis_tilt", "pelvis_obliquity", "pelvis_rotation", "hip_flexion"]
     for panel in panels:
-        assert [line.side for line in panel.lines] == ["l", "r"]
-        assert panel.note == "L 4, R 4" and panel.band.people == 6
+        assert [line.side for line in panel.lines if line.look == "mean"] == ["l", "r"]
+        assert panel.note.startswith("L 4, R 4; CMC ") and panel.band.people == 6
         assert panel.foot_off == (("l", 60.0), ("r", 60.0))
-    assert len({(panel.row, panel.column) for panel in panels}) == len(panels)
+        assert sum(line.look == "single" for line in panel.lines) == 8
     assert [panel.name for panel in sheet(reading, POWERS)] == ["ankle_power"]
 
 
-def test_every_cycle_with_its_coefficient(reading):
-    knee = next(panel for panel in consistency_sheet(reading) if panel.name == "knee_flexion")
-    assert sum(line.look == "single" for line in knee.lines) == 8
-    assert knee.note == "CMC L >0.99, R >0.99" and knee.band is None
+@pytest.mark.parametrize(("count", "spans"), [(1, [3]), (2, [3, 3]), (4, [3] * 4), (5, [2, 2, 2, 3, 3]), (9, [2] * 9)])
+def test_rows_are_as_wide_as_the_sheet(count, spans):
+    panels = in_rows([_panel()] * count)
+    assert [one.span for one in panels] == spans
+    assert {one.width for one in panels} <= {300, 456}
+
+
+@pytest.mark.parametrize(
+    ("offset", "ends", "words"),
+    [
+        (0.0, (-15.0, 75.0), "↑ flexion   ↓ extension"),
+        (-30.0, (-33.6, 75.0), "(wider axis)"),
+        (20.0, (-15.0, 83.6), ""),
+    ],
+)
+def test_an_axis_is_the_same_on_all_pages_unless_a_curve_goes_beyond(offset, ends, words):
+    """A curve of 0 to 60 deg, moved; 6 % of it is left beside what goes beyond."""
+    curve = np.linspace(0.0, 60.0, 101) + offset
+    far = Line("l", np.full(101, 200.0), "single")
+    panel = PageWords().panel(_panel(lines=(Line("l", curve), far), band=None))
+    assert panel.ends() == pytest.approx(ends, abs=0.1) and words in panel.signs
+    assert panel.is_wider == (offset != 0.0)
+    root = ET.fromstring(svg(panel))
+    assert [one.text for one in root.iter() if one.attrib.get("class") == "sign"] == [panel.signs]
 
 
 def test_emg_is_in_percent_of_its_own_peak_over_the_normal_bar():
     (panel,) = emg_sheet(made_person())
     assert panel.title == "tibialis anterior" and panel.normal == ((0, 12), (56, 100))
     assert [float(line.values.max()) for line in panel.lines] == pytest.approx([100.0, 100.0])
+    assert (panel.note, panel.signs) == ("L 4, R 4", "peak L 220, R 220 µV")
 
 
 def test_numbers_drawn_are_a_table_of_101_rows(reading):

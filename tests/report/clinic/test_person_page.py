@@ -11,9 +11,12 @@ from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.laboratory import Laboratory
 from gaitdisc.report.clinic.panels import Panel, sheet
-from gaitdisc.report.clinic.person_page import page_names, write_index, write_person_page
+from gaitdisc.report.clinic.person_page import index_rows, page_names, write_index, write_person_page
 from gaitdisc.report.clinic.person_pdf import draw_panel, write_person_pdf
+from gaitdisc.report.clinic.values import PageWords
 from gaitdisc.results.clinical_reference import PersonSession
 from gaitdisc.results.leg_curves import KINEMATICS
 from gaitdisc.results.provenance import Refusal
@@ -49,8 +52,8 @@ def test_a_page_is_one_file_that_needs_nothing_but_itself(page):
 def test_its_parts_stand_in_the_order_of_a_clinic(page):
     text = page.read_text(encoding="utf-8")
     headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", text)
-    wanted = ["What stands out", "Time and distance", "Scores", "Reading the curves", "Kinematics, walk",
-              "Moments, powers and forces, walk", "EMG, walk", "Appendix: every cycle, walk"]  # fmt: skip
+    wanted = ["What stands out", "Time and distance", "Scores", "Kinematics, walk",
+              "Moments, powers and forces, walk", "EMG, walk", "All values that the rules look at"]  # fmt: skip
     assert headings[: len(wanted)] == wanted
     assert headings[-3:] == ["Turn", "walk and turn", "How it was made"]
     assert text.count('role="img"') == text.count('aria-label="') - text.count('role="region"')
@@ -92,11 +95,11 @@ def reading():
     return read_beside(made_person(), made_controls(6))
 
 
-def test_a_person_is_three_pages_of_pdf_with_the_same_bytes_again(reading, tmp_path):
+def test_a_person_is_two_pages_of_pdf_with_the_same_bytes_again(reading, tmp_path):
     person = PersonSession("P01", (reading,))
     first = write_person_pdf(person, PROVENANCE, tmp_path / "a.pdf").read_bytes()
     assert first[:5] == b"%PDF-"
-    assert first.count(b"/Type /Page ") == 3
+    assert first.count(b"/Type /Page ") == 2
     assert write_person_pdf(person, PROVENANCE, tmp_path / "b.pdf").read_bytes() == first
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.pdf", "b.pdf"]
 
@@ -108,8 +111,8 @@ def test_a_panel_has_the_very_curves(reading):
     axes = Figure().add_axes((0, 0, 1, 1))
     draw_panel(axes, panel)
     drawn = [line.get_ydata() for line in axes.lines if len(line.get_ydata()) == 101]
-    np.testing.assert_array_equal(drawn[1], reading.legs["l"].mean("knee_flexion"))
-    assert axes.get_title(loc="left").splitlines() == ["knee flexion [deg]", "L 4, R 4"]
+    np.testing.assert_array_equal(drawn[9], reading.legs["l"].mean("knee_flexion"))
+    assert axes.get_title(loc="left").splitlines() == [f"knee flexion [deg]  {panel.note}", "↑ flexion   ↓ extension"]
 
 
 def test_a_person_without_a_kept_cycle_has_a_sheet_with_the_reason(tmp_path):
@@ -122,22 +125,53 @@ def test_a_person_without_a_kept_cycle_has_a_sheet_with_the_reason(tmp_path):
 def test_refused_first_then_amber_then_green_each_with_why_and_link(tmp_path):
     reference = made_controls(20)
     good, few = made_person("P01"), made_person("P02", each=2, changed={"knee_angle_l": -40.0})
-    run = made_run(good, few, refusals=(Refusal("P09", "", "no walk. Record again."),))
-    sessions = [(PersonSession(one.subject, (read_beside(one, reference),)), one.subject) for one in (good, few)]
-    text = write_index(run, sessions, reference, tmp_path).read_text(encoding="utf-8")
+    far = made_person("P03", changed={"knee_angle_l": -40.0})
+    run = made_run(good, few, far, refusals=(Refusal("P09", "", "no walk. Record again."),))
+    sessions = [PersonSession(one.subject, (read_beside(one, reference),)) for one in (good, few, far)]
+    rows = [row for one in sessions for row in index_rows(one, one.title)]
+    text = write_index(run, rows, reference, tmp_path).read_text(encoding="utf-8")
     rows = re.findall(r'<td class="light (\w+)">.*?<th scope="row">(.*?)</th>', text)
     assert rows == [
         ("red", "P09"),
         ("amber", '<a href="people/P02.html">P02</a>'),
         ("green", '<a href="people/P01.html">P01</a>'),
+        ("green", '<a href="people/P03.html">P03</a>'),
     ]
     assert says(text, "no walk. Record again") and says(text, "2 left, 2 right")
-    assert "Knee" in text or "knee" in text
-    assert says(text, "3 people; 1 refused, 1", "amber, 1 green")
-    assert len(pd.read_csv(tmp_path / "tables" / "people.csv")) == 3
+    stands_out = pd.read_csv(tmp_path / "tables" / "people.csv").set_index("person")["stands out"]
+    assert "knee" not in stands_out["P02"] and says(stands_out["P03"].lower(), "■", "knee", "left", "4 cycles")
+    assert says(text, "4 people; 1 refused, 1", "amber, 2 green")
 
 
 def test_an_index_of_nobody_but_refused_people_still_stands(tmp_path):
     run = made_run(refusals=(Refusal("P01", "", "<b>no</b> walk"),))
     text = write_index(run, [], None, tmp_path).read_text(encoding="utf-8")
     assert "&lt;b&gt;no" in text and "No reference" in text
+
+
+def test_before_and_after_stand_on_the_first_sheet_of_page_and_pdf(tmp_path):
+    bump = 15.0 * ((PERCENT >= 65) & (PERCENT <= 80))
+    pair = [
+        read_beside(
+            made_person(session=word, each=8, spread=0.0, seed=k, changed={"knee_angle_l": k * bump}), REFERENCE
+        )
+        for k, word in enumerate(("before", "after"))
+    ]
+    session = PersonSession("P01 before after", (pair[1], pair[0]), (contrast_of(*pair),))
+    assert session.before_after is session.contrasts[0]
+    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path).read_text(encoding="utf-8")
+    headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", page)
+    assert headings[:3] == ["What stands out", "before walk and after walk", "Time and distance"]
+    changes = pd.read_csv(tmp_path / "people" / "P01" / "before_walk-after_walk-changes.csv")
+    assert list(changes)[1:] == ["left, before walk", "left, after walk", "right, before walk", "right, after walk"]
+    assert "gait profile score [deg]" in set(changes["value"])
+    content = write_person_pdf(session, PROVENANCE, tmp_path / "a.pdf").read_bytes()
+    assert content.count(b"/Type /Page ") == 5  # first sheet, then two of each session
+
+
+def test_name_comment_and_side_of_the_laboratory_stand_on_the_page(tmp_path):
+    house = Laboratory("Gait <lab>", affected={"P01": "left"}, comments={"P01": "after <b> surgery"})
+    session, say = PersonSession("P01", (read_beside(made_person(), REFERENCE),)), PageWords(laboratory=house)
+    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path, say).read_text(encoding="utf-8")
+    assert says(page, "Gait &lt;lab&gt;", "Side affected: left.", "after &lt;b&gt; surgery")
+    assert write_person_pdf(session, PROVENANCE, tmp_path / "a.pdf", say).stat().st_size > 10_000

@@ -10,7 +10,7 @@ from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.person_page import write_index, write_person_page
+from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.report.clinic.values import (
     MOST,
     PageWords,
@@ -43,7 +43,7 @@ def pages(tmp_path_factory):
     found = {}
     for name, say in (("en", PageWords()), ("other", PageWords({word: doubled(word) for word in ENGLISH}))):
         page = write_person_page(session, "P01", reference, PROVENANCE, folder / name, say)
-        index = write_index(made_run(person), [(session, "P01")], reference, folder / name, say)
+        index = write_index(made_run(person), index_rows(session, "P01", say), reference, folder / name, say)
         found[name] = page.read_text(encoding="utf-8"), index.read_text(encoding="utf-8")
     return folder, found
 
@@ -51,7 +51,7 @@ def pages(tmp_path_factory):
 @pytest.mark.parametrize(
     "word",
     ["en", "What stands out", "Kinematics", "knee flexion", "dorsiflexion", "step length", "asymmetry", "limits",
-     "reduced knee flexion in swing", "left", "gait profile score", "Appendix: every cycle"],
+     "reduced knee flexion in swing", "left", "gait profile score", "Reading the curves"],
 )  # fmt: skip
 def test_headings_sign_words_and_what_stands_out_are_in_the_other_language(pages, word):
     _, found = pages
@@ -62,7 +62,7 @@ def test_headings_sign_words_and_what_stands_out_are_in_the_other_language(pages
 def test_the_index_has_them_too_and_the_numbers_beside_stay(pages):
     folder, found = pages
     _, index = found["other"]
-    assert doubled("state") in index and doubled("green") in index and "§reduced knee flexion" in index.lower()
+    assert doubled("state") in index and doubled("green") in index and "■ §" in index.lower()
     for path in (folder / "en").rglob("*.csv"):
         if path.name != "people.csv":  # the words that are read
             assert path.read_bytes() == (folder / "other" / path.relative_to(folder / "en")).read_bytes()
@@ -84,7 +84,10 @@ def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_pat
     [
         ("knee,Knie\n", "de.csv begins with knee, Knie"),
         ("English,other\n\nelbow,Ellbogen\n", "de.csv, line 3: 'elbow' is none"),
-        ("English,other\nNone of {} values lies beyond the limits of the reference.,Nichts.\n", "as often as in"),
+        (
+            "English,other\nNone of {} values lies outside 2 standard deviations of the reference.,Nichts.\n",
+            "as often as in",
+        ),
     ],
 )
 def test_another_table_is_refused_with_its_line(tmp_path, text, said):
@@ -99,28 +102,38 @@ def test_a_table_that_is_no_text_is_refused(tmp_path):
         read_words(tmp_path / "de.csv", ENGLISH)
 
 
-LIMITS = Limits(52.0, 66.0, 59.0, 3.6, 18)
+LIMITS = Limits(46.0, 72.0, 59.0, 3.6, 18)
+SWING = "reduced knee flexion in swing"
 
 
-def _noted(side, value, rule="knee", excess=2.0):
-    return Noted(rule, "reduced knee flexion in swing", side, value, "deg", 0, LIMITS, 5, excess)
+def _noted(side, value, rule="knee", tier=2, words=SWING):
+    return Noted(rule, words, side, value, "deg", 0, LIMITS, 5, 2.0, tier, f"{rule} less")
 
 
-def test_a_sentence_has_number_limits_side_and_cycles():
-    (said,) = noted_sentences([_noted("l", 38.0)])
-    assert says(said, "Reduced knee flexion", "left 38 deg (5 cycles)", "52 to 66 deg", "59 ± 3.6 deg", "18 people")
-
-
-def test_both_sides_are_one_sentence_and_there_are_at_most_six():
-    both = noted_sentences([_noted("r", 40.0), _noted("l", 38.0)])
-    assert len(both) == 1 and says(both[0], "left 38 deg (5 cycles),", "right 40 deg (5 cycles)")
-    assert len(noted_sentences([_noted("l", 38.0, rule=str(k)) for k in range(9)])) == MOST == 6
+@pytest.mark.parametrize(
+    ("noted", "tier", "parts"),
+    [
+        ([_noted("l", 38.0)], 2, [("left 38 deg (5 cycles)", "limits 46 to 72 deg", "59 ± 3.6 deg", "18 people")]),
+        ([_noted("l", 48.0, tier=1)], 1, [("left 48 deg (5 cycles)", "2 sd: 52 to 66 deg", "59 ± 3.6 deg")]),
+        ([_noted("l", 48.0, tier=1)], 2, []),
+        ([_noted("r", 40.0), _noted("l", 48.0, tier=1)], 2, [("left 48 deg (5 cycles, □), right 40 deg (5 cycles);",)]),
+        ([_noted("r", 40.0), _noted("l", 48.0, tier=1)], 1, []),
+        ([_noted("l", 38.0), _noted("l", 2.0, words="more extended at contact")], 2,
+         [("swing: left 38", "; more extended at contact: left 2 deg (5 cycles).")]),
+        ([_noted("l", 38.0, rule=str(k)) for k in range(9)], 2, [("left",)] * MOST),
+    ],
+)  # fmt: skip
+def test_what_says_one_thing_is_one_sentence_of_its_highest_tier(noted, tier, parts):
+    found = noted_sentences(noted, tier)
+    assert len(found) == len(parts)
+    for said, own in zip(found, parts, strict=True):
+        assert said.startswith("Reduced knee flexion in swing: ") and all(part in said for part in own)
 
 
 def test_nothing_that_stands_out_and_why_nothing_can_be_said():
-    few = outstanding_sentences(read_beside(made_person(), made_controls(6)))
-    assert says(few[0], "6 controls", "smaller")
-    assert "there is no reference" in outstanding_sentences(read_beside(made_person(), None))[0]
+    few = outstanding_sentences(read_beside(made_person(each=2, changed={"knee_angle_l": -60.0}), made_controls(6)))
+    assert list(few) == [""] and says(" ".join(few[""]), "3 cycles", "2 left, 2 right", "6 controls", "smaller")
+    assert "there is no reference" in outstanding_sentences(read_beside(made_person(), None))[""][0]
 
 
 def test_quality_and_scores_are_said_with_counts():

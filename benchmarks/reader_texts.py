@@ -1,0 +1,112 @@
+"""All texts that a user reads, each with its kind and place, and a draw of them by seed.
+
+    python benchmarks/reader_texts.py [--draw 60] [--seed 7]
+
+The list says kind, place and text; a draw is for a reader with the style sheet. Kinds: refusal, finding, sentence
+(verdicts, captions, progress), page (templates), help, docs, docstring (public). Values that the program fills in
+stand in braces. The draw is over texts: a kind has the weight of its number.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import random
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+CHECKOUT = Path(__file__).parents[1]
+sys.path.insert(0, str(CHECKOUT / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--draw", "number of texts to draw; 0 for all", 0),
+    argument("--seed", "of the draw", 0),
+)
+sys.path.insert(0, str(CHECKOUT))  # the texts of this checkout, whatever is installed
+FEWEST_WORDS = 4  # [words] that make a sentence or a caption; shorter texts are labels
+OWNERS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+class Text(NamedTuple):
+    """What a user reads, and where it stands."""
+
+    kind: str
+    place: str
+    text: str
+
+
+def list_code_texts(path: Path) -> Iterator[Text]:
+    """Refusals, findings, help and other sentences of a file, without its docstrings; the help of a command with it."""
+    tree, place = ast.parse(path.read_text(encoding="utf-8")), path.relative_to(CHECKOUT).as_posix()
+    command = place.startswith("gaitdisc/commands/")
+    docstrings = {id(node.body[0]) for node in ast.walk(tree) if isinstance(node, OWNERS) and node.body}
+
+    def walk(node: ast.AST) -> Iterator[Text]:
+        name = ast.unparse(node.func).rpartition(".")[2] if isinstance(node, ast.Call) else ""
+        if isinstance(node, ast.Call) and (name.endswith("Error") or name == "Finding"):
+            words = [write_template(one) for one in [*node.args, *(key.value for key in node.keywords)]]
+            if spoken := [one for one in words if " " in one]:
+                yield Text("finding" if name == "Finding" else "refusal", f"{place}:{node.lineno}", "; ".join(spoken))
+        elif isinstance(node, ast.Constant | ast.JoinedStr):
+            text = write_template(node)
+            spoken = " " in text.strip() and "</" not in text
+            if spoken and len(re.findall(r"[A-Za-z]{2,}", re.sub(r"\{[^}]*\}|\S*_\S*", "", text))) >= FEWEST_WORDS:
+                yield Text("help" if command else "sentence", f"{place}:{node.lineno}", text)
+        elif not (id(node) in docstrings and isinstance(node, ast.Expr)) and name not in ("compile", "add_argument"):
+            for child in ast.iter_child_nodes(node):
+                yield from walk(child)
+
+    yield from walk(tree)
+    for one in tree.body if command else ():
+        if isinstance(one, ast.FunctionDef) and one.name == path.stem:
+            yield from (Text("help", f"{place}:{one.lineno}", words) for words in split_text(ast.get_docstring(one)))
+
+
+def write_template(node: ast.AST) -> str:
+    """Words of a string as the code has them, values in braces; both branches of a choice."""
+    if isinstance(node, ast.JoinedStr):
+        values = [one.value if isinstance(one, ast.FormattedValue) else one for one in node.values]
+        parts = (str(one.value) if isinstance(one, ast.Constant) else f"{{{ast.unparse(one)}}}" for one in values)
+        return re.sub(r"\s+", " ", "".join(parts))
+    if isinstance(node, ast.IfExp):
+        return " / ".join(filter(None, map(write_template, (node.body, node.orelse))))
+    return re.sub(r"\s+", " ", node.value) if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
+
+
+def split_text(text: str | None) -> list[str]:
+    """Paragraphs of prose, list items and rows of tables; no headings, code or doctests."""
+    text = re.sub(r"^```.*?^```", "", text or "", flags=re.DOTALL | re.MULTILINE)
+    parts = (re.sub(r"\s+", " ", one).strip() for one in re.split(r"\n\s*\n|\n(?=[-*|] )|\n(?=\w+ : )", text))
+    hidden = ("#", ">>>", "|--", "| --", ":::", "![", "{{")
+    return [one for one in parts if len(one.split()) >= FEWEST_WORDS and not one.startswith(hidden)]
+
+
+def list_texts() -> list[Text]:
+    """Every text, by kind and place."""
+    import gaitdisc
+
+    texts = [text for path in sorted((CHECKOUT / "gaitdisc").rglob("*.py")) for text in list_code_texts(path)]
+    for path in [*(CHECKOUT / "gaitdisc").rglob("*.j2"), CHECKOUT / "README.md", *(CHECKOUT / "docs").glob("*.md")]:
+        words, kind = path.read_text(encoding="utf-8"), "page" if path.suffix == ".j2" else "docs"
+        if kind == "page":
+            words = re.sub(r"\{%.*?%\}|\{#.*?#\}|</?[a-z][^>]*>", "\n\n", words, flags=re.DOTALL)
+        texts += [Text(kind, path.relative_to(CHECKOUT).as_posix(), one) for one in split_text(words)]
+    for name in gaitdisc.__all__:
+        owner = getattr(gaitdisc, name)
+        own = vars(owner).items() if inspect.isclass(owner) else ()
+        for place, one in {name: owner, **{f"{name}.{key}": value for key, value in own if key[0] != "_"}}.items():
+            if inspect.isroutine(one) or inspect.isclass(one) or isinstance(one, property):
+                texts += [Text("docstring", f"gaitdisc.{place}", words) for words in split_text(inspect.getdoc(one))]
+    return sorted(set(texts))
+
+
+if __name__ == "__main__":
+    texts = list_texts()
+    for number, one in enumerate(random.Random(GIVEN.seed).sample(texts, GIVEN.draw) if GIVEN.draw else texts, 1):
+        print(f"{number}. [{one.kind}] {one.place}\n   {one.text}")
