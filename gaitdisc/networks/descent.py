@@ -21,11 +21,11 @@ from gaitdisc.networks.training_settings import Schedule, TrainingSettings
 class TorchSteps:
     """Adam with decoupled decay on any torch module.
 
-    Decay acts on weight matrices only.
+    Decay acts on weight matrices only; weights stay float32.
 
     part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check by; on
         the device of the network
-    precision: of the matrix products: `float32` or `bfloat16`; weights stay float32
+    precision: of the matrix products, `float32` or `bfloat16` (needs AVX-512 or a GPU: else torch has no LSTM)
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization.
     """
 
@@ -40,7 +40,8 @@ class TorchSteps:
         precision: str = "float32",
     ) -> None:
         self._network, self._part, self._check, self._batch = network, part, check, schedule.batch
-        self._short = precision == "bfloat16"
+        able = part[0].is_cuda or "AVX512" in torch.backends.cpu.get_cpu_capability()
+        self._short = able and precision == "bfloat16"
         matrices = [p for p in network.parameters() if p.ndim > 1]
         others = [p for p in network.parameters() if p.ndim <= 1]
         groups = [{"params": matrices, "weight_decay": schedule.decay}, {"params": others, "weight_decay": 0.0}]
@@ -94,11 +95,7 @@ class Steps(Protocol):
     arithmetic: str
 
     def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
-        """Step through all samples once, in that order and at these learning rates.
-
-        order Tensor (sample,): in which the samples are seen
-        rates (step,): learning rate of each step
-        """
+        """Step through all samples once, in that order and at these learning rates."""
         ...
 
     def loss(self) -> float:
