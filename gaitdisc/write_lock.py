@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import socket
@@ -78,17 +79,16 @@ def _sweep(folder: Path, run: bool) -> None:
 
 def _taken(path: Path, says: Path) -> Any:
     """Lock that the system keeps on the file; None where the disk has no locks."""
-    from filelock import FileLock, SoftFileLock, Timeout
+    from filelock import FileLock, Timeout
 
-    lock = FileLock(path)
+    lock = FileLock(path, fallback_to_soft=False)  # a mere file in place of the lock would outlive a killed run
     try:
         lock.acquire(timeout=PATIENCE_S, poll_interval=PATIENCE_S / 10)
     except Timeout:
         _refuse(says, f"Another process (pid {_holder(says).get('pid', 'unknown')})")
-    except NotImplementedError:  # filelock before 3.24, where the disk has no locks
-        return None
-    if isinstance(lock, SoftFileLock):  # a mere file in place of the lock would outlive a killed run
-        lock.release()
+    except OSError as error:
+        if error.errno != errno.ENOSYS:
+            raise
         return None
     return lock
 
