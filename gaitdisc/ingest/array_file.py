@@ -24,13 +24,12 @@ from gaitdisc.ingest.columns import (
     column_of,
     named_channel,
     said_clock,
-    sorted_trial,
     split_unit,
 )
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
-from gaitdisc.ingest.table import checked_angles
+from gaitdisc.ingest.table import checked_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.regular_file import LARGEST_BYTES, size_in_words
 
@@ -322,17 +321,8 @@ def read_arrays(
             bases.append(base)
         base[1].append(values)
         base[2].extend(columns)
-    return _joined(file, [_trial(file, *base) for base in bases])
-
-
-def _trial(
-    file: ArrayFile, time: NDArray[np.float64], parts: list[NDArray[np.float64]], columns: list[Column]
-) -> Trial:
-    values = np.hstack(parts)
-    findings = checked_angles(columns, time, values, file.raw.name)
-    inside = np.column_stack([column.converted(values[:, i]) for i, column in enumerate(columns)])
-    reader = file.raw.name.rpartition(".")[2].lower()
-    return sorted_trial(file.raw.source(reader), time, inside, [column.channel for column in columns], findings)
+    source = file.raw.source(file.raw.name.rpartition(".")[2].lower())
+    return _joined(file, [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases])
 
 
 def _joined(file: ArrayFile, trials: list[Trial]) -> Trial:

@@ -24,7 +24,7 @@ from gaitdisc.channel import (
     vocabulary,
 )
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells, printed_digit
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells
 from gaitdisc.ingest.columns import (
     Column,
     check_written_names,
@@ -84,11 +84,10 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
                 f"the last one, line {cells.lines[-1]}, has {len(lines[-1])}",
                 "The file is incomplete. Copy or export it again.",
             )
-    time = even_time(cells.values[:, 0], printed_digit(cells.first_column), raw.name, cells.lines)
+    time = even_time(cells.values[:, 0], cells.printed_digit(0), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
-    values = np.column_stack([c.converted(cells.values[:, i]) for i, c in enumerate(columns, 1)])
     reader = raw.name.rpartition(".")[2].lower()
-    return sorted_trial(raw.source(reader), time, values, [c.channel for c in columns], [*findings, *more])
+    return sorted_trial(raw.source(reader), time, cells.values[:, 1:], columns, [*findings, *more])
 
 
 def write_storage(recording: Recording, path: Path | str) -> Path:
