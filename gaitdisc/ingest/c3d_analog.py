@@ -79,7 +79,8 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
     (['emg_5_1', 'emg_5_2'], ['emg_3'])
     """
     labels = [_slug(channel.plain) for channel in channels]
-    brackets = [_bracket(channel.description) for channel in channels]
+    bracketed = [re.search(r"\[([\d\s,]+)\]", channel.description) for channel in channels]
+    brackets = ["_".join(re.findall(r"\d+", found[1])) if found else "" for found in bracketed]
     names = []
     for channel, label, bracket in zip(channels, labels, brackets, strict=True):
         if channel.muscle is not None:
@@ -186,8 +187,3 @@ def _slug(label: str) -> str:
     if slug in ("voltage", "analog", "raw", "signal", "emg"):
         return ""
     return re.sub(r"^emg_?", "", slug)
-
-
-def _bracket(description: str) -> str:
-    found = re.search(r"\[([\d\s,]+)\]", description)
-    return "_".join(re.findall(r"\d+", found[1])) if found else ""
