@@ -29,11 +29,7 @@ CELLS = tuple(f"r{row}{column}" for row in "123" for column in "123")
 
 @dataclass(frozen=True)
 class ModelOutput:
-    """A kind of point that is not a place.
-
-    >>> [kind.group for kind in MODEL_OUTPUTS]
-    ['ANGLES', 'FORCES', 'MOMENTS', 'POWERS', 'SCALARS']
-    """
+    """A kind of point that is not a place."""
 
     group: str  # list of the group POINT that names them
     quantity: str  # what they measure

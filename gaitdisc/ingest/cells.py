@@ -46,12 +46,7 @@ class Form:
 
 
 def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:
-    r"""Numbers of a table's body, which starts in line `first_line` of the file, counted from 1.
-
-    >>> parsed_cells(["0\t1.5", "0.1\t"], ["time", "a"], 3, Form("walk.mot")).values
-    array([[0. , 1.5],
-           [0.1, nan]])
-    """
+    """Numbers of a table's body, which starts in line `first_line` of the file, counted from 1."""
     numbers = np.array([first_line + i for i, line in enumerate(lines) if line.strip()], dtype=np.intp)
     rows = [line for line in lines if line.strip()]
     if not rows:

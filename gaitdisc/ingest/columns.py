@@ -118,10 +118,7 @@ def named_channel(name: str) -> Channel:
 
 
 def check_written_names(names: Sequence[str], file: str) -> None:
-    """Refuse names that a text table cannot hold.
-
-    >>> check_written_names(["knee_angle_r"], "walk.csv")
-    """
+    """Refuse names that a text table cannot hold."""
     for name in names:
         if name != name.strip() or not name.isprintable():
             raise ChannelError(
@@ -132,11 +129,7 @@ def check_written_names(names: Sequence[str], file: str) -> None:
 
 
 def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> Column:
-    """Column whose unit the file or the study states.
-
-    >>> column_in_unit("F", Channel("ground_force_r_vy", "vertical_force", "N", "r"), "kN", "a.csv").channel.unit
-    'N'
-    """
+    """Column whose unit the file or the study states."""
     unit = parsed_unit(unit_text)
     base, rate = unit_text, ""
     if unit is None and re.search(r"/s2?$", unit_text):
@@ -165,11 +158,7 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
 
 
 def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
-    """Column of a label, by the study's `[channels]` or the vocabulary.
-
-    >>> column_of("knee_angle_r", "walk.csv", None).unit
-    'deg'
-    """
+    """Column of a label, by the study's `[channels]` or the vocabulary."""
     plain, unit = split_unit(label)
     said = mapped_label(label, channels) or mapped_label(plain, channels)
     alias = None if said else vocabulary().named(plain)
@@ -209,12 +198,7 @@ def sorted_trial(
     columns: Sequence[Column],
     findings: Sequence[Finding] = (),
 ) -> Trial:
-    """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s].
-
-    >>> knee = Column("knee", Channel("knee_angle_r", "angle", "deg", "r"), "deg")
-    >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)
-    ['kinematics']
-    """
+    """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
     channels = [column.channel for column in columns]
     _check_names(channels, source.file)
     _refuse_missing_force(time, values, channels, source.file)

@@ -25,14 +25,7 @@ _CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6}
 
 @dataclass(frozen=True, eq=False)
 class ForcePlate:
-    """Where a plate lies and how its channels make a force.
-
-    >>> corners = np.array([[0.5, 0.4, 0], [0, 0.4, 0], [0, 0, 0], [0.5, 0, 0]])
-    >>> ForcePlate(1, 2, (0, 1, 2, 3, 4, 5), corners, np.zeros(3), np.empty((0, 0))).axes
-    array([[1., 0., 0.],
-           [0., 1., 0.],
-           [0., 0., 1.]])
-    """
+    """Where a plate lies and how its channels make a force."""
 
     number: int
     # 1: force, centre of pressure and free moment; 2: force and moment; 3: eight forces of four pillars; 4: as 2,

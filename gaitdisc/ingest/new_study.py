@@ -239,11 +239,7 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 
 
 def stands(trial: Trial) -> bool:
-    """Whether half of the markers, or else hips and knees, stay still (5 cm); with contacts of both feet it is a walk.
-
-    >>> stands(Trial("no markers, no angles", {}))
-    False
-    """
+    """Whether half of the markers, or else hips and knees, stay still (5 cm); contacts of both feet show a walk."""
     if {event.side for event in trial.events if event.label == "initial contact"} >= {"l", "r"}:
         return False
     if "markers" in trial.streams:

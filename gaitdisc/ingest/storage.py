@@ -164,13 +164,7 @@ class StorageHeader:
 
 
 def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
-    r"""Header of a storage file.
-
-    >>> lines = ["Coordinates", "nRows=1", "inDegrees=yes", "endheader", "time\tknee_angle_r", "0\t1"]
-    >>> h = parsed_header(lines, "a.mot")
-    >>> h.degrees, h.labels, h.body_line
-    (True, ('time', 'knee_angle_r'), 6)
-    """
+    """Header of a storage file."""
     end = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
     if end is None:
         raise ReadError(
@@ -239,10 +233,6 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     the file holds radians follows from the numbers.
 
     channels: the study's `[channels]`
-
-    >>> header = StorageHeader("Coordinates", ("time", "/jointset/hip_r/hip_flexion_r/value"), 3)
-    >>> storage_columns(header, "a.sto")[0].channel.name
-    'hip_flexion_r'
     """
     words = folded_label(header.title) + " " + folded_label(file)
     known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]
@@ -254,11 +244,7 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 
 
 def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
-    """Say what was guessed about the columns of a file.
-
-    >>> naming_findings([Column("x", Channel("x", "signal", "1"), "1", "kept as a signal")], "a.sto")[0].what
-    'x: kept as a signal'
-    """
+    """Say what was guessed about the columns of a file."""
     by_guess: dict[str, list[str]] = {}
     for column in columns:
         if column.guessed:

@@ -169,11 +169,7 @@ def _moved(file: str, old: Path, new: Path | None) -> str:
 
 
 def study_schema() -> Mapping[str, Any]:
-    """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`.
-
-    >>> study_schema()["title"]
-    'Study'
-    """
+    """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`."""
     return Study.model_json_schema()
 
 

@@ -22,13 +22,7 @@ MISSPELT = 0.85  # likeness to a known name above which another name is taken fo
 
 
 def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> NoReturn:
-    """Refuse from within validation; place: keys and places in lists, from the part that is being checked.
-
-    >>> refuse(("id",), "a pseudonym", "found 'P01' twice", "Rename one.")
-    Traceback (most recent call last):
-    ...
-    pydantic_core._pydantic_core.PydanticCustomError: a pseudonym; found 'P01' twice. Rename one.
-    """
+    """Refuse from within validation; place: keys and places in lists, from the part that is being checked."""
     words = {"place": tuple(place), "needed": needed, "found": found, "remedy": remedy}
     raise PydanticCustomError("gaitdisc", "{needed}; {found}. {remedy}", words)
 
@@ -87,10 +81,7 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
 
 
 def check_channels(channels: Mapping[str, str]) -> None:
-    """Refuse a map (label -> `name` or `name [unit]`) with an unknown unit, a misspelt name, or a name twice.
-
-    >>> check_channels({"Sensor 1": "emg_sol_r [mV]"})
-    """
+    """Refuse a map (label -> `name` or `name [unit]`) with an unknown unit, a misspelt name, or a name twice."""
     owners: dict[str, str] = {}
     for label, said in channels.items():
         name, unit = split_unit(said)

@@ -75,12 +75,7 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
 
 
 def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
-    r"""Header of a marker file.
-
-    >>> keys = "DataRate\tNumFrames\tNumMarkers\tUnits"
-    >>> parsed_trc_header(["PathFileType\t4", keys, "100\t1\t1\tmm", "Frame#\tTime\tRHEE"], "a.trc").labels
-    ('RHEE',)
-    """
+    """Header of a marker file."""
     if len(lines) < 4 or not lines[0].lstrip().startswith("PathFileType"):
         raise ReadError(
             f"{file} must be a marker file, whose first line begins with 'PathFileType'",
