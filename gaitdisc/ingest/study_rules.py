@@ -109,8 +109,7 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
             if names.count(name) > 1:
                 refuse(("models", key), "list each name once", f"{name!r} occurs twice", "Remove one of them.")
             if key == "outputs" and name not in inputs:
-                nearest = nearest_word(name, inputs)
-                found = f"{name!r} is not" + (f", the nearest is {nearest!r}" if nearest else "")
+                found = f"{name!r} is not{hint_nearest(name, inputs)}"
                 remedy = "Add it to angles or emg, or remove it from outputs."
                 refuse(("models", key), "be among the inputs (angles and emg)", found, remedy)
             if name not in mapped:
