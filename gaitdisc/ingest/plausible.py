@@ -215,11 +215,8 @@ def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before
             where,
             "Correct the cell or the unit and export the force again.",
         )
-    spoils = (
-        "the unit or the name of the channel, if most of its samples are affected"
-        if beyond.mean() > 0.5
-        else "these frames"
-    )
+    most = "the unit or the name of the channel, if most of its samples are affected"
+    spoils = most if beyond.mean() > 0.5 else "these frames"
     spans, what = spans_s(recording.time, beyond), f"{where}; treated as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans)
 
@@ -238,7 +235,11 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     knees = [
         c.name for c in kinematics.channels if _KNEE.fullmatch(c.name) and (c.quantity, c.unit) == ("angle", "deg")
     ]
-    reaches = {name: _reach(kinematics[name]) for name in knees}
+    finite = {name: kinematics[name][np.isfinite(kinematics[name])] for name in knees}
+    reaches = {
+        name: tuple(np.quantile(values, [0.01, 0.99]).tolist()) if len(values) >= FEWEST else (0.0, 0.0)
+        for name, values in finite.items()
+    }
     senses = {name: _sense(*reach) for name, reach in reaches.items()}
     proven = {sense for sense in senses.values() if sense}
     turned = [name for name, sense in senses.items() if sense == -1 or (sense == 0 and proven == {-1})]
@@ -268,14 +269,6 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
         )
         findings.append(Finding("warning", "knee sign", file, what, "the knees if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings
-
-
-def _reach(values: NDArray[np.float64]) -> tuple[float, float]:
-    finite = values[np.isfinite(values)]
-    if len(finite) < FEWEST:
-        return 0.0, 0.0
-    low, high = np.quantile(finite, [0.01, 0.99])
-    return float(low), float(high)
 
 
 def _sense(low: float, high: float) -> int | None:

@@ -128,21 +128,17 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """Say that ground forces or joint moments stated in N or N m are per kg of body mass."""
     found = []
-    for key, quantity, unit, (low, high), like in (
-        ("forces", "vertical_force", "N", FORCE_N, "is loaded as in steps, in which a person exerts hundreds of N"),
-        (
-            "moments",
-            "moment",
-            "N m",
-            MOMENT_NM,
-            "is the largest moment of the legs, although walking needs tens of N m",
-        ),
-    ):
+    steps = "is loaded as in steps, in which a person exerts hundreds of N"
+    legs = "is the largest moment of the legs, although walking needs tens of N m"
+    stated = ("forces", "vertical_force", "N", FORCE_N, steps), ("moments", "moment", "N m", MOMENT_NM, legs)
+    for key, quantity, unit, (low, high), like in stated:
         if key not in streams:
             continue
         recording = streams[key]
         meant = [c.name for c in recording.channels if (c.quantity, c.unit) == (quantity, unit)]
-        peaks = {name: _peak(recording[name]) for name in meant if key == "forces" or _LEG.fullmatch(name)}
+        meant = [name for name in meant if key == "forces" or _LEG.fullmatch(name)]
+        sizes = {name: np.abs(recording[name][np.isfinite(recording[name])]) for name in meant}
+        peaks = {name: float(np.quantile(size, 0.999)) if size.size else 0.0 for name, size in sizes.items()}
         most = max(peaks, key=lambda name: peaks[name], default="")
         walks = recording.duration_s >= STANCE_S[0] and (key == "moments" or (most and _like_steps(recording, most)))
         if most and low <= peaks[most] <= high and walks:
@@ -158,8 +154,3 @@ def _like_steps(forces: Recording, name: str) -> bool:
     lengths = [(end - start) / forces.rate_hz for start, end in runs(force > SHARE * peak)]
     empty = float(np.mean(force < EMPTY * peak))
     return empty > EMPTY and max(lengths, default=0.0) >= STANCE_S[0] and max(lengths, default=0.0) <= STANCE_S[1]
-
-
-def _peak(values: NDArray[np.float64]) -> float:
-    finite = np.abs(values[np.isfinite(values)])
-    return float(np.quantile(finite, 0.999)) if finite.size else 0.0

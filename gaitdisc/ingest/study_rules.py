@@ -65,9 +65,8 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
     for i, participant in enumerate(study.participants):
         if ids[participant.id.lower()] > 1:
             found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
-            refuse(
-                ("participants", i, "id"), "be used for one person only", found, "List all trials under one pseudonym."
-            )
+            place = ("participants", i, "id")
+            refuse(place, "be used for one person only", found, "List all trials under one pseudonym.")
         for j, trial in enumerate(participant.trials):
             if trial.condition not in (*words, *others):
                 nearest = nearest_word(trial.condition, (*words, *others))
