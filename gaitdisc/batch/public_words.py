@@ -102,19 +102,12 @@ class PublicWords:
 
     def _called(self, text: str) -> str:
         """Files by what they are called, and each word that is not public hidden."""
-        parts = [text]
-        for name in sorted(self.files, key=len, reverse=True):
-            split = re.compile(rf"(?<!\w){re.escape(name)}(?!\w)")
-            parts = [
-                piece
-                for i, part in enumerate(parts)
-                for piece in ([part] if i % 2 else _between(split.split(part), self.files[name]))
-            ]
-        hidden = [part if i % 2 else _WORD.sub(self._or_hidden, part) for i, part in enumerate(parts)]
-        return re.sub(rf"{HIDDEN}(?:[\s._/\\:-]*{HIDDEN})+", HIDDEN, "".join(hidden))
+        names = (re.escape(name) for name in sorted(self.files, key=len, reverse=True) if name)
+        parts = "|".join((*(rf"(?<!\w){name}(?!\w)" for name in names), _WORD.pattern))
+        hidden = re.sub(parts, lambda found: self.files.get(found[0]) or self._or_hidden(found[0]), text)
+        return re.sub(rf"{HIDDEN}(?:[\s._/\\:-]*{HIDDEN})+", HIDDEN, hidden)
 
-    def _or_hidden(self, found: re.Match[str]) -> str:
-        word = found.group()
+    def _or_hidden(self, word: str) -> str:
         return word if self._public(word) or all(map(self._public, word.split("_"))) else HIDDEN
 
     def _public(self, word: str) -> bool:
@@ -209,7 +202,3 @@ def _files(participant: Participant, planned: PlannedTrial) -> dict[str, str]:
         called |= {path.stem: said} if len(path.stem) > 3 and re.search(r"\d", path.stem) else {}
         called |= {path.name: said}
     return called
-
-
-def _between(parts: list[str], word: str) -> list[str]:
-    return [piece for k, part in enumerate(parts) for piece in ((word, part) if k else (part,))]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -24,24 +24,21 @@ from gaitdisc.ingest.columns import (
     column_of,
     named_channel,
     said_clock,
-    sorted_trial,
     split_unit,
 )
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
-from gaitdisc.ingest.table import checked_angles
+from gaitdisc.ingest.table import checked_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.regular_file import LARGEST_BYTES, size_in_words
 
 _STEP = re.compile(r"\.([^.(){}]+)|\{(\d{1,9})\}|\((\d{1,9})\)")
 _COLUMN = re.compile(r"\(\s*((?::|\d{1,9})(?:\s*,\s*(?::|\d{1,9}))+)\s*\)$")
 _SHOWN = 12  # variables that a message names
-_UNPACKED = (
-    64 * MEBIBYTE,
-    100,
-)  # bytes, and times the file: measured values deflate up to 12 times, a bomb 1,000 times
+_UNPACKED = (64 * MEBIBYTE, 100)  # bytes, and times the file: values deflate up to 12 times, a bomb 1,000 times
 _REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for the form of a path."
+_COMPLEX = "complex numbers, which a recording cannot contain"
 ENDINGS = (".mat", ".npz")
 
 
@@ -75,16 +72,15 @@ class ArrayFile:
                   default="")  # fmt: skip
         if not top:
             hint = hint_nearest(re.split(r"[.({]", steps)[0], self.names)
-            raise self._refused(
-                whole, f"it has {list_names(self.names, _SHOWN)}{hint}", "Correct the path in [channels]."
-            )
+            found = f"it has {list_names(self.names, _SHOWN)}{hint}"
+            raise self._refused(whole, found, "Correct the path in [channels].")
         rest = steps[len(top) :]
         if "".join(found[0] for found in _STEP.finditer(rest)) != rest:
             raise self._refused(whole, f"{rest!r} is not a path", _REMEDY)
         node = self.opened(top)
         for field, cell, place in _STEP.findall(rest):
             node = self._field(node, field, whole, part) if field else self._element(node, int(cell or place), whole)
-        return self._column(self._checked(self._chosen(node, whole, part), whole), columns, whole)
+        return self._column(self._chosen(node, whole, part), columns, whole)
 
     def _refused(self, path: str, found: str, remedy: str) -> ReadError:
         return ReadError(f"{self.raw.name}: {path!r} must name a variable of numbers", found, remedy)
@@ -94,11 +90,10 @@ class ArrayFile:
         if not isinstance(node, Mapping):
             raise self._refused(path, f"{field!r} follows {_what(node)}, which is not a struct", _REMEDY)
         if field not in node:
-            hint = hint_nearest(field, node)
-            raise self._refused(
-                path, f"the struct has {list_names(tuple(node), _SHOWN)}{hint}", "Correct the path in [channels]."
-            )
-        return node[field]
+            found = f"the struct has {list_names(tuple(node), _SHOWN)}{hint_nearest(field, node)}"
+            raise self._refused(path, found, "Correct the path in [channels].")
+        held = node[field]
+        return held() if callable(held) else held
 
     def _element(self, node: Any, number: int, path: str) -> Any:
         if isinstance(node, Mapping) and number == 1:
@@ -106,9 +101,8 @@ class ArrayFile:
         if not isinstance(node, Cells):
             raise self._refused(path, f"element {number} follows {_what(node)}", _REMEDY)
         if not 1 <= number <= len(node.held):
-            raise self._refused(
-                path, f"it has {len(node.held)} elements and no element {number}", "Elements are counted from 1."
-            )
+            found = f"it has {len(node.held)} elements and no element {number}"
+            raise self._refused(path, found, "Elements are counted from 1.")
         return node.held[number - 1]
 
     def _chosen(self, node: Any, path: str, part: str) -> Any:
@@ -122,16 +116,13 @@ class ArrayFile:
         remedy = f'Write part = "1" to "{len(node.held)}" next to the trial\'s files, or path{{1}}.'
         raise self._refused(path, f"it holds {len(node.held)} elements", remedy)
 
-    def _checked(self, node: Any, path: str) -> NDArray[np.float64]:
+    def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> NDArray[np.float64]:
         if not isinstance(node, np.ndarray):
             raise self._refused(path, f"it is {_what(node)}", "Name another variable, or save it as a numeric array.")
         values = np.array(node, float)
         if not values.size or np.isinf(values).any():
             found = "it is empty" if not values.size else f"it contains {int(np.isinf(values).sum())} infinite numbers"
             raise self._refused(path, found, "Save it again, with NaN for missing values.")
-        return values
-
-    def _column(self, values: NDArray[np.float64], columns: re.Match[str] | None, path: str) -> NDArray[np.float64]:
         if columns is None:
             return values
         wanted = [one.strip() for one in columns[1].split(",")]
@@ -205,32 +196,11 @@ def _node(tree: Any, arrays: Arrays) -> Any:
     return {name: _node(one, arrays) for name, one in tree["fields"].items()}
 
 
-def _of_hdf5(path: Path, name: str) -> Any:
-    """Node of a variable of a v7.3 file; structs are groups, cells are references, arrays stand transposed."""
+def _of_hdf5(path: Path, name: str, number: int | None = None) -> Any:
+    """Node of a v7.3 file, or an element of it: structs are groups, cells references, arrays stand transposed."""
     with hdf5_file(path) as file:
-        return _hdf5_node(file, name, path)
-
-
-class _Group(Mapping[str, Any]):
-    """Struct of a v7.3 file; each field is read when it is used. With a number: that element of all fields."""
-
-    def __init__(self, path: Path, name: str, number: int | None = None) -> None:
-        self._path, self._name, self._number = path, name, number
-
-    def __getitem__(self, field: str) -> Any:
-        found = _of_hdf5(self._path, f"{self._name}/{field}")
-        return found.held[self._number] if self._number is not None and isinstance(found, Cells) else found
-
-    def __contains__(self, field: object) -> bool:
-        return field in tuple(iter(self))
-
-    def __iter__(self):
-        with hdf5_file(self._path) as file:
-            names = tuple(map(str, file[self._name]))
-        return iter(names)
-
-    def __len__(self) -> int:
-        return len(tuple(iter(self)))
+        found = _hdf5_node(file, name, path)
+    return found.held[number] if number is not None and isinstance(found, Cells) else found
 
 
 def _hdf5_node(file: Any, name: str, path: Path) -> Any:
@@ -254,19 +224,13 @@ def _hdf5_node(file: Any, name: str, path: Path) -> Any:
     word = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
     if marks.get("MATLAB_empty"):
         return np.empty(0)
-    if word in ("char", "function_handle", "string") or getattr(held.dtype, "names", None):
-        return (
-            "text"
-            if word == "char"
-            else "complex numbers, which a recording cannot contain"
-            if held.dtype.names
-            else word
-        )
+    if held.dtype.names or word in ("char", "function_handle", "string"):
+        return "text" if word == "char" else _COMPLEX if held.dtype.names else word
     return data_set(file, name, path).T
 
 
 def _structs(file: Any, name: str, path: Path) -> Any:
-    """One struct, or as many as each of its fields has references that are no cell array's."""
+    """One struct, or as many as each field has references that are no cell array's; fields are read when used."""
     import h5py
 
     counts = set()
@@ -274,9 +238,12 @@ def _structs(file: Any, name: str, path: Path) -> Any:
         is_refs = isinstance(field, h5py.Dataset) and h5py.check_ref_dtype(field.dtype) is not None
         counts.add(field.size if is_refs and "MATLAB_class" not in field.attrs else None)
     (count,) = counts if len(counts) == 1 else (None,)
-    if count is None:
-        return _Group(path, name)
-    return Cells(tuple(_Group(path, name, number) for number in range(min(count, 10**6))))
+    names = tuple(map(str, file[name]))
+    structs = (
+        {field: partial(_of_hdf5, path, f"{name}/{field}", number) for field in names}
+        for number in ((None,) if count is None else range(min(count, 10**6)))
+    )
+    return next(structs) if count is None else Cells(tuple(structs))
 
 
 def _what(node: Any) -> str:
@@ -322,17 +289,8 @@ def read_arrays(
             bases.append(base)
         base[1].append(values)
         base[2].extend(columns)
-    return _joined(file, [_trial(file, *base) for base in bases])
-
-
-def _trial(
-    file: ArrayFile, time: NDArray[np.float64], parts: list[NDArray[np.float64]], columns: list[Column]
-) -> Trial:
-    values = np.hstack(parts)
-    findings = checked_angles(columns, time, values, file.raw.name)
-    inside = np.column_stack([column.converted(values[:, i]) for i, column in enumerate(columns)])
-    reader = file.raw.name.rpartition(".")[2].lower()
-    return sorted_trial(file.raw.source(reader), time, inside, [column.channel for column in columns], findings)
+    source = file.raw.source(file.raw.name.rpartition(".")[2].lower())
+    return _joined(file, [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases])
 
 
 def _joined(file: ArrayFile, trials: list[Trial]) -> Trial:
@@ -364,9 +322,8 @@ def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Co
         if unit is None:
             needed = f"{file.raw.name}: the marker {name!r} of {label!r} must have a unit"
             raise UnitError(needed, "the study states none", f'Write "{label}" = "{name} [mm] @ 100 Hz".')
-        return [column_in_unit(label, named_channel(f"{name}.{axis}"), unit, file.raw.name) for axis in "xyz"], flat[
-            :, :3
-        ]
+        columns = [column_in_unit(label, named_channel(f"{name}.{axis}"), unit, file.raw.name) for axis in "xyz"]
+        return columns, flat[:, :3]
     raise ReadError(
         f"{file.raw.name}: {label!r} must have one column for {name!r}, or three for a marker",
         f"its shape is {' x '.join(map(str, values.shape))}",

@@ -7,7 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
 from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap, file_events
 from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
-from gaitdisc.ingest.c3d_points import Streams, file_segments, point_names, point_streams
+from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
@@ -50,9 +49,7 @@ class C3DReader:
     def __enter__(self) -> C3DReader:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -111,15 +108,16 @@ class C3DReader:
         streams, surfaces, seen = _streams(points, analog, layout, parameters, labels, header.file)
         first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
         events, more = file_events(parameters, layout.frames, rate_hz, first, header.file)
-        findings += [*seen, *more, *labels.unused(_all_labels(parameters, layout), header.file)]
+        analog_channels = analog_labels(parameters, layout.channels)
+        all_labels = [text for one in analog_channels for text in (one.label, one.description)]
+        all_labels += point_names(parameters, layout.points)
+        findings += [*seen, *more, *labels.unused(all_labels, header.file)]
         source = Source(header.file, sha256.result(), reader)
-        times = {
-            "points": np.arange(layout.frames) / rate_hz,
-            "analog": np.arange(layout.frames * layout.samples_per_frame)
-            / (rate_hz * max(layout.samples_per_frame, 1)),
-        }
+        samples = layout.samples_per_frame
+        point_times = np.arange(layout.frames) / rate_hz
+        analog_times = np.arange(layout.frames * samples) / (rate_hz * max(samples, 1))
         recordings = {
-            key: Recording(times["analog" if key in ANALOG_STREAMS else "points"], values, columns, source=source)
+            key: Recording(analog_times if key in ANALOG_STREAMS else point_times, values, columns, source=source)
             for key, (values, columns) in streams.items()
         }
         segments = file_segments(path, header, parameters, source)
@@ -151,13 +149,7 @@ class C3DReader:
 
 
 def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
-    """Trial of one C3D file; `C3DReader` is faster for many.
-
-    >>> read_c3d("missing.c3d")
-    Traceback (most recent call last):
-    ...
-    gaitdisc.errors.MissingFileError: the path must lead to a C3D file; missing.c3d does not exist. Check the path.
-    """
+    """Trial of one C3D file; `C3DReader` is faster for many."""
     with C3DReader() as reader:
         return reader.read(path, channels)
 
@@ -181,13 +173,8 @@ def _streams(
         streams["moments"], more = house_kinetics(streams["moments"], loads, body_mass(parameters), file)
         of_plates = [*of_plates, *more]
     analog, of_analog = analog_streams(raw, parameters, columns, labels, file)
-    for part in (forces, analog):
-        for key, (values, channels) in part.items():
-            if key in streams:
-                before, earlier = streams[key]
-                streams[key] = (np.hstack([before, values]), (*earlier, *channels))
-            else:
-                streams[key] = (values, channels)
+    for key, part in (*forces.items(), *analog.items()):
+        add_part(streams, key, part)
     surfaces = tuple(plate.surface for plate in plates if columns.issuperset(plate.columns))
     return streams, surfaces, [*findings, *doubts, *described, *of_plates, *of_analog]
 
@@ -221,32 +208,14 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
 
 def _made_finite(values: NDArray[np.float64], what: str, file: str) -> list[Finding]:
     infinite = np.isinf(values)
-    if not infinite.any():
-        return []
     values[infinite] = np.nan
-    return [
-        Finding(
-            "warning", "infinite values", file, f"{int(infinite.sum())} {what} are infinite; treated as missing", what
-        )
-    ]
-
-
-def _all_labels(parameters: C3DParameters, layout: C3DLayout) -> list[str]:
-    analog = analog_labels(parameters, layout.channels)
-    return [
-        *(one.label for one in analog),
-        *(one.description for one in analog),
-        *point_names(parameters, layout.points),
-    ]
+    said = f"{int(infinite.sum())} {what} are infinite; treated as missing"
+    return [Finding("warning", "infinite values", file, said, what)] if infinite.any() else []
 
 
 @dataclass(frozen=True)
 class C3DLayout:
-    """Shape of the data section.
-
-    >>> C3DLayout(100, 10, 2, 20, 4, 3).end
-    33024
-    """
+    """Shape of the data section."""
 
     frames: int
     points: int  # a frame
@@ -289,38 +258,34 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
         C3DLayout(count, used, channels, samples, word_bytes, block)
         for count, used, (channels, samples), block in product(frames, points, analog, blocks)
     ]
-    said = {
-        "frames": frames,
-        "points": points,
-        "analog channels and samples per frame": analog,
-        "first block of the data": blocks,
-    }
     filling = [layout for layout in layouts if layout.fills(header.size)]
     layout = (filling or layouts)[0]
-    if not layout.fits(header.size):
-        _refuse_truncated(layout, header)
-    if layout.data_block != header.data_block:
-        raise ReadError(
-            "the header of a C3D file must say where the data begin",
-            f"{header.file} says block {header.data_block}; POINT:DATA_START and the length of the file say "
-            f"{layout.data_block}",
-            "Export the trial again. This copy is damaged.",
-        )
-    if layout.frames < 1 or layout.frame_bytes < 1 or layout.data_block <= header.parameter_block:
-        raise ReadError(
-            "a trial must have at least one frame of points or analog channels",
-            f"{header.file} has {layout.frames} frames, {layout.points} points, {layout.channels} analog channels",
-            "Export the trial again with markers or analog channels.",
-        )
-    if layout.frames == _SATURATED and header.size - layout.end >= layout.frame_bytes + BLOCK:
-        room = layout.frames + (header.size - layout.end) // layout.frame_bytes
-        raise ReadError(
-            "a C3D file of more than 65535 frames must state their number in TRIAL:ACTUAL_END_FIELD",
-            f"{header.file} has room for {room} but states 65535",
-            "Export the trial in parts, or with software that writes the group TRIAL.",
-        )
+    _refuse_impossible(layout, header)
     rotations = parameters.count("ROTATION", "USED")  # their block follows the frames
-    return layout, [*_contradictions(said, layout, header), *([] if rotations else _leftover(layout, header))]
+    how = "which fills the file to its last block" if layout.fills(header.size) else "for which the file is long enough"
+    contradicted = (
+        ("frames", frames, layout.frames),
+        ("points", points, layout.points),
+        ("analog channels and samples per frame", analog, (layout.channels, layout.samples_per_frame)),
+        ("first block of the data", blocks, layout.data_block),
+    )
+    findings = [
+        Finding(
+            "warning",
+            "contradictory header",
+            header.file,
+            f"header and parameters give {what} as {' and '.join(map(str, values))}; read as {taken}, {how}",
+            "the whole trial if this is wrong; compare its length with your notes",
+        )
+        for what, values, taken in contradicted
+        if len(values) > 1
+    ]
+    rest = header.size - layout.end
+    if rest >= layout.frame_bytes + BLOCK and not rotations:
+        what = f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more"
+        spoils = "nothing unless they are frames; compare the trial's length with your notes"
+        findings.append(Finding("warning", "bytes left over", header.file, what, spoils))
+    return layout, findings
 
 
 def _frames(header: C3DHeader, parameters: C3DParameters) -> tuple[int, ...]:
@@ -369,50 +334,35 @@ def _distinct(*values):
     return tuple(dict.fromkeys(value for value in values if value is not None))
 
 
-def _refuse_truncated(layout: C3DLayout, header: C3DHeader) -> None:
-    whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
-    raise ReadError(
-        f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels must "
-        f"have {layout.end} bytes",
-        f"{header.file} has {header.size} and ends within frame {whole + 1}: it is truncated",
-        "Copy it again from the recording computer. Do not use this incomplete copy.",
-    )
-
-
-def _contradictions(said: dict[str, tuple], layout: C3DLayout, header: C3DHeader) -> list[Finding]:
-    taken = {
-        "frames": layout.frames,
-        "points": layout.points,
-        "analog channels and samples per frame": (layout.channels, layout.samples_per_frame),
-        "first block of the data": layout.data_block,
-    }
-    how = "which fills the file to its last block" if layout.fills(header.size) else "for which the file is long enough"
-    return [
-        Finding(
-            "warning",
-            "contradictory header",
-            header.file,
-            f"header and parameters give {what} as {' and '.join(map(str, values))}; read as {taken[what]}, {how}",
-            "the whole trial if this is wrong; compare its length with your notes",
+def _refuse_impossible(layout: C3DLayout, header: C3DHeader) -> None:
+    if not layout.fits(header.size):
+        whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
+        raise ReadError(
+            f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels must "
+            f"have {layout.end} bytes",
+            f"{header.file} has {header.size} and ends within frame {whole + 1}: it is truncated",
+            "Copy it again from the recording computer. Do not use this incomplete copy.",
         )
-        for what, values in said.items()
-        if len(values) > 1
-    ]
-
-
-def _leftover(layout: C3DLayout, header: C3DHeader) -> list[Finding]:
-    rest = header.size - layout.end
-    if rest < layout.frame_bytes + BLOCK:
-        return []
-    return [
-        Finding(
-            "warning",
-            "bytes left over",
-            header.file,
-            f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more",
-            "nothing unless they are frames; compare the trial's length with your notes",
+    if layout.data_block != header.data_block:
+        raise ReadError(
+            "the header of a C3D file must say where the data begin",
+            f"{header.file} says block {header.data_block}; POINT:DATA_START and the length of the file say "
+            f"{layout.data_block}",
+            "Export the trial again. This copy is damaged.",
         )
-    ]
+    if layout.frames < 1 or layout.frame_bytes < 1 or layout.data_block <= header.parameter_block:
+        raise ReadError(
+            "a trial must have at least one frame of points or analog channels",
+            f"{header.file} has {layout.frames} frames, {layout.points} points, {layout.channels} analog channels",
+            "Export the trial again with markers or analog channels.",
+        )
+    if layout.frames == _SATURATED and header.size - layout.end >= layout.frame_bytes + BLOCK:
+        room = layout.frames + (header.size - layout.end) // layout.frame_bytes
+        raise ReadError(
+            "a C3D file of more than 65535 frames must state their number in TRIAL:ACTUAL_END_FIELD",
+            f"{header.file} has room for {room} but states 65535",
+            "Export the trial in parts, or with software that writes the group TRIAL.",
+        )
 
 
 def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:

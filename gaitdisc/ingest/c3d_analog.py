@@ -23,11 +23,7 @@ _DEVICE = re.compile(r"^(?:(?:voltage|analog|raw|emg|signal|electric potential)[
 
 @dataclass(frozen=True)
 class AnalogLabel:
-    """What the file calls one analog channel.
-
-    >>> AnalogLabel(5, "Voltage.L Rect", "", "V").muscle.name
-    'emg_rf_l'
-    """
+    """What the file calls one analog channel."""
 
     number: int  # place among the analog channels, from 1
     label: str
@@ -73,13 +69,10 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
     A muscle of the vocabulary gives its name. Otherwise the label does if no other channel has it; labels that are
     alike or cut give way to the numbers in the description (`Voltage [5,1]`: `emg_5_1`), and those to the place among
     the analog channels.
-
-    >>> cut = [AnalogLabel(n, "Voltage.Voltage.", f"Analog EMG::Voltage [5,{n}]", "V") for n in (1, 2)]
-    >>> emg_names(cut), emg_names([AnalogLabel(3, "EMG3", "", "V")])
-    (['emg_5_1', 'emg_5_2'], ['emg_3'])
     """
     labels = [_slug(channel.plain) for channel in channels]
-    brackets = [_bracket(channel.description) for channel in channels]
+    bracketed = [re.search(r"\[([\d\s,]+)\]", channel.description) for channel in channels]
+    brackets = ["_".join(re.findall(r"\d+", found[1])) if found else "" for found in bracketed]
     names = []
     for channel, label, bracket in zip(channels, labels, brackets, strict=True):
         if channel.muscle is not None:
@@ -186,8 +179,3 @@ def _slug(label: str) -> str:
     if slug in ("voltage", "analog", "raw", "signal", "emg"):
         return ""
     return re.sub(r"^emg_?", "", slug)
-
-
-def _bracket(description: str) -> str:
-    found = re.search(r"\[([\d\s,]+)\]", description)
-    return "_".join(re.findall(r"\d+", found[1])) if found else ""

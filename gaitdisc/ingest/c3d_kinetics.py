@@ -202,13 +202,7 @@ def body_measures_in(path: Path) -> BodyMeasures:
 
 
 def body_measures_of(parameters: C3DParameters, file: str) -> BodyMeasures:
-    """Measures of the person that stand in parameters.
-
-    >>> import numpy as np
-    >>> some = C3DParameters({("PROCESSING", "LKNEEWIDTH"): np.array([102.0])})
-    >>> dict(body_measures_of(some, "a.c3d").knee_width_m)
-    {'l': 0.102}
-    """
+    """Measures of the person that stand in parameters."""
     whole = {name: _length(parameters, name, keys) for name, keys in OF_THE_BODY.items()}
     sided = {}
     for name, keys in OF_A_SIDE.items():

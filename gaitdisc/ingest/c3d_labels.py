@@ -42,16 +42,10 @@ def without_prefix(label: str) -> str:
 
 def named_people(parameters: C3DParameters) -> tuple[str, ...]:
     """Names that the file gives its subjects, so that they can be removed wherever they stand."""
-    found: dict[str, None] = {}
-    for group, name in (
-        ("SUBJECTS", "NAMES"),
-        ("SUBJECTS", "LABEL_PREFIXES"),
-        ("SUBJECT", "NAME"),
-        ("EVENT", "SUBJECTS"),
-    ):
-        found |= dict.fromkeys(text.strip(" :") for text in parameters.texts(group, name))
-    found |= dict.fromkeys(label.rpartition(":")[0] for label in parameters.texts("POINT", "LABELS"))
-    return tuple(sorted((name for name in found if len(name) > 1), key=len, reverse=True))
+    places = (("SUBJECTS", "NAMES"), ("SUBJECTS", "LABEL_PREFIXES"), ("SUBJECT", "NAME"), ("EVENT", "SUBJECTS"))
+    found = [text.strip(" :") for place in places for text in parameters.texts(*place)]
+    found += [label.rpartition(":")[0] for label in parameters.texts("POINT", "LABELS")]
+    return tuple(sorted((name for name in dict.fromkeys(found) if len(name) > 1), key=len, reverse=True))
 
 
 def made_unique(labels: Sequence[str], word: str) -> list[str]:
@@ -98,7 +92,13 @@ class LabelMap:
                     else bool(label) and folded_label(key) == folded_label(label)
                 )
                 if same:
-                    self._use(key)
+                    self._used[key] += 1
+                    if self._used[key] > 1:
+                        raise ChannelError(
+                            f"{key!r} of the study's [channels] must mean one channel",
+                            f"{self._used[key]} channels of the file have this label",
+                            "Use '#<number>' instead, the number of the analog channel counted from 1.",
+                        )
                     return name
         return None
 
@@ -112,15 +112,6 @@ class LabelMap:
                 what = f"the study maps {key!r} to {self._names[key]!r}; the file does not have this label{hint}"
                 found.append(Finding("warning", "label not found", file, what, "everything that needs this channel"))
         return found
-
-    def _use(self, key: str) -> None:
-        self._used[key] += 1
-        if self._used[key] > 1:
-            raise ChannelError(
-                f"{key!r} of the study's [channels] must mean one channel",
-                f"{self._used[key]} channels of the file have this label",
-                "Use '#<number>' instead, the number of the analog channel counted from 1.",
-            )
 
 
 def event_kind(label: str, context: str) -> tuple[str, str]:

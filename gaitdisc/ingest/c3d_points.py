@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,11 +29,7 @@ CELLS = tuple(f"r{row}{column}" for row in "123" for column in "123")
 
 @dataclass(frozen=True)
 class ModelOutput:
-    """A kind of point that is not a place.
-
-    >>> [kind.group for kind in MODEL_OUTPUTS]
-    ['ANGLES', 'FORCES', 'MOMENTS', 'POWERS', 'SCALARS']
-    """
+    """A kind of point that is not a place."""
 
     group: str  # list of the group POINT that names them
     quantity: str  # what they measure
@@ -91,30 +88,44 @@ def point_streams(
     names = point_names(parameters, rows.shape[1] // 3)
     kinds = _kinds(names, parameters)
     plain, suffixed = _without_suffix(names, kinds, file)
-    findings = [*_doubled(names, parameters, file), *suffixed]
+    findings: list[Finding] = []
+    counts = Counter(without_prefix(label) for label in parameters.texts("POINT", "LABELS")[: len(names)])
+    doubled = sorted(label for label, count in counts.items() if label and count > 1)
+    if doubled:
+        what = f"{len(doubled)} point labels occur more than once ({', '.join(doubled[:3])}); they are numbered"
+        findings.append(Finding("warning", "equal labels", file, what, "these points; give each its own name"))
+    findings += suffixed
     places = [point for point, name in enumerate(names) if name not in kinds]
     markers = rows[:, _columns(places)]
-    findings += _without_zeros(markers, file)
+    triples = markers.reshape(len(markers), markers.shape[1] // 3, 3)
+    unseen = np.all(triples == 0, axis=2)  # some software writes (0, 0, 0) for a marker that it did not see
+    triples[unseen] = np.nan
+    if unseen.any():
+        what = f"{int(unseen.sum())} marker positions were exactly (0, 0, 0) and are treated as missing"
+        findings.append(Finding("note", "zero places", file, what, ""))
     unit, doubts = length_unit(parameters, markers, file)
     streams: Streams = {}
     if places:
         renamed = [(labels.name(names[point]) or names[point]) for point in places]
         channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in renamed for axis in AXES)
         streams["markers"] = (np.asarray(convert(markers, unit, "m"), float), channels)
-    parts: dict[str, list[Part]] = {}
     for kind in MODEL_OUTPUTS:
         points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
         if points:
             named = [(names[at], plain[at]) for at in points]
             part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels, file)
-            parts.setdefault(kind.stream, []).append(part)
+            add_part(streams, kind.stream, part)
             findings += more
-    for stream, several in parts.items():
-        streams[stream] = (
-            np.hstack([values for values, _ in several]),
-            tuple(channel for _, channels in several for channel in channels),
-        )
     return streams, unit, findings + doubts
+
+
+def add_part(streams: Streams, key: str, part: Part) -> None:
+    """Put columns into a stream, after those that it has."""
+    values, channels = part
+    if key in streams:
+        before, earlier = streams[key]
+        values, channels = np.hstack([before, values]), (*earlier, *channels)
+    streams[key] = (values, channels)
 
 
 def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, ModelOutput]:
@@ -158,10 +169,8 @@ def _model_part(
     findings = []
     inner = inner_unit(unit) if unit else "1"
     if unit is None or (kind.quantity in _INNER and inner.removesuffix("/kg") != _INNER[kind.quantity]):
-        what = (
-            f"POINT:{kind.units} is {text!r}, which is not a unit of {kind.group.lower()}; the numbers are kept "
-            "without a unit"
-        )
+        what = f"POINT:{kind.units} is {text!r}, which is not a unit of {kind.group.lower()}; "
+        what += "the numbers are kept without a unit"
         findings.append(Finding("warning", "unit", file, what, f"the {kind.group.lower()}; correct the parameter"))
         unit, inner = "1", "1"
     values = np.asarray(convert(rows, unit, inner), float)
@@ -176,38 +185,11 @@ def _model_part(
             own = re.match(r"([LR])[A-Z]", plain)
             side = known.side if known is not None else own[1].lower() if own else ""
             channels.append(Channel(name, quantity, inner, side))
-    findings += _magnitude(values, kind, unit, file)
-    return (values, tuple(channels)), findings
-
-
-def _magnitude(values: NDArray[np.float64], kind: ModelOutput, unit: str, file: str) -> list[Finding]:
-    finite = np.abs(values[np.isfinite(values)])
-    most = float(finite.max()) if finite.size else 0.0
+    most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle exceeds {most:.3g} deg, so they look like radians"
-        return [Finding("warning", "unit", file, what, "all angles if they are; correct POINT:ANGLE_UNITS")]
-    return []
-
-
-def _doubled(names: list[str], parameters: C3DParameters, file: str) -> list[Finding]:
-    plain = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[: len(names)]]
-    doubled = sorted({label for label in plain if label and plain.count(label) > 1})
-    if not doubled:
-        return []
-    what = f"{len(doubled)} point labels occur more than once ({', '.join(doubled[:3])}); they are numbered"
-    return [Finding("warning", "equal labels", file, what, "these points; give each its own name")]
-
-
-def _without_zeros(markers: NDArray[np.float64], file: str) -> list[Finding]:
-    """Some software writes (0, 0, 0) for a marker that it did not see; make it NaN, in place."""
-    triples = markers.reshape(len(markers), markers.shape[1] // 3, 3)
-    origin = np.all(triples == 0, axis=2)
-    count = int(origin.sum())
-    if not count:
-        return []
-    triples[origin] = np.nan
-    what = f"{count} marker positions were exactly (0, 0, 0) and are treated as missing"
-    return [Finding("note", "zero places", file, what, "")]
+        findings.append(Finding("warning", "unit", file, what, "all angles if they are; correct POINT:ANGLE_UNITS"))
+    return (values, tuple(channels)), findings
 
 
 def _columns(points: list[int]) -> slice | NDArray[np.intp]:

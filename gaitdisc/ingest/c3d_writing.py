@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.columns import check_written_names
 from gaitdisc.ingest.force_plates import ForcePlate
@@ -49,7 +48,13 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
     values = np.hstack([recording.values for recording in analog]) if analog else np.empty((MOST_FRAMES + 1, 0))
     frames = len(values) // samples
     frames = min(frames, len(markers.time)) if markers is not None else frames
-    values = _along_plates(values[: frames * samples], surfaces, channels)
+    values = values[: frames * samples].copy()
+    place = {channel.name: number for number, channel in enumerate(channels)}
+    plates = [[place[name] for name in _plate_channels(surface)] for surface in surfaces]
+    for surface, columns in zip(surfaces, plates, strict=True):
+        axes = ForcePlate(1, 2, (), surface.corners, np.zeros(3), np.empty((0, 0))).axes
+        for three in (columns[:3], columns[3:]):  # force and moment along the plate's own axes
+            values[:, three] = values[:, three] @ axes
     if frames > MOST_FRAMES:
         raise SamplingError(
             f"a C3D file with {frame_hz:g} frames per second can be at most {MOST_FRAMES / frame_hz:g} s long",
@@ -65,7 +70,7 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
         ("ANALOG", "RATE"): [frame_hz * samples * bool(analog)],
         ("ANALOG", "LABELS"): [channel.name for channel in channels],
         ("ANALOG", "UNITS"): [channel.unit for channel in channels],
-    } | _platforms(surfaces, channels)
+    } | _platforms(surfaces, plates)
     for (group, name), value in settings.items():
         file.add_parameter(group, name, value)
         if name in WHOLE:  # ezc3d makes floats of them, which other programs refuse
@@ -103,34 +108,16 @@ def _plate_channels(surface: Surface) -> list[str]:
     return [f"{surface.name}_{kind}{axis}" for kind in "fm" for axis in "xyz"]
 
 
-def _plate_columns(surfaces: Sequence[Surface], channels: Sequence[Channel]) -> list[list[int]]:
-    place = {channel.name: number for number, channel in enumerate(channels)}
-    return [[place[name] for name in _plate_channels(surface)] for surface in surfaces]
-
-
-def _along_plates(
-    values: NDArray[np.float64], surfaces: Sequence[Surface], channels: Sequence[Channel]
-) -> NDArray[np.float64]:
-    """Same samples, forces and moments of the plates along the plates' own axes."""
-    turned = values.copy()
-    for surface, columns in zip(surfaces, _plate_columns(surfaces, channels), strict=True):
-        axes = ForcePlate(1, 2, (), surface.corners, np.zeros(3), np.empty((0, 0))).axes
-        for three in (columns[:3], columns[3:]):
-            turned[:, three] = values[:, three] @ axes
-    return turned
-
-
-def _platforms(surfaces: Sequence[Surface], channels: Sequence[Channel]) -> dict[tuple[str, str], Any]:
+def _platforms(surfaces: Sequence[Surface], columns: Sequence[Sequence[int]]) -> dict[tuple[str, str], Any]:
     """Parameters of the plates; sensors at the surface."""
     if not surfaces:
         return {}
     group, count = "FORCE_PLATFORM", len(surfaces)
-    columns = 1.0 + np.array(_plate_columns(surfaces, channels)).T
     return {
         (group, "USED"): [count],
         (group, "TYPE"): [2] * count,
         (group, "ZERO"): [0, 0],
-        (group, "CHANNEL"): columns,
+        (group, "CHANNEL"): 1.0 + np.array(columns).T,
         (group, "CORNERS"): np.array([surface.corners for surface in surfaces]).T,
         (group, "ORIGIN"): np.zeros((3, count)),
     }

@@ -24,7 +24,12 @@ class Cells:
 
     values: NDArray[np.float64]  # (row, column), numbers; NaN for blank cells
     lines: NDArray[np.intp]  # (row,), line of the file that each row stands in, counted from 1
-    first_column: list[str]  # first cell of each row as printed
+    rows: list[str]  # as printed
+    form: Form
+
+    def printed_digit(self, column: int) -> float:
+        """Size of the last digit that a column uses."""
+        return printed_digit(self.form.split(row, column + 1)[column] for row in self.rows)
 
 
 @dataclass(frozen=True)
@@ -35,20 +40,15 @@ class Form:
     separator: str = "\t"  # what stands between cells; a blank means any run of blanks and tabs
     decimal: str = "."
 
-    def split(self, line: str) -> list[str]:
-        """Split a line into cells."""
-        return line.split() if self.separator == " " else line.split(self.separator)
+    def split(self, line: str, most: int = -1) -> list[str]:
+        """Split a line into cells, the last of them the rest of the line where `most` splits are made."""
+        return line.split(None if self.separator == " " else self.separator, most)
 
 
 def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:
-    r"""Numbers of a table's body, which starts in line `first_line` of the file, counted from 1.
-
-    >>> parsed_cells(["0\t1.5", "0.1\t"], ["time", "a"], 3, Form("walk.mot")).values
-    array([[0. , 1.5],
-           [0.1, nan]])
-    """
-    numbers = np.array([first_line + i for i, line in enumerate(lines) if not line.isspace() and line], dtype=np.intp)
-    rows = [line for line in lines if line and not line.isspace()]
+    """Numbers of a table's body, which starts in line `first_line` of the file, counted from 1."""
+    numbers = np.array([first_line + i for i, line in enumerate(lines) if line.strip()], dtype=np.intp)
+    rows = [line for line in lines if line.strip()]
     if not rows:
         raise ReadError(
             f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
@@ -57,16 +57,12 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
     values = _numbers(rows, form)
     if values is None or np.isinf(values).any():
         values = _numbers_cell_by_cell(rows, labels, numbers, form)
-    separator = None if form.separator == " " else form.separator
-    return Cells(values, numbers, [row.split(separator, 1)[0].strip() for row in rows])
+    return Cells(values, numbers, rows, form)
 
 
 def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp], form: Form) -> list[str]:
     width = len(labels)
-    if form.separator == " ":
-        counts = [len(row.split()) for row in rows]
-    else:
-        counts = [row.count(form.separator) + 1 for row in rows]
+    counts = [len(row.split()) if form.separator == " " else row.count(form.separator) + 1 for row in rows]
     if min(counts) < width:
         row = counts.index(min(counts)) if counts[-1] >= width else len(counts) - 1
         cut = ", the last line" if row == len(rows) - 1 else ""
@@ -86,7 +82,7 @@ def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp]
                 f"line {number} has {len(cells)}",
                 "Name every column in the header line, or export the file again.",
             )
-        even.append((" " if form.separator == " " else form.separator).join(cells[:width]))
+        even.append(form.separator.join(cells[:width]))
     return even
 
 

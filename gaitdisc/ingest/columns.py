@@ -118,10 +118,7 @@ def named_channel(name: str) -> Channel:
 
 
 def check_written_names(names: Sequence[str], file: str) -> None:
-    """Refuse names that a text table cannot hold.
-
-    >>> check_written_names(["knee_angle_r"], "walk.csv")
-    """
+    """Refuse names that a text table cannot hold."""
     for name in names:
         if name != name.strip() or not name.isprintable():
             raise ChannelError(
@@ -132,11 +129,7 @@ def check_written_names(names: Sequence[str], file: str) -> None:
 
 
 def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> Column:
-    """Column whose unit the file or the study states.
-
-    >>> column_in_unit("F", Channel("ground_force_r_vy", "vertical_force", "N", "r"), "kN", "a.csv").channel.unit
-    'N'
-    """
+    """Column whose unit the file or the study states."""
     unit = parsed_unit(unit_text)
     base, rate = unit_text, ""
     if unit is None and re.search(r"/s2?$", unit_text):
@@ -154,8 +147,9 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
         channel = replace(channel, name=f"{channel.name}{'/accel' if rate == '/s2' else '/speed'}", quantity="signal")
         allowed = None
     if allowed and inner not in allowed:
+        kind = "EMG" if channel.quantity == "emg" else channel.quantity.replace("_", " ")
         raise UnitError(
-            f"{file}: column {label!r} is {channel.name}, {_a(channel.quantity)} in {allowed[0]}",
+            f"{file}: column {label!r} is {channel.name}, {'an' if kind[0] in 'aE' else 'a'} {kind} in {allowed[0]}",
             f"its unit is {unit_text!r}",
             "Correct the unit in the header or in the study's [channels], or map the column to another name.",
         )
@@ -164,11 +158,7 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
 
 
 def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
-    """Column of a label, by the study's `[channels]` or the vocabulary.
-
-    >>> column_of("knee_angle_r", "walk.csv", None).unit
-    'deg'
-    """
+    """Column of a label, by the study's `[channels]` or the vocabulary."""
     plain, unit = split_unit(label)
     said = mapped_label(label, channels) or mapped_label(plain, channels)
     alias = None if said else vocabulary().named(plain)
@@ -184,11 +174,6 @@ def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Colu
             "in the study's [channels].",
         )
     return column_in_unit(label, alias or channel, unit or channel.unit, file)
-
-
-def _a(quantity: str) -> str:
-    article = "an" if quantity[0] in "ae" else "a"
-    return f"{article} {'EMG' if quantity == 'emg' else quantity.replace('_', ' ')}"
 
 
 def stream_of(channel: Channel) -> str:
@@ -210,15 +195,11 @@ def sorted_trial(
     source: Source,
     time: NDArray[np.float64],
     values: NDArray[np.float64],
-    channels: Sequence[Channel],
+    columns: Sequence[Column],
     findings: Sequence[Finding] = (),
 ) -> Trial:
-    """Trial of one file whose columns (time, channel), in each channel's unit, share one even time base [s].
-
-    >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
-    >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)
-    ['kinematics']
-    """
+    """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
+    channels = [column.channel for column in columns]
     _check_names(channels, source.file)
     _refuse_missing_force(time, values, channels, source.file)
     # too slow to show a step: mostly ms under the name of seconds
@@ -230,12 +211,13 @@ def sorted_trial(
             f"its times are {step_s:g} s apart, so {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
             "If the times are in ms, name the column 'time [ms]'.",
         )
-    columns: dict[str, list[int]] = {}
+    inside = np.column_stack([column.converted(values[:, i]) for i, column in enumerate(columns)])
+    places: dict[str, list[int]] = {}
     for i, channel in enumerate(channels):
-        columns.setdefault(stream_of(channel), []).append(i)
+        places.setdefault(stream_of(channel), []).append(i)
     streams = {
-        key: Recording(time, values[:, chosen], tuple(channels[i] for i in chosen), source=source)
-        for key, chosen in columns.items()
+        key: Recording(time, inside[:, chosen], tuple(channels[i] for i in chosen), source=source)
+        for key, chosen in places.items()
     }
     name = source.file.rpartition(".")[0] or source.file
     return Trial(name, streams, findings=tuple(findings))

@@ -25,14 +25,7 @@ _CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6}
 
 @dataclass(frozen=True, eq=False)
 class ForcePlate:
-    """Where a plate lies and how its channels make a force.
-
-    >>> corners = np.array([[0.5, 0.4, 0], [0, 0.4, 0], [0, 0, 0], [0.5, 0, 0]])
-    >>> ForcePlate(1, 2, (0, 1, 2, 3, 4, 5), corners, np.zeros(3), np.empty((0, 0))).axes
-    array([[1., 0., 0.],
-           [0., 1., 0.],
-           [0., 0., 1.]])
-    """
+    """Where a plate lies and how its channels make a force."""
 
     number: int
     # 1: force, centre of pressure and free moment; 2: force and moment; 3: eight forces of four pillars; 4: as 2,
@@ -256,10 +249,8 @@ def _units(
         text = texts[column].strip()
         unit = parsed_unit(text) if text else expected
         if unit is None or inner_unit(unit) != inner_unit(expected):
-            what = (
-                f"force plate {plate.number} has channel #{column + 1} in {text!r} instead of {expected}; it is not "
-                "used"
-            )
+            what = f"force plate {plate.number} has channel #{column + 1} in {text!r} instead of {expected}; "
+            what += "it is not used"
             return (), [Finding("warning", "force plate", file, what, "its ground forces; correct ANALOG:UNITS")]
         found.append(unit)
     if not any(texts[column].strip() for column in plate.columns):
@@ -302,10 +293,8 @@ def _with_origin(
     if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
         what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; its sign is reversed"
         return turned, [Finding("note", "plate origin", file, what, "nothing; the centre of pressure is inside")]
-    what = (
-        f"force plate {plate.number}: the centre of pressure lies outside the plate in {beside:.0%} of the loaded "
-        "samples"
-    )
+    what = f"force plate {plate.number}: the centre of pressure lies outside the plate in {beside:.0%} of the loaded "
+    what += "samples"
     return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
 
 
@@ -342,12 +331,10 @@ def _beside(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ..
 
 
 def _channels(plate: ForcePlate) -> list[Channel]:
-    vertical = plate.vertical
+    forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
+    kinds = [("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m")]
     return [
-        *(
-            Channel(f"plate_{plate.number}_f{axis}", "vertical_force" if place == vertical else "force", "N")
-            for place, axis in enumerate(AXES)
-        ),
-        *(Channel(f"plate_{plate.number}_m{axis}", "moment", "N m") for axis in AXES),
-        *(Channel(f"plate_{plate.number}_p{axis}", "pressure_centre", "m") for axis in AXES),
+        Channel(f"plate_{plate.number}_{letter}{axis}", quantity, unit)
+        for letter, quantities, unit in kinds
+        for axis, quantity in zip(AXES, quantities, strict=True)
     ]

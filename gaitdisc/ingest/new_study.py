@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.people_table import (
     PLAIN,
     PSEUDONYM,
-    WALK_WORDS,
+    WORDS,
     Measured,
     condition_word,
     group_word,
@@ -25,7 +25,6 @@ from gaitdisc.ingest.people_table import (
     measured_people,
     person_key,
     person_word,
-    said_of,
     session_word,
     walk_key,
     walk_place,
@@ -127,10 +126,7 @@ def found_study(
         Participant(
             id=pseudonym,
             group=who[0],
-            mass_kg=bodies[who].mass_kg,
-            height_m=bodies[who].height_m,
-            sex=bodies[who].sex,
-            age_years=bodies[who].age_years,
+            **vars(bodies[who]),
             trials=tuple(
                 PlannedTrial(
                     condition=called[trial.word],
@@ -149,10 +145,15 @@ def found_study(
     study = Study(
         title=title, sessions=words, conditions=conditions, models=_models(walks, notes), participants=participants
     ).placed(home)
-    lacking = study.one_condition_only()
-    if lacking:
-        notes.append(f"present in one condition only, therefore not compared: {', '.join(lacking)}")
+    _note(notes, "present in one condition only, therefore not compared: ", study.one_condition_only())
     return study, notes
+
+
+def _note(notes: list[str], before: str, names: Iterable[str], after: str = "") -> None:
+    """Add a note about names, if there are any."""
+    listed = ", ".join(names)
+    if listed:
+        notes.append(f"{before}{listed}{after}")
 
 
 def recording_files(folder: Path) -> list[Path]:
@@ -169,13 +170,16 @@ def _bodies(
     """Mass, sex, stature and age of each person, and what no table has or has too many of."""
     named = Counter(person_key(word) for _, word in people)
     keys = {who: person_key(who[1]) for who in people}
+    files = ", ".join(table.as_posix() for table in tables)
     absent = [people[who] for who, key in keys.items() if measured and (key not in measured or named[key] > 1)]
-    if absent:
-        notes.append(f"not in {', '.join(table.as_posix() for table in tables)}: {', '.join(absent)}")
+    _note(notes, f"not in {files}: ", absent)
     found = {who: measured.get(key, Measured()) if named[key] == 1 else Measured() for who, key in keys.items()}
-    said = said_of({people[who]: body for who, body in found.items()}, tables)
-    if said:
-        notes.append(said)
+    counts = {
+        what: sum(bool(getattr(one, name)) for one in found.values())
+        for name, what in (("mass_kg", "body mass"), ("sex", "sex"), ("height_m", "stature"), ("age_years", "age"))
+    }
+    said = [f"{what} {count} of {len(found)}" for what, count in counts.items() if count]
+    _note(notes, "", said, f" people from {files}")
     return found
 
 
@@ -194,12 +198,11 @@ def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked:
             one, said = looked[stamp]
             found += [one] if one is not None else []
             notes += said
-    standing = [each.files[0].as_posix() for each in found if each.which == STATIC]
-    if standing:
-        notes.append(f"standing trials, set to {STATIC!r}: {', '.join(standing)}")
-    circled = [each.files[0].as_posix() for each in found if each.which == FUNCTIONAL]
-    if circled:
-        notes.append(f"circling legs according to the file names, set to {FUNCTIONAL!r}: {', '.join(circled)}")
+    for kind, words in (
+        (STATIC, f"standing trials, set to {STATIC!r}: "),
+        (FUNCTIONAL, f"circling legs according to the file names, set to {FUNCTIONAL!r}: "),
+    ):
+        _note(notes, words, (each.files[0].as_posix() for each in found if each.which == kind))
     order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")
     return sorted(found, key=lambda each: order.index(each.which))
 
@@ -221,6 +224,7 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
     elif not which:
         word = walk_word(files[0])
     kinematics, emg = trial.streams.get("kinematics"), trial.streams.get("emg")
+    angles = kinematics and tuple(channel.name for channel in kinematics.channels if channel.quantity == "angle")
     return FoundTrial(
         files,
         person_word(files[0]),
@@ -228,18 +232,14 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
         session_word(files[0])[1],
         word,
         which,
-        tuple(_angle_names(kinematics)) if kinematics else None,
-        tuple(_varying_angles(kinematics)) if kinematics else None,
-        emg.names if emg else None,
+        angles,
+        kinematics and tuple(name for name in angles or () if _varies(kinematics, name)),
+        emg and emg.names,
     )
 
 
 def stands(trial: Trial) -> bool:
-    """Whether half of the markers, or else hips and knees, stay still (5 cm); with contacts of both feet it is a walk.
-
-    >>> stands(Trial("no markers, no angles", {}))
-    False
-    """
+    """Whether half of the markers, or else hips and knees, stay still (5 cm); contacts of both feet show a walk."""
     if {event.side for event in trial.events if event.label == "initial contact"} >= {"l", "r"}:
         return False
     if "markers" in trial.streams:
@@ -302,24 +302,24 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
         others = [PLAIN]
         notes.append(f"no file or folder name shows a condition, so every walk is set to {PLAIN!r}")
     words = list(dict.fromkeys([*recognised.values(), *others]))
-    folders = [word for word in others if word not in (*WALK_WORDS, PLAIN)]
-    if folders:
-        notes.append(
-            f"conditions named after folders: {', '.join(folders)}. They are shown on every page; change any that "
-            "identifies a person"
-        )
+    _note(
+        notes,
+        "conditions named after folders: ",
+        (word for word in others if word not in (*WORDS["way of walking"], PLAIN)),
+        ". They are shown on every page; change any that identifies a person",
+    )
     device = recognised.get("device") if len(words) > 1 else None
     reference = next(word for word in words if word != device)
     rest = tuple(word for word in words if word not in (reference, device))
     called = {trial.word: recognised.get(trial.which, trial.word) for trial in walks}
     called[""] = PLAIN if others == [PLAIN] else UNKNOWN
     called |= {STATIC: STATIC, FUNCTIONAL: FUNCTIONAL, "other": UNKNOWN}
-    unnamed = [trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN]
-    if unnamed:
-        notes.append(
-            f"condition unknown; these trials are listed but not used: {', '.join(unnamed)}. To set it for all, write "
-            f'in [conditions]: unnamed = "{reference}"'
-        )
+    _note(
+        notes,
+        "condition unknown; these trials are listed but not used: ",
+        (trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN),
+        f'. To set it for all, write in [conditions]: unnamed = "{reference}"',
+    )
     return Conditions(nominal=reference, device=device, others=rest), called
 
 
@@ -345,17 +345,13 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
     free = (f"P{number:02d}" for number in range(1, 10_000) if f"P{number:02d}" not in taken)
     ids = {who: who[1] if who[1] in taken else next(free) for who in people}
     renamed = [new for (_, old), new in ids.items() if old and old != new]
-    if renamed:
-        notes.append(f"folder names that are not pseudonyms became {', '.join(renamed)}; the paths still contain them")
+    _note(notes, "folder names that are not pseudonyms became ", renamed, "; the paths still contain them")
     twice = [f"{new} ({group or 'no group'})" for (group, old), new in ids.items() if named[old.lower()] > 1]
-    if twice:
-        notes.append(f"the same name in several groups, taken as several people: {', '.join(twice)}")
+    _note(notes, "the same name in several groups, taken as several people: ", twice)
     kept = [word for _, word in people if word in taken]
-    if kept:
-        notes.append(f"used unchanged as pseudonyms: {', '.join(kept)}; change any that identifies a person")
+    _note(notes, "used unchanged as pseudonyms: ", kept, "; change any that identifies a person")
     nobody = [new for (_, old), new in ids.items() if not old]
-    if nobody:
-        notes.append(f"files whose path names no person were assigned to {', '.join(nobody)}")
+    _note(notes, "files whose path names no person were assigned to ", nobody)
     return ids
 
 
@@ -366,42 +362,29 @@ def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
         return Models()
     first = next(trial.angles for trial in found if trial.angles is not None)
     shared = [name for name in varying[0] if all(name in names for names in varying)]
-    constant = sorted(set(first) - set(varying[0]))
-    if constant:
-        notes.append(f"excluded because they are constant or copies: {', '.join(constant)}")
+    _note(notes, "excluded because they are constant or copies: ", sorted(set(first) - set(varying[0])))
     angles = tuple(name for name in ANGLES if name in shared) or tuple(shared)
     absent = [name for name in ANGLES if name not in shared]
-    if absent:
-        notes.append(f"excluded because some trials lack them; they vary: {', '.join(absent)}")
+    _note(notes, "excluded because some trials lack them; they vary: ", absent)
     known = {channel.name for channel in vocabulary().channels}
     more = [name for name in shared if name not in angles]
-    if more:
-        named = [name for name in more if name in known]
-        others = f"{len(more) - len(named)} from the files" if len(more) > len(named) else ""
-        said = ", ".join(part for part in (*named, others) if part)
-        notes.append(f"not used by the response models; add them to angles if you need them: {said}")
-    outputs = tuple(name for name in OUTPUTS if name in angles)
+    named = [name for name in more if name in known]
+    others = [f"{len(more) - len(named)} from the files"] if len(more) > len(named) else []
+    _note(notes, "not used by the response models; add them to angles if you need them: ", [*named, *others])
     if not angles:
         notes.append("the trials share no joint angle that varies; the draft names the usual ones")
         return Models()
+    outputs = tuple(name for name in OUTPUTS if name in angles) or angles[:1]
     emg = _shared_emg(found, notes)
     of_side = tuple(
         name for name in emg if name.split("_")[1][:3] in ("ham", "rf", "vas", "gas", "sol") and name.endswith("_r")
     )
-    return Models(angles=angles, emg=emg, outputs=(*(outputs or angles[:1]), *of_side))
+    return Models(angles=angles, emg=emg, outputs=(*outputs, *of_side))
 
 
-def _angle_names(recording: Recording) -> list[str]:
-    return [channel.name for channel in recording.channels if channel.quantity == "angle"]
-
-
-def _varying_angles(recording: Recording) -> list[str]:
-    names = []
-    for name in _angle_names(recording):
-        column = recording[name][np.isfinite(recording[name])]
-        if column.size and np.ptp(column) > CONSTANT_DEG and not name.endswith("_beta"):
-            names.append(name)
-    return names
+def _varies(recording: Recording, name: str) -> bool:
+    column = recording[name][np.isfinite(recording[name])]
+    return bool(column.size and np.ptp(column) > CONSTANT_DEG and not name.endswith("_beta"))
 
 
 def _shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...]:

@@ -19,13 +19,15 @@ from gaitdisc.spreadsheet import unquoted
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")
 LARGEST_BYTES = 2**22
-_IDS = ("participantid", "subjectid", "patientid", "personid", "id", "participant", "subject", "patient", "person",
-        "pseudonym", "code")  # fmt: skip
-_MASSES = ("masskg", "mass", "bodymass", "bodymasskg", "weight", "weightkg", "bodyweight", "bodyweightkg")
-_SEXES = ("sex", "gender")
-_STATURES = ("heightm", "height", "heightcm", "heightmm", "stature", "staturem", "staturecm", "staturemm", "bodyheight")
-_AGES = ("age", "ageyears", "ageyear", "ageyr", "ageyrs", "agey", "age in years", "age in y", "age in yr")
-OLDEST_YEARS = 120
+# what a column holds -> names of its label, the first that a table has; `_in_` comes before a unit of another quantity
+_LABELS = {
+    "id": "participantid subjectid patientid personid id participant subject patient person pseudonym code",
+    "mass": "masskg mass bodymass bodymasskg weight weightkg bodyweight bodyweightkg",
+    "sex": "sex gender",
+    "height": "heightm height heightcm heightmm stature staturem staturecm staturemm bodyheight",
+    "age": "age ageyears ageyear ageyr ageyrs agey age_in_years age_in_y age_in_yr",
+}
+AGE_YEARS = (1, 120)
 Sex = Literal["", "f", "m"]
 _MISSING = ("", "n/a", "na", "nan", "none", "null", "-", "unknown")
 _SEX: dict[str, Sex] = {
@@ -33,59 +35,28 @@ _SEX: dict[str, Sex] = {
     **dict.fromkeys(("m", "male", "man", "boy"), "m"),
 }
 _METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
-NOMINAL_WORDS = (
-    "natural",
-    "nominal",
-    "normal",
-    "baseline",
-    "control",
-    "noexo",
-    "nodevice",
-    "noassist",
-    "unassisted",
-    "without",
-    "zero",
-    "off",
-)
-DEVICE_WORDS = (
-    "exotendon",
-    "exoskeleton",
-    "exo",
-    "device",
-    "spring",
-    "assist",
-    "assisted",
-    "powered",
-    "brace",
-    "orthosis",
-    "afo",
-    "augmented",
-)
-# words of laboratories for ways of walking, the plain ones last: any of the others says more
-WALK_WORDS = (
-    "straight", "turn", "turning", "fast", "slow", "comfortable", "preferred", "selfselected", "barefoot", "shod",
-    "shoes", "insole", "running", "run", "jogging", "stairs", "upstairs", "downstairs", "ramp", "uphill", "downhill",
-    "incline", "decline", "backward", "backwards", "dualtask", "dual", "loaded", "cane", "crutch", "crutches",
-    "overground", "treadmill",
-)  # fmt: skip
-PLAIN = "walking"  # what these say, and nothing else
-PLAIN_WORDS = (PLAIN, "walk", "gait")
-STATIC_WORDS = ("static", "stat", "standing", "stand", "calibration", "calib", "cal", "tpose", "anatomical")
-FUNCTIONAL_WORDS = ("functional", "circumduction", "stararc", "star", "hjc")
-NO_WALK_WORDS = ("rom", "mvc", "mvic", "jump", "squat", "sitting", "noise")
-GROUP_WORDS = (
-    "controls", "patients", "healthy", "typical", "td", "cp", "stroke", "parkinson", "amputees", "adults", "children",
-)  # fmt: skip
-SESSION_WORDS = ("pre", "before", "preop", "intake", "post", "after", "postop", "followup", "followup2", "retention")
+PLAIN = "walking"  # what the plain words say, and nothing else
+# what a word in the name of a file or folder shows -> the words, without the numbers at their ends
+_SHOWN_BY = {
+    "nominal": "natural nominal normal baseline control noexo nodevice noassist unassisted without zero off",
+    "device": "exotendon exoskeleton exo device spring assist assisted powered brace orthosis afo augmented",
+    "way of walking": "straight turn turning fast slow comfortable preferred selfselected barefoot shod shoes insole "
+    "running run jogging stairs upstairs downstairs ramp uphill downhill incline decline backward backwards dualtask "
+    "dual loaded cane crutch crutches overground treadmill",
+    "plain": f"{PLAIN} walk gait",
+    "static": "static stat standing stand calibration calib cal tpose anatomical",
+    "functional": "functional circumduction stararc star hjc",
+    "other": "rom mvc mvic jump squat sitting noise",
+    "group": "controls patients healthy typical td cp stroke parkinson amputees adults children",
+    "session": "pre before preop intake post after postop followup followup2 retention",  # in their order
+    # what a file of a walk holds, not which walk it is
+    "content": "ik id grf grfs emg trc markers marker coordinates kinematics kinetics forces electromyography envelope "
+    "inverse dynamics results mot sto c3d experimentaldata inversekinematics inversedynamics analog force",
+    "nothing": "raw data trials recordings",
+}
+WORDS = {shown: tuple(words.split()) for shown, words in _SHOWN_BY.items()}
 _NUMBERED_SESSION = re.compile(r"(visit|session|sess|ses|day|week|month)[-_ ]?(\d{1,3})", re.IGNORECASE)
 _DATE = re.compile(r"(?<!\d)((?:19|20)\d{2})[-_.]?(\d{2})[-_.]?(\d{2})(?!\d)")
-# words for what a file of a walk holds, not which walk it is
-_KIND_WORDS = {
-    "ik", "id", "grf", "grfs", "emg", "trc", "markers", "marker", "coordinates", "kinematics", "kinetics", "forces",
-    "electromyography", "envelope", "inverse", "dynamics", "results", "mot", "sto", "c3d", "experimentaldata",
-    "inversekinematics", "inversedynamics", "analog", "force",
-}  # fmt: skip
-_NEUTRAL_FOLDERS = {"raw", "data", "trials", "recordings"}
 _PERSON = re.compile(r"(?:s|p|sub|subj|subject|participant|pt)[-_]?\d{1,4}", re.IGNORECASE)
 # a short code and a number: anything longer, or without a number, may be a name
 PSEUDONYM = re.compile(r"(?:sub|subj|subject|participant|pt|[a-z]{1,4})?[-_]?\d{1,4}", re.IGNORECASE)
@@ -139,29 +110,23 @@ def person_key(word: str) -> str:
 def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measured]:
     rows = list(csv.reader(lines, delimiter=max("\t;,", key=lines[0].count)))
     labels = [unquoted(label.strip()) for label in rows[0]]
-    at = {
-        key: next((i for word in words for i, label in enumerate(labels) if _folded(label) == word), None)
-        for key, words in (("id", _IDS), ("mass", _MASSES), ("sex", _SEXES), ("height", _STATURES), ("age", _AGES))
-    }
-    if at["id"] is None or all(at[key] is None for key in ("mass", "sex", "height", "age")):
+    folded = [_folded(label) for label in labels]
+    at = {key: next((folded.index(name) for name in names.split() if name in folded), None)
+          for key, names in _LABELS.items()}  # fmt: skip
+    if at["id"] is None or all(place is None for key, place in at.items() if key != "id"):
         notes.append(
             f"{file} has no column that names the person (such as participant_id) together with mass_kg, sex, "
             f"height_m or age; its columns are {', '.join(labels[:8])}"
         )
         return {}
+    stature = labels[at["height"]] if at["height"] is not None else ""
     found: dict[str, list[Measured]] = {}
     for number, row in enumerate(rows[1:], 2):
         cells = {key: row[i].strip() if i is not None and i < len(row) else "" for key, i in at.items()}
         if cells["id"]:
-            where = f"{file}, line {number}"
-            age = _within(cells["age"], "age", (1, OLDEST_YEARS, "years"), where, notes)
-            one = Measured(
-                _within(cells["mass"], "body mass", (*MASS_KG, "kg"), where, notes),
-                _height(cells["height"], labels[at["height"]] if at["height"] is not None else "", where, notes),
-                _sex(cells["sex"], where, notes),
-                None if age is None else int(age),
-            )
-            found.setdefault(person_key(unquoted(cells["id"])), []).append(one)
+            said: list[str] = []
+            found.setdefault(person_key(unquoted(cells["id"])), []).append(_measured(cells, stature, said))
+            notes += [f"{file}, line {number}: {words}" for words in said]
     return {word: _agreed(rows, word, file, notes) for word, rows in found.items()}
 
 
@@ -177,64 +142,45 @@ def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) ->
 
 
 def _folded(label: str) -> str:
-    plain = re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label)
-    name, unit = split_unit(plain)
+    name, unit = split_unit(re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label))
     known = re.sub(r"[^a-z0-9]", "", name.lower())
-    return known if unit is None or unit in ("kg", *_METRES, "m/f", "f/m") else f"{known} in {unit}"
+    return known if unit is None or unit in ("kg", *_METRES, "m/f", "f/m") else f"{known}_in_{unit}"
 
 
-def _number(text: str, where: str, what: str, notes: list[str]) -> float | None:
+def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) -> Measured:
+    """What a row says of a person; a stature in the unit of its label, else in the one in which it is a person's."""
+    stated = re.search(r"(?:^|[^a-z])(m|cm|mm)\W*$", stature_label.lower())
+    unit, factors = (f" {stated[1]}", [_METRES[stated[1]]]) if stated else (" m, cm or mm", list(_METRES.values()))
+    age = _within(cells["age"], "age", AGE_YEARS, "years", notes)
+    mass = _within(cells["mass"], "body mass", MASS_KG, "kg", notes)
+    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], "m", notes, factors, unit)
+    sex = _SEX.get(cells["sex"].lower(), "")
+    if not sex and cells["sex"].lower() not in _MISSING:
+        notes.append(f"sex {cells['sex']!r} is neither f nor m; the mean of both is used")
+    return Measured(mass, None if height is None else round(height, 4), sex, None if age is None else int(age))
+
+
+def _within(
+    text: str, what: str, limits: tuple[float, float], unit: str, notes: list[str],
+    factors: Sequence[float] = (1.0,), given: str = "",
+) -> float | None:  # fmt: skip
+    """Number of a cell times the first factor that brings it within the limits [unit]; None, and a note, of another."""
     if text.lower() in _MISSING:
         return None
     try:
         value = float(text.replace(",", "."))
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
-        notes.append(f"{where}: {what} {text!r} is not a number; not used")
-        return None
-    return value
-
-
-def _within(text: str, what: str, limits: tuple[float, float, str], where: str, notes: list[str]) -> float | None:
-    value, (low, high, unit) = _number(text, where, what, notes), limits
-    if value is None or low <= value <= high:
-        return value
-    article = "an" if what[0] in "ae" else "a"
-    notes.append(f"{where}: {article} {what} of {value:g} is not between {low:g} and {high:g} {unit}; not used")
-    return None
-
-
-def _height(text: str, label: str, where: str, notes: list[str]) -> float | None:
-    """Stature in m, of the unit that its label states, else of the one in which it is a person's."""
-    value = _number(text, where, "stature", notes)
-    if value is None:
-        return None
-    stated = re.search(r"(?:^|[^a-z])(m|cm|mm)\W*$", label.lower())
-    low, high = LENGTHS_M["height_m"]
-    for factor in (_METRES[stated[1]],) if stated else _METRES.values():
+    low, high = limits
+    for factor in factors:
         if low <= value * factor <= high:
-            return round(value * factor, 4)
-    unit = stated[1] if stated else "m, cm or mm"
-    notes.append(f"{where}: a stature of {value:g} {unit} is not between {low:g} and {high:g} m; not used")
+            return value * factor
+    if not math.isfinite(value):
+        notes.append(f"{what} {text!r} is not a number; not used")
+    else:
+        article = "an" if what[0] in "ae" else "a"
+        notes.append(f"{article} {what} of {value:g}{given} is not between {low:g} and {high:g} {unit}; not used")
     return None
-
-
-def _sex(text: str, where: str, notes: list[str]) -> Sex:
-    found = _SEX.get(text.lower(), "")
-    if not found and text.lower() not in _MISSING:
-        notes.append(f"{where}: sex {text!r} is neither f nor m; the mean of both is used")
-    return found
-
-
-def said_of(people: Mapping[str, Measured], files: Iterable[Path]) -> str:
-    """One note that says how many people got their mass, sex, stature and age from which tables."""
-    counts = [
-        f"{what} {sum(bool(getattr(one, name)) for one in people.values())} of {len(people)}"
-        for name, what in (("mass_kg", "body mass"), ("sex", "sex"), ("height_m", "stature"), ("age_years", "age"))
-        if any(getattr(one, name) for one in people.values())
-    ]
-    return f"{', '.join(counts)} people from {', '.join(file.as_posix() for file in files)}" if counts else ""
 
 
 def words_in(name: str) -> list[str]:
@@ -258,10 +204,10 @@ def condition_word(path: Path) -> tuple[str, str]:
         joined = [a + b for a, b in itertools.pairwise(words) if a in ("no", "without", "non", "un")]
         for word in (*joined, *words):
             start = next((start for start in _STARTS if word.startswith(start)), word)
-            if start in (*NOMINAL_WORDS, *_STARTS):
+            if start in (*WORDS["nominal"], *_STARTS):
                 return start, "nominal"
         for word in words:
-            if word in DEVICE_WORDS:
+            if word in WORDS["device"]:
                 return word, "device"
     return "", ""
 
@@ -272,8 +218,8 @@ def walk_key(path: Path) -> str:
     >>> walk_key(Path("IK_gait.mot")), walk_key(Path("gait_emg.sto")), walk_key(Path("coordinates.sto"))
     ('gait', 'gait', '')
     """
-    parts = [part for part in re.split(r"[^A-Za-z0-9]+", path.stem) if part]
-    return "_".join(part for part in parts if part.lower() not in _KIND_WORDS)
+    parts = re.split(r"[^A-Za-z0-9]+", path.stem)
+    return "_".join(part for part in parts if part and part.lower() not in WORDS["content"])
 
 
 def walk_place(path: Path) -> tuple[str, ...]:
@@ -282,7 +228,7 @@ def walk_place(path: Path) -> tuple[str, ...]:
     >>> walk_place(Path("P01/IK/walk1.mot")) == walk_place(Path("P01/GRF/walk1.mot")) == ("P01",)
     True
     """
-    return tuple(folder for folder in path.parent.parts if folder.lower() not in _KIND_WORDS)
+    return tuple(folder for folder in path.parent.parts if folder.lower() not in WORDS["content"])
 
 
 def person_word(path: Path) -> str:
@@ -307,7 +253,7 @@ def group_word(path: Path) -> str:
     ('children td', '')
     """
     folders = path.parent.parts[:-1] if _own_folders(path) else path.parent.parts
-    return " ".join(folder.lower() for folder in folders if folder.lower() in GROUP_WORDS)
+    return " ".join(folder.lower() for folder in folders if folder.lower() in WORDS["group"])
 
 
 def session_word(path: Path) -> tuple[str, str]:
@@ -323,8 +269,8 @@ def session_word(path: Path) -> tuple[str, str]:
     """
     for name in (*path.parent.parts, path.stem):
         for word in (name.lower(), *words_in(name)):
-            if word in SESSION_WORDS:
-                return word, f"a{SESSION_WORDS.index(word):02d}"
+            if word in WORDS["session"]:
+                return word, f"a{WORDS['session'].index(word):02d}"
         for part in (name, *re.split(r"[^A-Za-z0-9]+", name)):
             numbered = _NUMBERED_SESSION.fullmatch(part)
             if numbered:
@@ -342,11 +288,7 @@ def kind_of_trial(path: Path) -> str:
     'functional'
     """
     words = {word for name in (path.stem, *path.parent.parts) for word in (name.lower(), *words_in(name))}
-    if words & set(STATIC_WORDS):
-        return "static"
-    if words & set(FUNCTIONAL_WORDS):
-        return "functional"
-    return "other" if words & set(NO_WALK_WORDS) else ""
+    return next((kind for kind in ("static", "functional", "other") if words & set(WORDS[kind])), "")
 
 
 def walk_word(path: Path) -> str:
@@ -357,11 +299,11 @@ def walk_word(path: Path) -> str:
     >>> walk_word(Path("P01/Marble floor/01.c3d")), walk_word(Path("P01/walk01.c3d")), walk_word(Path("P01/01.c3d"))
     ('marble floor', 'walking', '')
     """
-    names = (path.stem, *reversed(path.parent.parts))
-    words = [word for name in names for word in words_in(name)]
-    own = _own_folders(path)
-    styles = [word for word in words if word in WALK_WORDS] or [folder.lower() for folder in own[:0:-1]]
-    return styles[0] if styles else PLAIN if set(words) & set(PLAIN_WORDS) else ""
+    words = [word for name in (path.stem, *reversed(path.parent.parts)) for word in words_in(name)]
+    folders = (folder.lower() for folder in _own_folders(path)[:0:-1])
+    ways = (word for word in words if word in WORDS["way of walking"])
+    plain = PLAIN if set(words) & set(WORDS["plain"]) else ""
+    return next(ways, next(folders, plain))
 
 
 def _own_folders(path: Path) -> list[str]:
@@ -369,13 +311,12 @@ def _own_folders(path: Path) -> list[str]:
     own = []
     for place, folder in enumerate(path.parent.parts):
         alone = Path(folder, "x")
-        lower = folder.lower()
         beneath = place + 1 < len(path.parent.parts) or _person_in(path.stem)
-        if lower in GROUP_WORDS and beneath and not own:
+        if folder.lower() in WORDS["group"] and beneath and not own:
             continue
-        if lower in _NEUTRAL_FOLDERS or lower in _KIND_WORDS or kind_of_trial(alone):
+        if folder.lower() in (*WORDS["nothing"], *WORDS["content"]) or kind_of_trial(alone) or condition_word(alone)[1]:
             continue
-        if condition_word(alone)[1] or any(word in (*WALK_WORDS, *PLAIN_WORDS) for word in words_in(folder)):
+        if any(word in (*WORDS["way of walking"], *WORDS["plain"]) for word in words_in(folder)):
             continue
         undated = _DATE.sub("", folder).strip("-_. ")  # `P01_2024-03-01` and `P01_2024-06-01` are one person
         if undated and (undated != folder or not session_word(alone)[1]):

@@ -70,12 +70,6 @@ def without_impossible(
 
     begin_s: time of the file's first frame of each stream, where the streams are a part of the file [s]
     returns findings: one for each channel, with the first such frame, its number and its unit
-
-    >>> knee = np.array([[10.0], [1e6], [30.0]])
-    >>> walk = Recording(np.arange(3) / 100, knee, (Channel("knee_angle_r", "angle", "deg", "r"),))
-    >>> kept, findings = without_impossible({"kinematics": walk})
-    >>> kept["kinematics"].values[:, 0].tolist(), findings[0].kind
-    ([10.0, nan, 30.0], 'out of range')
     """
     kept: dict[str, Recording] = {}
     findings: list[Finding] = []
@@ -221,11 +215,8 @@ def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before
             where,
             "Correct the cell or the unit and export the force again.",
         )
-    spoils = (
-        "the unit or the name of the channel, if most of its samples are affected"
-        if beyond.mean() > 0.5
-        else "these frames"
-    )
+    most = "the unit or the name of the channel, if most of its samples are affected"
+    spoils = most if beyond.mean() > 0.5 else "these frames"
     spans, what = spans_s(recording.time, beyond), f"{where}; treated as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans)
 
@@ -237,13 +228,6 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     (the central 98 % of the samples), the wide side is flexion: where that is the negative one, as in gait2392, the
     channel is turned, and with it its speed, its acceleration and OpenSim's generalised moment of that coordinate. A
     knee that hardly bends follows the other knee of the trial. One that goes beyond both is left and named.
-
-    >>> from gaitdisc.channel import vocabulary
-    >>> knee = np.linspace(5, -60, 100)[:, None]
-    >>> walk = Recording(np.arange(100) / 100, knee, (vocabulary().named("knee_angle_r"),))
-    >>> turned, findings = with_flexion_positive({"kinematics": walk})
-    >>> float(turned["kinematics"]["knee_angle_r"].max()), findings[0].kind
-    (60.0, 'knee sign')
     """
     kinematics = streams.get("kinematics")
     if kinematics is None:
@@ -251,7 +235,11 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     knees = [
         c.name for c in kinematics.channels if _KNEE.fullmatch(c.name) and (c.quantity, c.unit) == ("angle", "deg")
     ]
-    reaches = {name: _reach(kinematics[name]) for name in knees}
+    finite = {name: kinematics[name][np.isfinite(kinematics[name])] for name in knees}
+    reaches = {
+        name: tuple(np.quantile(values, [0.01, 0.99]).tolist()) if len(values) >= FEWEST else (0.0, 0.0)
+        for name, values in finite.items()
+    }
     senses = {name: _sense(*reach) for name, reach in reaches.items()}
     proven = {sense for sense in senses.values() if sense}
     turned = [name for name, sense in senses.items() if sense == -1 or (sense == 0 and proven == {-1})]
@@ -281,14 +269,6 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
         )
         findings.append(Finding("warning", "knee sign", file, what, "the knees if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings
-
-
-def _reach(values: NDArray[np.float64]) -> tuple[float, float]:
-    finite = values[np.isfinite(values)]
-    if len(finite) < FEWEST:
-        return 0.0, 0.0
-    low, high = np.quantile(finite, [0.01, 0.99])
-    return float(low), float(high)
 
 
 def _sense(low: float, high: float) -> int | None:

@@ -27,11 +27,7 @@ MEBIBYTE = 2**20
 
 @dataclass(frozen=True)
 class ReadRequest:
-    """One file for one reader.
-
-    >>> ReadRequest.of_size("walk.c3d", "ezc3d", (100, 10, 2, 2000), 50 * 2**20).limit_s
-    20.0
-    """
+    """One file for one reader."""
 
     path: str
     reader: str  # "ezc3d", "c3d", "arrays" or "hdf5 text"

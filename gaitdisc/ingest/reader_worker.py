@@ -94,22 +94,21 @@ def read_c3d(reader: str, path: str, *promised: int) -> tuple[dict[str, Any], An
 def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
     """A `.mat` (to v7) or `.npz` variable as numbers and words; for an empty name all names with claimed bytes."""
     is_packed = path.lower().endswith(".npz")
-    if not name:
-        return {"claims": _claims_of_npz(path) if is_packed else _claims_of_mat(path), "shapes": []}, ()
     if is_packed:
-        with zipfile.ZipFile(path) as packed, packed.open(f"{name}.npy") as member:
-            held = np.lib.format.read_array(member, allow_pickle=False)
+        with zipfile.ZipFile(path) as packed:
+            if not name:
+                claims = {one.filename.removesuffix(".npy"): one.file_size for one in packed.infolist()}
+                return {"claims": claims, "shapes": []}, ()
+            with packed.open(f"{name}.npy") as member:
+                held = np.lib.format.read_array(member, allow_pickle=False)
     else:
         from scipy.io import loadmat
 
+        if not name:
+            return {"claims": _claims_of_mat(path), "shapes": []}, ()
         held = loadmat(path, variable_names=[name])[name]
     arrays: list[NDArray[Any]] = []
     return {"tree": _tree(held, arrays), "shapes": [values.shape for values in arrays]}, arrays
-
-
-def _claims_of_npz(path: str) -> dict[str, int]:
-    with zipfile.ZipFile(path) as packed:
-        return {one.filename.removesuffix(".npy"): one.file_size for one in packed.infolist()}
 
 
 def _claims_of_mat(path: str) -> dict[str, int]:

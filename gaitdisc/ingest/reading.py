@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import hint_nearest
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, WriteError
 from gaitdisc.ingest.array_file import ENDINGS as ARRAYS
 from gaitdisc.ingest.array_file import read_arrays
@@ -133,7 +133,15 @@ def read_planned_trial(
 
 def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader | None, part: str) -> Trial:
     if not isinstance(given, Path | str):
-        return read_frame(_frame(given), channels)
+        import pandas as pd
+
+        if isinstance(given, pd.DataFrame):
+            return read_frame(given, channels)
+        raise ReadError(
+            "a walk can be read from files or DataFrames",
+            f"found {type(given).__name__}",
+            "Give a path, or a DataFrame with a column 'time' [s] and one column per channel.",
+        )
     path = Path(given)
     ending = path.suffix.lower()
     if ending in ARRAYS:
@@ -143,25 +151,12 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
 
         return reader.read(path, channels) if reader else read_c3d(path, channels)
     if ending not in READERS:
-        nearest = nearest_word(ending, ENDINGS) if ending else None
         raise ReadError(
             f"the file type of {path.name} must be one of {', '.join(ENDINGS)}",
-            f"its ending is {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            f"its ending is {ending!r}{hint_nearest(ending, ENDINGS)}",
             "Export it in one of these formats.",
         )
     return READERS[ending](path, channels)
-
-
-def _frame(given: object) -> pd.DataFrame:
-    import pandas as pd
-
-    if isinstance(given, pd.DataFrame):
-        return given
-    raise ReadError(
-        "a walk can be read from files or DataFrames",
-        f"found {type(given).__name__}",
-        "Give a path, or a DataFrame with a column 'time' [s] and one column per channel.",
-    )
 
 
 def _one_base(one: Recording, other: Recording) -> bool:
@@ -186,11 +181,9 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
             f"{files} both contain {doubled[0]!r} ({len(doubled)} in all)",
             "Remove one file, or list them as two trials.",
         )
-    source = Source(
-        f"{one.source.file} + {other.source.file}",
-        f"{one.source.sha256}+{other.source.sha256}",
-        f"{one.source.reader} + {other.source.reader}",
-    )
+    first, second = one.source, other.source
+    names, readers = f"{first.file} + {second.file}", f"{first.reader} + {second.reader}"
+    source = Source(names, f"{first.sha256}+{second.sha256}", readers)
     assert one.suspect is not None and other.suspect is not None  # set by Recording
     return Recording(
         one.time,
@@ -267,10 +260,9 @@ def write_recording(recording: Recording, path: Path | str, overwrite: bool = Fa
     """
     ending = Path(path).suffix.lower()
     if ending not in WRITERS:
-        nearest = nearest_word(ending, list(WRITERS)) if ending else None
         raise WriteError(
             f"the name of a recording's file must end with {', '.join(WRITERS)}",
-            f"{Path(path).name} ends with {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            f"{Path(path).name} ends with {ending!r}{hint_nearest(ending, WRITERS)}",
             "Use one of these endings.",
         )
     with guarded("gd.write", overwrite=overwrite):

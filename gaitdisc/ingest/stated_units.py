@@ -31,12 +31,7 @@ _LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 def plausible_unit(
     time: NDArray[np.float64], values: NDArray[np.float64], names: Sequence[str], stated: str | None, file: str
 ) -> tuple[str, Finding | None]:
-    """Unit of a file's angles (time, angle): the stated one unless the numbers contradict it; a finding where in doubt.
-
-    >>> t = np.linspace(0, 2, 200)
-    >>> plausible_unit(t, 30 * np.sin(6 * t)[:, None], ["hip_flexion_r"], "deg", "walk.mot")
-    ('deg', None)
-    """
+    """Unit of a file's angles (time, angle): the stated one unless the numbers contradict it; a finding of a doubt."""
     joints = [i for i, name in enumerate(names) if not name.startswith("pelvis_") and not _COPIED.fullmatch(name)]
     if not joints:
         if stated:
@@ -85,10 +80,6 @@ def copied_coordinate_unit(
 
     values (time,) [deg or rad]: as read
     angles each (time,) [deg]: the other angles of the file, already in degrees
-
-    >>> knee = np.array([10.0, 60.0])
-    >>> copied_coordinate_unit("knee_angle_r_beta", np.radians(knee), {"knee_angle_r": knee})
-    'rad'
     """
     copied = _COPIED.fullmatch(name)
     if not copied or copied[1] not in angles:
@@ -117,21 +108,14 @@ def _undecided(file: str, why: str) -> UnitError:
 
 
 def distance_from_origin(places: NDArray[np.float64]) -> float:
-    """99th percentile of marker coordinates (frame, coordinate) of some thousand frames; NaN without any.
-
-    >>> distance_from_origin(np.array([[1.0, -2.0]]))
-    1.99
-    """
+    """99th percentile of marker coordinates (frame, coordinate) of some thousand frames; NaN without any."""
     some = places[:: max(len(places) // 1000, 1)]
     finite = np.abs(some[np.isfinite(some)])
     return float(np.quantile(finite, 0.99)) if finite.size else float("nan")
 
 
 def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
-    """Refuse a unit that the distance from the origin contradicts.
-
-    >>> refuse_other_unit("mm", 1500.0, "walk.trc", "Units in line 3")
-    """
+    """Refuse a unit that the distance from the origin contradicts."""
     if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST):
         raise UnitError(
             f"markers in {unit} must be {'less' if unit == 'm' else 'more'} than {METRES_AT_MOST:g} {unit} from the "
@@ -142,30 +126,19 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
 
 
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
-    """Say that ground forces or joint moments stated in N or N m are per kg of body mass.
-
-    >>> from gaitdisc.channel import vocabulary
-    >>> steps = np.tile(np.r_[np.full(60, 9.8), np.zeros(40)], 3)[:, None]
-    >>> belt = Recording(np.arange(300) / 100, steps, (vocabulary().named("ground_force_r_vy"),))
-    >>> [finding.kind for finding in per_kg_findings({"forces": belt})]
-    ['per body mass']
-    """
+    """Say that ground forces or joint moments stated in N or N m are per kg of body mass."""
     found = []
-    for key, quantity, unit, (low, high), like in (
-        ("forces", "vertical_force", "N", FORCE_N, "is loaded as in steps, in which a person exerts hundreds of N"),
-        (
-            "moments",
-            "moment",
-            "N m",
-            MOMENT_NM,
-            "is the largest moment of the legs, although walking needs tens of N m",
-        ),
-    ):
+    steps = "is loaded as in steps, in which a person exerts hundreds of N"
+    legs = "is the largest moment of the legs, although walking needs tens of N m"
+    stated = ("forces", "vertical_force", "N", FORCE_N, steps), ("moments", "moment", "N m", MOMENT_NM, legs)
+    for key, quantity, unit, (low, high), like in stated:
         if key not in streams:
             continue
         recording = streams[key]
         meant = [c.name for c in recording.channels if (c.quantity, c.unit) == (quantity, unit)]
-        peaks = {name: _peak(recording[name]) for name in meant if key == "forces" or _LEG.fullmatch(name)}
+        meant = [name for name in meant if key == "forces" or _LEG.fullmatch(name)]
+        sizes = {name: np.abs(recording[name][np.isfinite(recording[name])]) for name in meant}
+        peaks = {name: float(np.quantile(size, 0.999)) if size.size else 0.0 for name, size in sizes.items()}
         most = max(peaks, key=lambda name: peaks[name], default="")
         walks = recording.duration_s >= STANCE_S[0] and (key == "moments" or (most and _like_steps(recording, most)))
         if most and low <= peaks[most] <= high and walks:
@@ -181,8 +154,3 @@ def _like_steps(forces: Recording, name: str) -> bool:
     lengths = [(end - start) / forces.rate_hz for start, end in runs(force > SHARE * peak)]
     empty = float(np.mean(force < EMPTY * peak))
     return empty > EMPTY and max(lengths, default=0.0) >= STANCE_S[0] and max(lengths, default=0.0) <= STANCE_S[1]
-
-
-def _peak(values: NDArray[np.float64]) -> float:
-    finite = np.abs(values[np.isfinite(values)])
-    return float(np.quantile(finite, 0.999)) if finite.size else 0.0

@@ -24,7 +24,7 @@ from gaitdisc.channel import (
     vocabulary,
 )
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells, printed_digit
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells
 from gaitdisc.ingest.columns import (
     Column,
     check_written_names,
@@ -84,11 +84,10 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
                 f"the last one, line {cells.lines[-1]}, has {len(lines[-1])}",
                 "The file is incomplete. Copy or export it again.",
             )
-    time = even_time(cells.values[:, 0], printed_digit(cells.first_column), raw.name, cells.lines)
+    time = even_time(cells.values[:, 0], cells.printed_digit(0), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
-    values = np.column_stack([c.converted(cells.values[:, i]) for i, c in enumerate(columns, 1)])
     reader = raw.name.rpartition(".")[2].lower()
-    return sorted_trial(raw.source(reader), time, values, [c.channel for c in columns], [*findings, *more])
+    return sorted_trial(raw.source(reader), time, cells.values[:, 1:], columns, [*findings, *more])
 
 
 def write_storage(recording: Recording, path: Path | str) -> Path:
@@ -165,13 +164,7 @@ class StorageHeader:
 
 
 def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
-    r"""Header of a storage file.
-
-    >>> lines = ["Coordinates", "nRows=1", "inDegrees=yes", "endheader", "time\tknee_angle_r", "0\t1"]
-    >>> h = parsed_header(lines, "a.mot")
-    >>> h.degrees, h.labels, h.body_line
-    (True, ('time', 'knee_angle_r'), 6)
-    """
+    """Header of a storage file."""
     end = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
     if end is None:
         raise ReadError(
@@ -240,26 +233,31 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     the file holds radians follows from the numbers.
 
     channels: the study's `[channels]`
-
-    >>> header = StorageHeader("Coordinates", ("time", "/jointset/hip_r/hip_flexion_r/value"), 3)
-    >>> storage_columns(header, "a.sto")[0].channel.name
-    'hip_flexion_r'
     """
     words = folded_label(header.title) + " " + folded_label(file)
     known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]
     muscles = sum(channel is not None and channel.quantity == "emg" for channel in known)
     of_emg = "emg" in words or "electromyo" in words or muscles > len(known) / 2
-    return [
-        _column(header, number, label, (file, of_emg), channels) for number, label in enumerate(header.labels) if number
-    ]
+    columns = []
+    for number, label in enumerate(header.labels[1:], 1):
+        plain, unit = split_unit(label)
+        said = mapped_label(label, channels) or mapped_label(plain, channels)
+        if said:
+            column = _mapped(label, said, unit, header.title, file)
+        elif number in header.own:
+            quantity, own_unit, side = header.own[number]
+            # the label is the name to the letter here, brackets and all: the header states the unit
+            channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(label)
+            column = column_in_unit(label, channel, own_unit, file)
+        else:
+            column = _known(label, plain, header.title, of_emg)
+            column = column_in_unit(label, column.channel, unit, file) if unit else column
+        columns.append(column)
+    return columns
 
 
 def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
-    """Say what was guessed about the columns of a file.
-
-    >>> naming_findings([Column("x", Channel("x", "signal", "1"), "1", "kept as a signal")], "a.sto")[0].what
-    'x: kept as a signal'
-    """
+    """Say what was guessed about the columns of a file."""
     by_guess: dict[str, list[str]] = {}
     for column in columns:
         if column.guessed:
@@ -275,27 +273,15 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     return findings
 
 
-def _column(
-    header: StorageHeader, number: int, label: str, where: tuple[str, bool], channels: Mapping[str, str] | None
-) -> Column:
-    file, of_emg = where
-    plain, unit = split_unit(label)
-    said = mapped_label(label, channels) or mapped_label(plain, channels)
-    if said:
-        name, said_unit = split_unit(said)
-        channel, unit = named_channel(name), said_unit or unit
-        if channel.quantity == "emg" and unit is None:
-            return Column(label, replace(channel, unit="1"), "1")
-        if channel.quantity != "signal" or unit:
-            return column_in_unit(label, channel, unit or channel.unit, file)
-        return replace(_guessed(label, name, header.title), guessed="[channels] gives its name but not its unit")
-    if number in header.own:
-        quantity, own_unit, side = header.own[number]
-        # the label is the name to the letter here, brackets and all: the header states the unit
-        channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(label)
-        return column_in_unit(label, channel, own_unit, file)
-    column = _known(label, plain, header.title, of_emg)
-    return column_in_unit(label, column.channel, unit, file) if unit else column
+def _mapped(label: str, said: str, unit: str | None, title: str, file: str) -> Column:
+    """Column as the study's `[channels]` has it."""
+    name, said_unit = split_unit(said)
+    channel, unit = named_channel(name), said_unit or unit
+    if channel.quantity == "emg" and unit is None:
+        return Column(label, replace(channel, unit="1"), "1")
+    if channel.quantity != "signal" or unit:
+        return column_in_unit(label, channel, unit or channel.unit, file)
+    return replace(_guessed(label, name, title), guessed="[channels] gives its name but not its unit")
 
 
 def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
@@ -313,19 +299,14 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
         return Column(label, replace(channel, unit="1"), "1")
     if channel:
         return Column(label, channel, channel.unit)
-    if of_emg:
-        return _muscle(label, plain)
+    if of_emg:  # whose side or muscle the vocabulary cannot determine
+        name = plain if plain.startswith("emg_") else f"emg_{plain}"
+        muscle, guess = Channel(name, "emg", "1", side_of(plain)), "read as EMG of an unknown muscle"
+        of_right = vocabulary().named(f"{plain}_r")
+        if of_right and of_right.quantity == "emg":
+            muscle, guess = Channel(of_right.name.removesuffix("_r"), "emg", "1"), "the label does not name the side"
+        return Column(label, muscle, "1", guess)
     return _guessed(label, plain if plain.startswith("/forceset") else last, title)
-
-
-def _muscle(label: str, plain: str) -> Column:
-    """EMG whose side or muscle the vocabulary cannot determine."""
-    of_right = vocabulary().named(f"{plain}_r")
-    if of_right and of_right.quantity == "emg":
-        channel = Channel(of_right.name.removesuffix("_r"), "emg", "1")
-        return Column(label, channel, "1", "the label does not name the side")
-    name = plain if plain.startswith("emg_") else f"emg_{plain}"
-    return Column(label, Channel(name, "emg", "1", side_of(plain)), "1", "read as EMG of an unknown muscle")
 
 
 def _guessed(label: str, name: str, title: str) -> Column:
@@ -351,9 +332,10 @@ def _ground(label: str, name: str, found: re.Match[str]) -> Column:
     side = side_of(name)
     guess = "read as a ground reaction because of its name" + ("" if side else ", side unknown")
     if kind == "p":
-        return Column(label, Channel(name, "pressure_centre", "m", side), "m", guess)
-    if kind == "v" or (not kind and words[-1] == "force"):
-        quantity = "vertical_force" if axis == "y" else "force"
-        return Column(label, Channel(name, quantity, "N", side), "N", guess)
-    channel = Channel(name if "ground" in name.lower() else f"ground_{name}", "moment", "N m", side)
-    return Column(label, channel, "N m", guess)
+        quantity, unit = "pressure_centre", "m"
+    elif kind == "v" or (not kind and words[-1] == "force"):
+        quantity, unit = "vertical_force" if axis == "y" else "force", "N"
+    else:
+        quantity, unit = "moment", "N m"
+        name = name if "ground" in name.lower() else f"ground_{name}"
+    return Column(label, Channel(name, quantity, unit, side), unit, guess)

@@ -298,18 +298,11 @@ class Study(_Part):
         word = self.conditions.unnamed
         if word is None:
             return self
-        people = tuple(
-            person.model_copy(
-                update={
-                    "trials": tuple(
-                        trial.model_copy(update={"condition": word}) if trial.condition == UNKNOWN else trial
-                        for trial in person.trials
-                    )
-                }
-            )
-            for person in self.participants
-        )
-        return self.model_copy(update={"participants": people}).placed(self.folder)
+        named, people = {"condition": word}, []
+        for one in self.participants:
+            trials = (trial.model_copy(update=named) if trial.condition == UNKNOWN else trial for trial in one.trials)
+            people.append(one.model_copy(update={"trials": tuple(trials)}))
+        return self.model_copy(update={"participants": tuple(people)}).placed(self.folder)
 
     def participant(self, subject: str) -> Participant:
         """Return a participant."""

@@ -6,7 +6,7 @@ import json
 import os
 import re
 import typing
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -111,16 +111,16 @@ def study_text(study: Study, folder: Path | None = None) -> str:
         value = getattr(study, key)
         if isinstance(value, Kinematics) and value.marker_set.endswith(".toml"):
             value = value.model_copy(update={"marker_set": _moved(value.marker_set, study.folder, folder)})
-        about = (type(value).__doc__ or "").split("\n")[0] if isinstance(value, BaseModel) else ""
         if value is None:
             parts.append(UNSET[key])
-        elif isinstance(value, BaseModel):
+            continue
+        if isinstance(value, BaseModel):
+            about = (type(value).__doc__ or "").split("\n")[0]
             pairs = "".join(_pair(value, name) for name in type(value).model_fields)
-            parts.append(f"# {about}\n[{key}]\n{pairs}")
         else:
             about = type(study).model_fields[key].description
             pairs = "".join(f"{quoted(label)} = {quoted(name)}\n" for label, name in value.items())
-            parts.append(f"# {about}\n[{key}]\n{pairs}")
+        parts.append(f"# {about}\n[{key}]\n{pairs}")
     explained = False  # each key is explained where it stands first
     for participant in study.participants:
         measured = tuple(name for name in ("mass_kg", "height_m", "sex", "age_years") if getattr(participant, name))
@@ -169,11 +169,7 @@ def _moved(file: str, old: Path, new: Path | None) -> str:
 
 
 def study_schema() -> Mapping[str, Any]:
-    """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`.
-
-    >>> study_schema()["title"]
-    'Study'
-    """
+    """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`."""
     return Study.model_json_schema()
 
 
@@ -353,42 +349,26 @@ def line_of(text: str, place: Place) -> int | None:
     >>> line_of("title = 'x'\n[filters]\norder = 3\n", ("filters", "order"))
     3
     """
-    best, deepest = None, 0
-    for found, line in _places(text):
-        depth = _shared(found, place)
-        if depth == len(found) and depth > deepest:
-            best, deepest = line, depth
-    return best
-
-
-def _places(text: str) -> Iterator[tuple[Place, int]]:
+    lines: dict[Place, int] = {}
+    counts: dict[Place, int] = {}  # of each array of tables, so far
     table: Place = ()
-    counts: dict[Place, int] = {}
     for line, words in enumerate(text.split("\n"), 1):
         header, pair = _TABLE.match(words), _PAIR.match(words)
         if header:
-            table = _resolved(_keys(header[2]), counts)
+            table = ()
+            keys = _keys(header[2])
+            for key in keys[:-1]:
+                table = (*table, key)
+                table = (*table, counts[table]) if table in counts else table
+            table = (*table, keys[-1])
             if header[1] == "[[":
                 counts[table] = counts.get(table, -1) + 1
                 table = (*table, counts[table])
-            yield table, line
+            lines.setdefault(table, line)
         elif pair:
-            yield (*table, *_keys(pair[1])), line
-
-
-def _resolved(keys: Sequence[str], counts: dict[Place, int]) -> Place:
-    """Path of a table, with the place in each array of tables on the way to it."""
-    place: Place = ()
-    for i, key in enumerate(keys):
-        place = (*place, key)
-        if place in counts and i < len(keys) - 1:
-            place = (*place, counts[place])
-    return place
+            lines.setdefault((*table, *_keys(pair[1])), line)
+    return next((lines[place[:depth]] for depth in range(len(place), 0, -1) if place[:depth] in lines), None)
 
 
 def _keys(dotted: str) -> list[str]:
     return [key.strip("\"'") for key in re.findall(_KEY, dotted)]
-
-
-def _shared(one: Place, other: Place) -> int:
-    return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))

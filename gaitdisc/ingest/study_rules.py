@@ -22,13 +22,7 @@ MISSPELT = 0.85  # likeness to a known name above which another name is taken fo
 
 
 def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> NoReturn:
-    """Refuse from within validation; place: keys and places in lists, from the part that is being checked.
-
-    >>> refuse(("id",), "a pseudonym", "found 'P01' twice", "Rename one.")
-    Traceback (most recent call last):
-    ...
-    pydantic_core._pydantic_core.PydanticCustomError: a pseudonym; found 'P01' twice. Rename one.
-    """
+    """Refuse from within validation; place: keys and places in lists, from the part that is being checked."""
     words = {"place": tuple(place), "needed": needed, "found": found, "remedy": remedy}
     raise PydanticCustomError("gaitdisc", "{needed}; {found}. {remedy}", words)
 
@@ -71,9 +65,8 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
     for i, participant in enumerate(study.participants):
         if ids[participant.id.lower()] > 1:
             found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
-            refuse(
-                ("participants", i, "id"), "be used for one person only", found, "List all trials under one pseudonym."
-            )
+            place = ("participants", i, "id")
+            refuse(place, "be used for one person only", found, "List all trials under one pseudonym.")
         for j, trial in enumerate(participant.trials):
             if trial.condition not in (*words, *others):
                 nearest = nearest_word(trial.condition, (*words, *others))
@@ -87,10 +80,7 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
 
 
 def check_channels(channels: Mapping[str, str]) -> None:
-    """Refuse a map (label -> `name` or `name [unit]`) with an unknown unit, a misspelt name, or a name twice.
-
-    >>> check_channels({"Sensor 1": "emg_sol_r [mV]"})
-    """
+    """Refuse a map (label -> `name` or `name [unit]`) with an unknown unit, a misspelt name, or a name twice."""
     owners: dict[str, str] = {}
     for label, said in channels.items():
         name, unit = split_unit(said)
@@ -118,8 +108,7 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
             if names.count(name) > 1:
                 refuse(("models", key), "list each name once", f"{name!r} occurs twice", "Remove one of them.")
             if key == "outputs" and name not in inputs:
-                nearest = nearest_word(name, inputs)
-                found = f"{name!r} is not" + (f", the nearest is {nearest!r}" if nearest else "")
+                found = f"{name!r} is not{hint_nearest(name, inputs)}"
                 remedy = "Add it to angles or emg, or remove it from outputs."
                 refuse(("models", key), "be among the inputs (angles and emg)", found, remedy)
             if name not in mapped:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Form, even_time, parsed_cells, printed_digit
+from gaitdisc.ingest.cells import Cells, Form, even_time, parsed_cells, printed_digit
 from gaitdisc.ingest.columns import Column, check_written_names, column_of, mapped_label, sorted_trial, split_unit
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
@@ -45,8 +45,8 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     if raw.name.lower().endswith(".parquet"):
         labels, values = _parquet(raw, channels)
         return _trial(raw.source("parquet"), _timed(labels, values, channels, raw.name), channels)
-    labels, values, digit, lines = _text(raw, channels)
-    return _trial(raw.source("csv"), _timed(labels, values, channels, raw.name, digit, lines), channels)
+    labels, cells = _text(raw, channels)
+    return _trial(raw.source("csv"), _timed(labels, cells.values, channels, raw.name, cells), channels)
 
 
 def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> Trial:
@@ -86,8 +86,7 @@ def frame_columns(frame: pd.DataFrame, channels: Mapping[str, str] | None = None
             'Rename the column, frame.rename(columns={"t": "time"}), or the index, frame.rename_axis("time").',
         )
     labels, values = _of_frame(frame, FRAME, channels)
-    digit = printed_digit(map(repr, values[:, _time_column(labels, channels)].tolist()))
-    return _timed(labels, values, channels, FRAME, digit)
+    return _timed(labels, values, channels, FRAME)
 
 
 def _timed(
@@ -95,22 +94,24 @@ def _timed(
     values: NDArray[np.float64],
     channels: Mapping[str, str] | None,
     file: str,
-    digit: float = 0.0,
-    lines: NDArray[np.intp] | None = None,
+    cells: Cells | None = None,
 ) -> TimedColumns:
-    """Times, printed to `digit` in the unit of their column, apart from the other columns."""
-    at = _time_column(labels, channels)
-    unit = _time_unit(labels[at], channels) or "s"
-    clock, digit = np.asarray(convert(values[:, at], unit, "s"), float), digit * (1e-3 if unit == "ms" else 1.0)
+    """Times apart from the other columns (row, column); cells of a text show how many digits its times have."""
+    at, unit = next((i, unit) for i, label in enumerate(labels) if (unit := _time_unit(label, channels)))
+    clock = np.asarray(convert(values[:, at], unit, "s"), float)
+    digit = 0.0
+    if cells is not None:
+        digit = cells.printed_digit(at)
+    elif file == FRAME:
+        digit = printed_digit(map(repr, values[:, at].tolist()))
+    time = even_time(clock, digit * (1e-3 if unit == "ms" else 1.0), file, None if cells is None else cells.lines)
     others = [label for i, label in enumerate(labels) if i != at]
-    return TimedColumns(even_time(clock, digit, file, lines), others, np.delete(values, at, axis=1))
+    return TimedColumns(time, others, np.delete(values, at, axis=1))
 
 
 def _trial(source: Source, table: TimedColumns, channels: Mapping[str, str] | None) -> Trial:
     columns = [column_of(label, source.file, channels) for label in table.labels]
-    findings = checked_angles(columns, table.time, table.values, source.file)
-    inside = np.column_stack([c.converted(values) for c, values in zip(columns, table.values.T, strict=True)])
-    return sorted_trial(source, table.time, inside, [column.channel for column in columns], findings)
+    return checked_trial(source, table.time, table.values, columns)
 
 
 def write_table(recording: Recording, path: Path | str) -> Path:
@@ -133,10 +134,6 @@ def write_table(recording: Recording, path: Path | str) -> Path:
     return write_whole(path, text.getvalue())
 
 
-def _time_column(labels: Sequence[str], channels: Mapping[str, str] | None) -> int:
-    return next(i for i, label in enumerate(labels) if _time_unit(label, channels))
-
-
 def _time_unit(label: str, channels: Mapping[str, str] | None = None) -> str | None:
     plain, unit = split_unit(label)
     said = mapped_label(label, channels) or mapped_label(plain, channels)
@@ -147,9 +144,7 @@ def _time_unit(label: str, channels: Mapping[str, str] | None = None) -> str | N
     return _TIME_UNIT[name.lower()] if unit is None else unit if unit in ("s", "ms") else None
 
 
-def _text(
-    raw: RawFile, channels: Mapping[str, str] | None
-) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
+def _text(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str], Cells]:
     lines = raw.lines()
     top = next((i for i, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
     if top is None:
@@ -163,10 +158,7 @@ def _text(
     units = _units_below(lines[top + 1 : top + 2], labels, separator)
     labels, top = (units, top + 1) if units else (labels, top)
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
-    cells = parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
-    at = _time_column(labels, channels)
-    digit = printed_digit(lines[number - 1].split(separator)[at] for number in cells.lines.tolist())
-    return labels, cells.values, digit, cells.lines
+    return labels, parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
 
 
 def _header(line: str, channels: Mapping[str, str] | None) -> tuple[str, list[str]] | None:
@@ -247,14 +239,15 @@ def _of_frame(
     return labels, values
 
 
-def checked_angles(
-    columns: Sequence[Column], time: NDArray[np.float64], values: NDArray[np.float64], file: str
-) -> list[Finding]:
-    """Whether angles (time, column) in the file's units contradict their unit; a UnitError where they do."""
-    findings = []
+def checked_trial(
+    source: Source, time: NDArray[np.float64], values: NDArray[np.float64], columns: Sequence[Column]
+) -> Trial:
+    """Trial of columns (time, channel) in the file's units; a UnitError where angles contradict theirs."""
+    findings: list[Finding] = []
     for unit in ("deg", "rad"):
         which = [i for i, c in enumerate(columns) if c.channel.quantity == "angle" and c.unit == unit]
         if which:
             names = [columns[i].channel.name for i in which]
-            findings.append(plausible_unit(time, values[:, which], names, unit, file)[1])
-    return [finding for finding in findings if finding]
+            finding = plausible_unit(time, values[:, which], names, unit, source.file)[1]
+            findings += [finding] if finding else []
+    return sorted_trial(source, time, values, columns, findings)

@@ -11,12 +11,12 @@ import numpy as np
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError, SamplingError, UnitError
-from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import mapped_label, sorted_trial, split_unit
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells
+from gaitdisc.ingest.columns import Column, mapped_label, sorted_trial, split_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import distance_from_origin, refuse_other_unit
 from gaitdisc.recording import Finding, Trial
-from gaitdisc.units import convert, inner_unit, parsed_unit
+from gaitdisc.units import inner_unit, parsed_unit
 
 _KEYS = ("DataRate", "NumFrames", "NumMarkers", "Units")
 RATE_TOLERANCE = 2e-3  # between the header's rate and the time column; 59.94 Hz may be called 60
@@ -52,7 +52,7 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     )
     claims = ("frames", [header.frames], len(cells.values)), ("markers", [header.markers], len(header.labels))
     findings = check_counts(cells, raw.name, *claims)
-    digit = printed_digit(lines[number - 1].split("\t")[1] for number in cells.lines.tolist())
+    digit = cells.printed_digit(1)
     time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
     step = (time[-1] - time[0]) / (len(time) - 1)
     allowed = RATE_TOLERANCE / header.rate_hz + digit / (len(time) - 1)
@@ -62,25 +62,20 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
             f"DataRate says {header.rate_hz:g} Hz, the times step by {step:.6g} s, which is {1 / step:.6g} Hz",
             "Find out which one is correct and export the file again.",
         )
-    seen = np.where(cells.values[:, 2:] == 0, np.nan, cells.values[:, 2:])
-    refuse_other_unit(header.unit, distance_from_origin(seen), raw.name, "Units in line 3")
-    positions = np.asarray(convert(cells.values[:, 2:], header.unit, inner_unit(header.unit)), float)
+    positions = cells.values[:, 2:]
+    far = distance_from_origin(np.where(positions == 0, np.nan, positions))
+    refuse_other_unit(header.unit, far, raw.name, "Units in line 3")
+    places = positions.reshape(len(positions), -1, 3).copy()
+    places[(places == 0).all(axis=2)] = np.nan
     names, dropped = _marker_names(header.labels, channels)
     if dropped:
         findings.append(Finding("note", "identifier", raw.name, "the part of the labels before ':' was removed", ""))
-    made = [Channel(f"{name}.{axis}", "marker", "m") for name in names for axis in "xyz"]
-    triples = positions.reshape(len(positions), -1, 3).copy()
-    triples[(triples == 0).all(axis=2)] = np.nan
-    return sorted_trial(raw.source("trc"), time, triples.reshape(len(triples), -1), made, findings)
+    columns = [Column(name, Channel(f"{name}.{axis}", "marker", "m"), header.unit) for name in names for axis in "xyz"]
+    return sorted_trial(raw.source("trc"), time, places.reshape(positions.shape), columns, findings)
 
 
 def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
-    r"""Header of a marker file.
-
-    >>> keys = "DataRate\tNumFrames\tNumMarkers\tUnits"
-    >>> parsed_trc_header(["PathFileType\t4", keys, "100\t1\t1\tmm", "Frame#\tTime\tRHEE"], "a.trc").labels
-    ('RHEE',)
-    """
+    """Header of a marker file."""
     if len(lines) < 4 or not lines[0].lstrip().startswith("PathFileType"):
         raise ReadError(
             f"{file} must be a marker file, whose first line begins with 'PathFileType'",

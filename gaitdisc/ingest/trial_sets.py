@@ -74,7 +74,10 @@ def refused_participant(study: Study, participant: Participant) -> str:
         return f"excluded in the study: {participant.excluded}"
     if mixed := shared_recording(study, participant) or differing_body(study, participant):
         return mixed
-    if study.conditions.device is not None and not _of_a_group_without_device(study, participant):
+    device = study.conditions.device
+    alike = [person for person in study.participants if person.group and person.group == participant.group]
+    without_device = bool(alike) and not any(person.trials_of(device or "") for person in alike)
+    if device is not None and not without_device:
         if participant.id in study.one_condition_only():
             return _one_walk_each(study, participant)
     elif not trial_sets(study, participant):
@@ -144,12 +147,6 @@ def not_compared(study: Study, participant: Participant) -> str:
     if one_each and len({trial.session for trial in walks if trial.condition in both}) == 1:
         return ""
     return _one_walk_each(study, participant)
-
-
-def _of_a_group_without_device(study: Study, participant: Participant) -> bool:
-    device = study.conditions.both[1]
-    alike = [person for person in study.participants if person.group and person.group == participant.group]
-    return bool(alike) and not any(person.trials_of(device) for person in alike)
 
 
 def _one_walk_each(study: Study, participant: Participant) -> str:

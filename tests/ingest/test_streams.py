@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
 from gaitdisc.ingest.cells import Form, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import named_channel, sorted_trial, stream_of
+from gaitdisc.ingest.columns import column_in_unit, named_channel, sorted_trial, stream_of
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Source
 
@@ -19,7 +19,9 @@ SOURCE = Source("walk.mot", "0" * 64, "mot")
 
 def _trial(*names, values=None):
     table = np.ones((5, len(names))) if values is None else values
-    return sorted_trial(SOURCE, TIME, table, [named_channel(name) for name in names])
+    return sorted_trial(
+        SOURCE, TIME, table, [column_in_unit(n, named_channel(n), named_channel(n).unit, "") for n in names]
+    )
 
 
 def test_every_channel_of_the_vocabulary_has_its_stream():
@@ -55,7 +57,7 @@ def test_gaps_elsewhere_stay_for_the_quality_checks():
 
 def test_two_columns_of_one_channel_are_refused():
     with pytest.raises(ChannelError, match=r"walk\.mot.*'sync'.*columns 2.*4"):
-        sorted_trial(SOURCE, TIME, np.ones((5, 3)), [Channel(n, "signal", "1") for n in ("sync", "a", "sync")])
+        _trial("sync", "a", "sync")
 
 
 @pytest.mark.parametrize("rate_hz", [100.0, 1000.0, 2000.0])
@@ -92,7 +94,7 @@ def test_trailing_tabs_and_blank_lines_are_passed_over():
     cells = parsed_cells(["0\t1\t2\t", "", "1\t2\t3\t\t", "2\t3\t4"], LABELS, 5, Form("a.mot"))
     assert cells.values[:, 2].tolist() == [2, 3, 4]
     assert cells.lines.tolist() == [5, 7, 8]
-    assert cells.first_column == ["0", "1", "2"]
+    assert cells.rows == ["0\t1\t2", "1\t2\t3", "2\t3\t4"]
 
 
 def test_blanks_separate_and_a_comma_may_be_the_decimal_sign():
