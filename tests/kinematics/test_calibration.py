@@ -32,7 +32,7 @@ from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.functional_hips import functional_hips, sphere_centre
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.kinematics.pose import DavisHip, harrington_hip
+from gaitdisc.kinematics.pose import davis_hip, harrington_hip
 from gaitdisc.recording import Recording
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -73,7 +73,7 @@ def test_hips_after_davis_need_leg_lengths():
         ankle_width_m=MEASURES.ankle_width_m,
     )
     points = calibrated(static_of(PLUG_IN_GAIT), chosen, legs).points
-    expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
+    expected = davis_hip(WIDTH, 0.81, 0.82, RADIUS, "r")
     np.testing.assert_allclose(points["pelvis"]["hip_r"], expected, atol=1e-9)
 
 
@@ -81,7 +81,7 @@ def test_plug_in_gait_takes_its_own_hips_where_leg_lengths_are_known():
     legs = replace(MEASURES, leg_length_m={"l": 0.80, "r": 0.82})
     static, chosen = static_of(PLUG_IN_GAIT), marker_set("plug_in_gait")
     davis = calibrated(static, chosen, legs)
-    expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
+    expected = davis_hip(WIDTH, 0.81, 0.82, RADIUS, "r")
     np.testing.assert_allclose(davis.points["pelvis"]["hip_r"], expected, atol=1e-9)
     assert not [finding for finding in davis.findings if finding.kind == "hip"]
     without_legs = calibrated(static, chosen, MEASURES)

@@ -9,7 +9,7 @@ from manufactured_body import MEASURES, PLUG_IN_GAIT, known_angles, markers_of, 
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.marker_set import marker_set, read_marker_set, recognised_marker_set, shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels
-from gaitdisc.kinematics.motion import joint_angles
+from gaitdisc.kinematics.motion import moved_body
 
 OWN = """
 title = "Our laboratory"
@@ -60,7 +60,7 @@ def test_a_laboratory_writes_its_own_in_twenty_lines(tmp_path):
     known = known_angles(60)
     path = written(tmp_path, OWN)
     markers, static = renamed(markers_of(known, PLUG_IN_GAIT), own), renamed(static_of(PLUG_IN_GAIT), own)
-    angles = joint_angles(markers, static, path, MEASURES, (1, 0, 0))
+    angles = moved_body(markers, static, path, MEASURES, (1, 0, 0)).angles
     for name, values in known.items():
         assert abs(angles[name] - values).max() < 1e-9, name
 
