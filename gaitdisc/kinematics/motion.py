@@ -257,7 +257,7 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
             f"{file} has no {', '.join(lacking)}; it has {', '.join(sorted(there))}",
             "Export these segments too, or export the joint angles.",
         )
-    poses = {segment: _pose(segments, LABELS[segment], file) for segment in SEGMENTS}
+    poses = {segment: _pose_in_file(segments, LABELS[segment], file) for segment in SEGMENTS}
     pelvis = poses["pelvis"]
     up = up_axis(pelvis.origin, (poses["foot_l"].origin + poses["foot_r"].origin) / 2, file)
     check_right_handed(pelvis.rotation, up, file)
@@ -276,15 +276,11 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     return angles, tuple(findings)
 
 
-def _pose(segments: Recording, label: str, file: str) -> Pose:
+def _pose_in_file(segments: Recording, label: str, file: str) -> Pose:
+    """Pose of a segment whose axes are square to the last bit; a file holds seven digits."""
     origin = np.stack([segments[f"{label}.{axis}"] for axis in "xyz"], axis=1)
     cells = [segments[f"{label}.r{row}{column}"] for row in "123" for column in "123"]
     axes = np.stack(cells, axis=1).reshape(-1, 3, 3)[:, :, TURN]
-    return Pose(origin, _square(axes, label, file))
-
-
-def _square(axes: NDArray[np.float64], label: str, file: str) -> NDArray[np.float64]:
-    """Axes that are square to the last bit; a file holds seven digits."""
     known: NDArray[np.intp] = np.flatnonzero(np.isfinite(axes).all(axis=(1, 2)))
     some = axes[known]
     skew = np.abs(np.swapaxes(some, 1, 2) @ some - np.eye(3)).max(axis=(1, 2), initial=0.0)
@@ -296,7 +292,7 @@ def _square(axes: NDArray[np.float64], label: str, file: str) -> NDArray[np.floa
             f"determinant is {np.linalg.det(some[wrong[0]]):.3g}",
             "Export the trial again.",
         )
-    found = np.full(axes.shape, np.nan)
+    rotation = np.full(axes.shape, np.nan)
     if len(known):
-        found[known] = Rotation.from_matrix(some).as_matrix()
-    return found
+        rotation[known] = Rotation.from_matrix(some).as_matrix()
+    return Pose(origin, rotation)
