@@ -49,7 +49,7 @@ def angles(
             measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
         standing = stood.stream("markers") if stood is not None else None
         markers = walk.stream("markers")
-        moved = moved_body(markers, standing, marker_set or None, measures, forward, joints or None).motion
+        moved = moved_body(markers, standing, marker_set or None, measures, forward, joints or None)
         found, made = moved.angles, moved.findings
         seen = [*(stood.findings if stood is not None else ()), *seen]
     write_recording(found, out)

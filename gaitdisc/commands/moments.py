@@ -38,9 +38,9 @@ def moments(
     weighed_n = standing_weight_n(stood)
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m, weighed_n)
     weighed = check_weight(weighed_n, person.kg, static.name)
-    body, moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
+    moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
-    found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
+    found = trial_kinetics(walk, moved.poses, foot_paths_of(moved), person, settings)
     write_recording(found.moments, out)
     for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *found.findings)):
         typer.echo(finding.line())

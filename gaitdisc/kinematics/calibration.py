@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
 from gaitdisc.kinematics.markers import check_right_handed, marker_labels, still_places, up_axis
-from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, DavisHip, Pose, chord_centre, harrington_hip
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose, chord_centre, davis_hip, harrington_hip
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -55,7 +55,7 @@ class Calibration:
 
 
 def calibrated(
-    static: Recording | None, marker_set: MarkerSet, measures: BodyMeasures | None = None, hips: Points | None = None
+    static: Recording, marker_set: MarkerSet, measures: BodyMeasures | None = None, hips: Points | None = None
 ) -> Calibration:
     """Frames, joint centres and marker places of a person from the static trial.
 
@@ -64,12 +64,6 @@ def calibrated(
     hips each (3,) [m]: `hip_l`, `hip_r` in the pelvis' frame, as `functional_hips` finds them; of the marker set where
         there is none
     """
-    if static is None:
-        raise ChannelError(
-            "angles from markers need a static trial of the person",
-            "the trial has none",
-            "Record a static trial with all markers of the set, or name it.",
-        )
     file = static.source.file or "the static trial"
     names = marker_set.names(marker_labels(static))
     _check_complete(marker_set, names, file)
@@ -164,7 +158,7 @@ class _Builder:
         legs = self.measures.leg_length_m
         methods = self.marker_set.joint_centres["hip"]
         if methods[0] == "davis" and set(legs) == {"l", "r"}:
-            return DavisHip(width, (legs["l"] + legs["r"]) / 2, legs[side], self._radius()).centre(side)
+            return davis_hip(width, (legs["l"] + legs["r"]) / 2, legs[side], self._radius(), side)
         if "harrington" not in methods:
             raise ChannelError(
                 "the hip joint centre after Davis needs the lengths of both legs",

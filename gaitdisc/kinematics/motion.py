@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,16 @@ from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.exchanged_labels import UNFIT, Exchange, exchange_findings, exchanged_pairs, without_exchanged
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import WalkingFrame, check_right_handed, marker_labels, up_axis, walking_frame
-from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose, clinical_angles, fitted_pose, residual_m
+from gaitdisc.kinematics.pose import (
+    JOINT_CHANNELS,
+    JOINTS,
+    SEGMENTS,
+    SEGMENTS_OF,
+    Pose,
+    clinical_angles,
+    fitted_pose,
+    residual_m,
+)
 from gaitdisc.kinematics.segment_poses import (
     PlacedMarkers,
     carried_joint,
@@ -43,7 +51,7 @@ SKEWED = 0.01  # largest difference of R^T R from the identity that rounding mak
 class Motion:
     """A trial as segments that move."""
 
-    angles: Recording  # joint angles, pelvis and foot progression [deg], pelvis translations [m]
+    angles: Recording  # joint, pelvis and foot progression angles [deg] (`hip_flexion_r`, ...), pelvis translations [m]
     # segment (`pelvis`, `thigh_l`, ...) -> origin and axes in the laboratory's frame, frame by frame
     poses: Mapping[str, Pose]
     # each (frame, 3) [m], joint (`hip_l`, ...) -> place in the laboratory's frame
@@ -51,36 +59,10 @@ class Motion:
     walking: WalkingFrame  # forward, up and right of the walker
     # each (frame,) [m], segment -> root mean square distance of its markers from where the static trial has them
     residual_m: Mapping[str, NDArray[np.float64]]
-    marker_set: str  # name of the set that was used
+    calibration: Calibration  # of the person, with the marker set that was used
     markers: Recording  # of the trial, without those that bear another's label
     exchanged: tuple[Exchange, ...]  # pairs of labels, and in which frames
     findings: tuple[Finding, ...] = ()  # what was inferred, bridged or left out
-
-
-def joint_angles(
-    markers: Recording,
-    static: Recording | None,
-    marker_set: MarkerSet | str | Path | None = None,
-    measures: BodyMeasures | None = None,
-    forward: Sequence[float] | None = None,
-    joints: str | None = None,
-) -> Recording:
-    """Joint angles of a trial from its markers.
-
-    static: markers of the same person standing, with the same markers; None is refused
-    marker_set: a set, its name, or its file; recognised by the labels where it is not given
-    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
-    joints: `free`, `held` or `planar`; as the marker set says where it is not given
-    returns: `pelvis_tilt`, `hip_flexion_r`, `knee_angle_r`, ... [deg] with the package's signs, `pelvis_tx`, ... [m]
-    """
-    return moved_body(markers, static, marker_set, measures, forward, joints).motion.angles
-
-
-class MovedBody(NamedTuple):
-    """A body as its static trial calibrated it, and how it moved in a trial."""
-
-    calibration: Calibration
-    motion: Motion
 
 
 def moved_body(
@@ -90,28 +72,31 @@ def moved_body(
     measures: BodyMeasures | None = None,
     forward: Sequence[float] | None = None,
     joints: str | None = None,
-) -> MovedBody:
-    """Calibrate a body by its static trial and follow it through a trial; arguments as of `joint_angles`."""
-    chosen = chosen_marker_set(markers, static, marker_set)
-    chosen = chosen if joints is None else chosen.with_joints(joints)
-    body = calibrated(static, chosen, measures)
-    return MovedBody(body, motion(markers, body, forward))
+) -> Motion:
+    """Calibrate a body by its static trial and follow it through a trial.
 
-
-def chosen_marker_set(
-    markers: Recording, static: Recording | None, given: MarkerSet | str | Path | None = None
-) -> MarkerSet:
-    """Marker set of a trial: the one given, or the one its labels are of, for which the static trial is needed."""
-    if isinstance(given, MarkerSet):
-        return given
-    if given is not None:
-        return marker_set(given)
+    static: markers of the same person standing, with the same markers; None is refused
+    marker_set: a set, its name, or its file; recognised by the labels where it is not given
+    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
+    joints: `free`, `held` or `planar`; as the marker set says where it is not given
+    """
     if static is None:
         raise ChannelError(
             "angles from markers need a static trial of the person",
             "the trial has none",
             "Record a static trial with all markers of the set, or name it.",
         )
+    chosen = chosen_marker_set(markers, static, marker_set)
+    chosen = chosen if joints is None else chosen.with_joints(joints)
+    return motion(markers, calibrated(static, chosen, measures), forward)
+
+
+def chosen_marker_set(markers: Recording, static: Recording, given: MarkerSet | str | Path | None = None) -> MarkerSet:
+    """Marker set of a trial: the one given, or the one that the labels of both trials are of."""
+    if isinstance(given, MarkerSet):
+        return given
+    if given is not None:
+        return marker_set(given)
     return recognised_marker_set(marker_labels(static), marker_labels(markers), static.source.file)
 
 
@@ -149,7 +134,6 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
     bridged = {s: poses[s].known & ~np.isfinite(placed[s][1]).all(axis=(1, 2)) for s in SEGMENTS}
-    chosen = calibration.marker_set
     findings = [
         *calibration.findings,
         Finding("note", "marker set", file, _set_words(calibration), ""),
@@ -159,7 +143,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     for segment in SEGMENTS:
         findings += _gaps_and_shape(segment, ~poses[segment].known, bridged[segment], residuals[segment], markers)
     angles = angles_of_poses(markers, poses, bridged, walking)
-    if chosen.joints == "planar":  # only what a planar body has
+    if calibration.marker_set.joints == "planar":  # only what a planar body has
         flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
         angles = angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
     return Motion(
@@ -168,7 +152,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
         walking,
         MappingProxyType(residuals),
-        chosen.name,
+        calibration,
         without_exchanged(markers, exchanges, calibration),
         tuple(exchanges),
         tuple(findings),
@@ -238,7 +222,7 @@ def angles_of_poses(
     for side in "rl":
         mirror = np.array([1, 1, 1] if side == "r" else [1, -1, -1])
         for joint, (names, flexion) in JOINT_CHANNELS.items():
-            above, below = (part.format(side) for part in SEGMENTS_OF[joint])
+            above, below = (part if part == "pelvis" else f"{part}_{side}" for part in SEGMENTS_OF[joint])
             values = clinical_angles(turns[above], turns[below]) * mirror * [flexion, 1, 1]
             add(names, side, values, bridged[above] | bridged[below])
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
@@ -258,14 +242,6 @@ def angles_of_poses(
     )
 
 
-SEGMENTS_OF = {"hip": ("pelvis", "thigh_{}"), "knee": ("thigh_{}", "shank_{}"), "ankle": ("shank_{}", "foot_{}")}
-JOINT_CHANNELS = {  # names, and the sign of flexion about the axis to the right
-    "hip": (("hip_flexion", "hip_adduction", "hip_rotation"), 1),
-    "knee": (("knee_angle", "knee_adduction", "knee_rotation"), -1),
-    "ankle": (("ankle_angle", "ankle_inversion", "ankle_rotation"), 1),
-}
-
-
 def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]:
     """Joint angles [deg] of a trial's segments after Grood and Suntay, and what was found on the way.
 
@@ -281,7 +257,7 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
             f"{file} has no {', '.join(lacking)}; it has {', '.join(sorted(there))}",
             "Export these segments too, or export the joint angles.",
         )
-    poses = {segment: _pose(segments, LABELS[segment], file) for segment in SEGMENTS}
+    poses = {segment: _pose_in_file(segments, LABELS[segment], file) for segment in SEGMENTS}
     pelvis = poses["pelvis"]
     up = up_axis(pelvis.origin, (poses["foot_l"].origin + poses["foot_r"].origin) / 2, file)
     check_right_handed(pelvis.rotation, up, file)
@@ -300,15 +276,11 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     return angles, tuple(findings)
 
 
-def _pose(segments: Recording, label: str, file: str) -> Pose:
+def _pose_in_file(segments: Recording, label: str, file: str) -> Pose:
+    """Pose of a segment whose axes are square to the last bit; a file holds seven digits."""
     origin = np.stack([segments[f"{label}.{axis}"] for axis in "xyz"], axis=1)
     cells = [segments[f"{label}.r{row}{column}"] for row in "123" for column in "123"]
     axes = np.stack(cells, axis=1).reshape(-1, 3, 3)[:, :, TURN]
-    return Pose(origin, _square(axes, label, file))
-
-
-def _square(axes: NDArray[np.float64], label: str, file: str) -> NDArray[np.float64]:
-    """Axes that are square to the last bit; a file holds seven digits."""
     known: NDArray[np.intp] = np.flatnonzero(np.isfinite(axes).all(axis=(1, 2)))
     some = axes[known]
     skew = np.abs(np.swapaxes(some, 1, 2) @ some - np.eye(3)).max(axis=(1, 2), initial=0.0)
@@ -320,7 +292,7 @@ def _square(axes: NDArray[np.float64], label: str, file: str) -> NDArray[np.floa
             f"determinant is {np.linalg.det(some[wrong[0]]):.3g}",
             "Export the trial again.",
         )
-    found = np.full(axes.shape, np.nan)
+    rotation = np.full(axes.shape, np.nan)
     if len(known):
-        found[known] = Rotation.from_matrix(some).as_matrix()
-    return found
+        rotation[known] = Rotation.from_matrix(some).as_matrix()
+    return Pose(origin, rotation)

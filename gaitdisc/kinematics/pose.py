@@ -13,6 +13,12 @@ from gaitdisc.recording.arrays import read_only
 
 SEGMENTS = ("pelvis", "thigh_l", "thigh_r", "shank_l", "shank_r", "foot_l", "foot_r")
 JOINTS = ("hip_l", "hip_r", "knee_l", "knee_r", "ankle_l", "ankle_r")
+SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
+JOINT_CHANNELS = {  # names, and the sign of flexion about the axis to the right
+    "hip": (("hip_flexion", "hip_adduction", "hip_rotation"), 1),
+    "knee": (("knee_angle", "knee_adduction", "knee_rotation"), -1),
+    "ankle": (("ankle_angle", "ankle_inversion", "ankle_rotation"), 1),
+}
 NOT_A_ROTATION = 1e-6  # largest difference of R^T R from the identity, and of det R from 1
 FEWEST_POINTS = 3
 LEAST_BREADTH_M = 0.01  # second largest extent of the points that are seen: on a line no turn about it is known
@@ -216,28 +222,23 @@ def hip_of_spines(
     return np.asarray(middle + units @ harrington_hip(width, depth, side), np.float64)
 
 
-@dataclass(frozen=True)
-class DavisHip:
-    """Hip joint centre of Plug-in Gait, from leg length.
+def davis_hip(
+    width_m: float, mean_leg_m: float, leg_m: float, marker_radius_m: float, side: str
+) -> NDArray[np.float64]:
+    """Hip centre of Plug-in Gait in the pelvis' frame from mid-ASIS [m], of pelvis width and leg lengths [m].
 
+    mean_leg_m: of both legs
+    leg_m: of the leg itself, from which the distance from spine to trochanter is estimated
     Source: Davis 1991, Hum Mov Sci 10:575; Kadaba 1990: theta = 28.4 deg and beta = 18 deg, as 0.5 and 0.314 rad.
     """
-
-    width_m: float  # distance between the anterior superior iliac spines [m]
-    mean_leg_m: float  # mean length of both legs [m]
-    leg_m: float  # length of the leg itself [m], from which the distance from spine to trochanter is estimated
-    marker_radius_m: float  # of the markers [m]
-
-    def centre(self, side: str) -> NDArray[np.float64]:
-        """Hip joint centre in the frame of the pelvis, from mid-ASIS [m]."""
-        c = 0.115 * self.mean_leg_m - 15.3 * _MM
-        to_trochanter = 0.1288 * self.leg_m - 48.56 * _MM
-        theta, beta = 0.5, 0.314
-        depth = to_trochanter + self.marker_radius_m
-        forward = c * math.cos(theta) * math.sin(beta) - depth * math.cos(beta)
-        upward = -c * math.cos(theta) * math.cos(beta) - depth * math.sin(beta)
-        lateral = self.width_m / 2 - c * math.sin(theta)
-        return np.array([forward, upward, lateral if side == "r" else -lateral])
+    c = 0.115 * mean_leg_m - 15.3 * _MM
+    to_trochanter = 0.1288 * leg_m - 48.56 * _MM
+    theta, beta = 0.5, 0.314
+    depth = to_trochanter + marker_radius_m
+    forward = c * math.cos(theta) * math.sin(beta) - depth * math.cos(beta)
+    upward = -c * math.cos(theta) * math.cos(beta) - depth * math.sin(beta)
+    lateral = width_m / 2 - c * math.sin(theta)
+    return np.array([forward, upward, lateral if side == "r" else -lateral])
 
 
 def chord_centre(

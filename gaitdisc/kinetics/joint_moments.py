@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
-from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose
 from gaitdisc.kinetics.body_inertia import LEG, TABLES, FootPoints, Person, leg_inertia, segment_lengths
 from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenches, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
@@ -98,7 +98,6 @@ def _known(
 
 FRAMES = ("joint", "distal")
 ALONG_BONE = [2, 0, 1]  # the segment's own axes that take the places of those of the joint
-SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
 
 
 class JointPart(NamedTuple):
@@ -115,16 +114,10 @@ class JointPart(NamedTuple):
         return self.right if side == "r" else self.left
 
 
-PARTS = (
-    JointPart("hip", "hip_flexion", 0, 1, 1),
-    JointPart("hip", "hip_adduction", 1, 1, -1),
-    JointPart("hip", "hip_rotation", 2, 1, -1),
-    JointPart("knee", "knee_angle", 0, -1, -1),
-    JointPart("knee", "knee_adduction", 1, 1, -1),
-    JointPart("knee", "knee_rotation", 2, 1, -1),
-    JointPart("ankle", "ankle_angle", 0, 1, 1),
-    JointPart("ankle", "ankle_inversion", 1, 1, -1),
-    JointPart("ankle", "ankle_rotation", 2, 1, -1),
+PARTS = tuple(
+    JointPart(joint, angle, axis, *((flexion, flexion) if axis == 0 else (1, -1)))
+    for joint, (angles, flexion) in JOINT_CHANNELS.items()
+    for axis, angle in enumerate(angles)
 )
 
 

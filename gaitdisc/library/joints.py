@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gaitdisc.ingest.c3d_kinetics import body_measures_in
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.motion import joint_angles, moved_body
+from gaitdisc.kinematics.motion import moved_body
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
@@ -60,7 +60,7 @@ def angles(
     """
     trial = trial_of(walk)
     standing, measures = _standing(static)
-    found = joint_angles(trial.stream("markers"), standing, marker_set, measures, forward, joints)
+    found = moved_body(trial.stream("markers"), standing, marker_set, measures, forward, joints).angles
     return replace(found, subject=trial.subject, condition=trial.condition)
 
 
@@ -110,10 +110,10 @@ def moments(
     """
     trial = trial_of(walk)
     standing, measures = _standing(static)
-    body, moved = moved_body(trial.stream("markers"), standing, marker_set, measures)
+    moved = moved_body(trial.stream("markers"), standing, marker_set, measures)
     person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m)
     settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
-    return trial_kinetics(trial, moved.poses, foot_paths_of(moved, body), person, settings).moments
+    return trial_kinetics(trial, moved.poses, foot_paths_of(moved), person, settings).moments
 
 
 def _standing(static: Trial | Path | str) -> tuple[Recording, BodyMeasures]:

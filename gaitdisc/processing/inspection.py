@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from gaitdisc.channel import list_names
@@ -170,9 +170,8 @@ def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[i
         except GaitdiscError as error:
             found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
             continue
-        standing = Inspection(name, trial.subject, trial.condition, _streams(trial), {}, _sorted(trial.findings))
-        looked_at = not is_static(study, planned) and not is_functional(study, planned)
-        found[place] = inspected_trial(trial, name) if looked_at else standing
+        stands = is_static(study, planned) or is_functional(study, planned)
+        found[place] = _seen(trial, name, {}, trial.findings) if stands else inspected_trial(trial, name)
     return found
 
 
@@ -190,15 +189,11 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
 
 
 def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
-    trial = read.trial
     try:
         walk = read.processed(study)
     except GaitdiscError as error:
-        seen = inspected_trial(trial, name)
-        return Inspection(name, trial.subject, trial.condition, seen.streams, seen.strides, seen.findings, str(error))
-    return Inspection(
-        name, trial.subject, trial.condition, _streams(trial), _counted(walk.strides), _sorted(walk.findings)
-    )
+        return replace(inspected_trial(read.trial, name), refusal=str(error))
+    return _seen(read.trial, name, walk.strides, walk.findings)
 
 
 def inspected_trial(trial: Trial, name: str) -> Inspection:
@@ -223,17 +218,18 @@ def inspected_trial(trial: Trial, name: str) -> Inspection:
             refusal = f"not used as a walk: {error}"
         else:
             findings.append(Finding("note", "no strides", trial.name, str(error), ""))
-    return Inspection(
-        name, trial.subject, trial.condition, _streams(trial), _counted(strides), _sorted(findings), refusal
-    )
+    return _seen(trial, name, strides, findings, refusal)
 
 
 def _streams(trial: Trial) -> dict[str, str]:
     return {key: f"{len(r.channels)} at {r.rate_hz:g} Hz, {r.duration_s:.1f} s" for key, r in trial.streams.items()}
 
 
-def _counted(strides: Mapping[str, Strides]) -> dict[str, tuple[int, int]]:
-    return {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
+def _seen(
+    trial: Trial, name: str, strides: Mapping[str, Strides], findings: Sequence[Finding], refusal: str = ""
+) -> Inspection:
+    counts = {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
+    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sorted(findings), refusal)
 
 
 def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
@@ -247,5 +243,5 @@ def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
     return f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
 
 
-def _sorted(findings: list[Finding] | tuple[Finding, ...]) -> tuple[Finding, ...]:
+def _sorted(findings: Sequence[Finding]) -> tuple[Finding, ...]:
     return tuple(sorted(findings, key=lambda finding: finding.rank))

@@ -77,7 +77,7 @@ def computed_trial(
         findings.append(Finding("note", "own model", file, what, ""))
     if person is not None and "forces" in trial.streams:
         try:
-            kinetics = trial_kinetics(trial, moved.poses, foot_paths_of(moved, calibration), person, settings)
+            kinetics = trial_kinetics(trial, moved.poses, foot_paths_of(moved), person, settings)
         except GaitdiscError as error:
             findings.append(Finding("warning", "no moments", file, str(error).rstrip("."), "moments and powers"))
         else:
@@ -142,11 +142,11 @@ def with_segment_angles(trial: Trial) -> Trial:
     return replace(trial, streams={**trial.streams, "kinematics": named}, findings=(*trial.findings, *findings))
 
 
-def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:
+def foot_paths_of(moved: Motion) -> dict[str, FootPath]:
     """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame."""
     found = {}
     for side in "lr":
-        foot, points = moved.poses[f"foot_{side}"], calibration.points[f"foot_{side}"]
+        foot, points = moved.poses[f"foot_{side}"], moved.calibration.points[f"foot_{side}"]
         places = (foot.to_laboratory(points[f"{part}_{side}"]) for part in ("heel", "toe"))
         found[side] = FootPath(side, moved.angles.time, *places)
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from operator import itemgetter
 
 import numpy as np
 import pandas as pd
@@ -53,6 +54,11 @@ def walk_summary(
 ) -> WalkSummary:
     """What is kept of a walk; channels of the other side are cut by the strides of their own foot, as the first are."""
     lead = [*states, *trial.streams.values()][0]
+    rows = []
+    for side, cut in sorted(strides.items()):
+        kept = [(side, start, end, True, "") for start, end in zip(cut.start, cut.end, strict=True)]
+        dropped = [(side, one.start, one.end, False, one.reason) for one in cut.dropped]
+        rows += sorted([*kept, *dropped], key=itemgetter(1))
     return WalkSummary(
         trial.subject,
         trial.condition,
@@ -61,7 +67,7 @@ def walk_summary(
         strides[follow].detector,
         tuple(channel for state in states for channel in state.channels),
         stride_curves(states, strides, follow),
-        pd.concat([stride_table(strides[side]) for side in sorted(strides)], ignore_index=True),
+        pd.DataFrame(rows, columns=pd.Index(STRIDE_COLUMNS)),
         tuple(findings),
         {one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
     )
@@ -78,14 +84,6 @@ def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], f
     for column, values in enumerate(columns):
         curves[: len(values), :, column] = values
     return curves
-
-
-def stride_table(strides: Strides) -> pd.DataFrame:
-    """Kept and dropped strides of one side in order of time, columns `STRIDE_COLUMNS`."""
-    kept = [(strides.side, start, end, True, "") for start, end in zip(strides.start, strides.end, strict=True)]
-    dropped = [(strides.side, d.start, d.end, False, d.reason) for d in strides.dropped]
-    rows = sorted([*kept, *dropped], key=lambda row: row[1])
-    return pd.DataFrame(rows, columns=pd.Index(STRIDE_COLUMNS))
 
 
 TEMPLATE_TIMES = 2.0  # the mean stride bridges gaps twice as long as the spline does (docs/derivatives.md)
@@ -245,17 +243,13 @@ def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = Non
     >>> on_one_base(walks_of(the_twelve()[0], 5.0).trials["nominal"], 100.0).rate_hz
     100.0
     """
-    chosen = {key: trial.stream(key) for key in (keys or tuple(trial.streams))}
-    ready = {key: _slow_enough(key, recording, rate_hz) for key, recording in chosen.items()}
+    ready = {key: trial.stream(key) for key in (keys or tuple(trial.streams))}
+    for key, recording in ready.items():
+        if recording.rate_hz > rate_hz * (1 + 1e-6):
+            raw = key == "emg" and is_raw(recording)
+            slow = SHARE_OF_RATE * rate_hz
+            ready[key] = enveloped(recording) if raw else lowpassed(without_spikes(recording), slow)
     return Trial(trial.name, ready, trial.events, (), trial.subject, trial.condition).on_one_base(rate_hz)
-
-
-def _slow_enough(key: str, recording: Recording, rate_hz: float) -> Recording:
-    if recording.rate_hz <= rate_hz * (1 + 1e-6):
-        return recording
-    if key == "emg" and is_raw(recording):
-        return enveloped(recording)
-    return lowpassed(without_spikes(recording), SHARE_OF_RATE * rate_hz)
 
 
 @dataclass(frozen=True, eq=False)

@@ -72,6 +72,14 @@ def sides_together(names: list[str]) -> list[str]:
     return [name for group in (*pairs, *singles) for name in group]
 
 
+def label_curve(axes: Axes, channel: str, unit: str) -> None:
+    """Name unit and positive direction of a channel, if the words are short; the stride goes from 0 to 100 %."""
+    up = upwards(channel)
+    axes.set_ylabel(f"[{unit_text(unit)}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
+    axes.set_xlim(0, 100)
+    axes.set_xticks([0, 50, 100])
+
+
 def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
     """Draw mean and spread of both walks of one channel over the stride, from its rows of `curve_numbers`."""
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
@@ -91,12 +99,8 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
     for axes, (channel, curves) in zip(cells, groups, strict=True):
         draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
         axes.set_title(label(str(channel)).replace("EMG ", ""), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
-        up = upwards(str(channel))
-        unit = unit_text(str(curves["unit"].iloc[0]))
-        axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
+        label_curve(axes, str(channel), str(curves["unit"].iloc[0]))
         axes.set_ylim(*ranges[sideless(str(channel))])
-        axes.set_xlim(0, 100)
-        axes.set_xticks([0, 50, 100])
     for axes in cells[-4:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, walks_key(run))

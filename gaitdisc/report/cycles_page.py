@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.clinic.kept_parts import figure_again, hash_cycles, keep_part, read_part
-from gaitdisc.report.curves import sides_together
+from gaitdisc.report.curves import label_curve, sides_together
 from gaitdisc.report.cycles_tables import (
     all_cycles,
     all_means,
@@ -31,7 +31,7 @@ from gaitdisc.results.leg_curves import FEET
 from gaitdisc.results.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.study_run import StudyRun
-from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless, unit_text, upwards
+from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless, unit_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -201,12 +201,8 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
             if np.isfinite(off):
                 colour = SIDES[str(side)].colour
                 axes.axvline(float(off), color=colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
-        first = str(own["channel"].iloc[0])
         axes.set_title(label(joint), fontsize=7.4)
-        up, unit = upwards(first), unit_text(str(own["unit"].iloc[0]))
-        axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
-        axes.set_xlim(0, 100)
-        axes.set_xticks([0, 50, 100])
+        label_curve(axes, str(own["channel"].iloc[0]), str(own["unit"].iloc[0]))
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
     key = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]

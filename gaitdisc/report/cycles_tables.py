@@ -11,8 +11,9 @@ from gaitdisc.recording import PERCENT, Recording
 from gaitdisc.report.table import Table
 from gaitdisc.results.leg_curves import FEET
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, SPATIOTEMPORAL, PooledCycles
-from gaitdisc.words import NONE, SIDE_WORDS, number
+from gaitdisc.words import NONE, SIDE_WORDS, counted, number
 
+WHO = ("participant", "group", "session", "condition")
 VALUES = {  # column -> words, unit, digits
     "speed_m_per_s": ("speed", "m/s", 2),
     "cadence_per_min": ("cadence", "steps/min", 0),
@@ -30,16 +31,13 @@ VALUES = {  # column -> words, unit, digits
 
 def all_cycles(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Every cycle of everybody, kept or left out, one row each."""
-    tables = [_named(one, one.cycles) for one in cycles if len(one.cycles)]
-    columns = ["participant", "group", "session", "condition", *CYCLE_COLUMNS]
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+    return _stacked([_named(one, one.cycles) for one in cycles if len(one.cycles)], CYCLE_COLUMNS)
 
 
 def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Mean curves of everybody, one row a channel, side and percent."""
-    tables = [_named(one, one.mean_curves()) for one in cycles if len(one.kept)]
-    columns = ["participant", "group", "session", "condition", "channel", "unit", "side", "percent", "n", "mean", "sd"]
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+    columns = ("channel", "unit", "side", "percent", "n", "mean", "sd")
+    return _stacked([_named(one, one.mean_curves()) for one in cycles if len(one.kept)], columns)
 
 
 def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
@@ -71,22 +69,17 @@ def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
 
 def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there."""
-    columns = [
-        "participant", "group", "session", "condition", "trial", "side", "start_s", "channel", "unit", "percent",
-        "value",
-    ]  # fmt: skip
+    columns = ("trial", "side", "start_s", "channel", "unit", "percent", "value")
     tables = []
     for one in cycles:
         curves = one.curves
         for row, cycle in enumerate(one.kept.itertuples(index=False)):
             for column, channel in enumerate(one.channels):
                 values = curves[row, :, column]
-                if not np.isfinite(values).any():
-                    continue
-                words = (one.subject, one.group, one.session, one.condition, cycle.trial, cycle.side, cycle.start_s)
-                named = dict(zip(columns, (*words, channel.name, channel.unit), strict=False))
-                tables.append(pd.DataFrame({**named, "percent": PERCENT, "value": values}))
-    return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+                if np.isfinite(values).any():
+                    words = (cycle.trial, cycle.side, cycle.start_s, channel.name, channel.unit, PERCENT, values)
+                    tables.append(_named(one, pd.DataFrame(dict(zip(columns, words, strict=True)))))
+    return _stacked(tables, columns)
 
 
 def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
@@ -99,10 +92,22 @@ def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
                 known = own[value].dropna()
                 spread = float(known.std()) if len(known) > 1 else np.nan
                 mean = float(known.mean()) if len(known) else np.nan
-                words = (one.subject, one.group, one.session, one.condition)
-                rows.append((*words, value, side, len(known), mean, spread))
-    columns = ["participant", "group", "session", "condition", "value", "side", "n", "mean", "sd"]
-    return pd.DataFrame(rows, columns=pd.Index(columns))
+                rows.append((*_who(one).values(), value, side, len(known), mean, spread))
+    return pd.DataFrame(rows, columns=pd.Index([*WHO, "value", "side", "n", "mean", "sd"]))
+
+
+def _who(one: PooledCycles) -> dict[str, str]:
+    return dict(zip(WHO, (one.subject, one.group, one.session, one.condition), strict=True))
+
+
+def _named(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
+    """Table behind the columns that say whose it is."""
+    return table.assign(**_who(one))[[*WHO, *table.columns]]
+
+
+def _stacked(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFrame:
+    """Tables of `_named` under each other; of none the columns."""
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index([*WHO, *columns]))
 
 
 def overview_table(cycles: Sequence[PooledCycles]) -> Table:
@@ -110,26 +115,24 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
     rows, records = [], []
     for one in cycles:
         kinetic = one.kept[one.kept["kinetic"].astype(bool)]
-        counts = {side: (one.counted(side), int((one.left_out["side"] == side).sum())) for side in FEET}
-        plates = {side: int((kinetic["side"] == side).sum()) for side in FEET}
         muscles = emg_counts(one)
-        live = [count for count in muscles.values() if count]
-        emg = f"{len(live)} usable, {sum(live)} cycles" if live else NONE
         by = ", ".join(f"{name} ({count})" if len(one.detectors) > 1 else name for name, count in one.detectors.items())
-        rows.append((
-            one.subject, one.group or NONE, one.where, str(one.trials),
-            *(f"{counts[side][0]} / {counts[side][1]}" for side in FEET),
-            f"{plates['l']}, {plates['r']}", emg, by or NONE, offset_words(one),
-        ))  # fmt: skip
-        records.append({
-            "participant": one.subject, "group": one.group, "session": one.session, "condition": one.condition,
-            "trials": one.trials, **{f"kept_{side}": counts[side][0] for side in FEET},
-            **{f"left_out_{side}": counts[side][1] for side in FEET},
-            **{f"kinetic_{side}": plates[side] for side in FEET},
+        record = {
+            **_who(one), "trials": one.trials, **{f"kept_{side}": one.counted(side) for side in FEET},
+            **{f"left_out_{side}": int((one.left_out["side"] == side).sum()) for side in FEET},
+            **{f"kinetic_{side}": int((kinetic["side"] == side).sum()) for side in FEET},
             "emg_channels": len(muscles), "emg_cycles": sum(muscles.values()), "detectors": by,
             "contact_offset_s": one.contact_offset_s, "foot_off_offset_s": one.foot_off_offset_s,
             "offset_steps": one.offset_steps, "over_ground": one.over_ground,
-        })  # fmt: skip
+        }  # fmt: skip
+        live = sum(count > 0 for count in muscles.values())
+        rows.append((
+            one.subject, one.group or NONE, one.where, str(one.trials),
+            *(f"{record[f'kept_{side}']} / {record[f'left_out_{side}']}" for side in FEET),
+            f"{record['kinetic_l']}, {record['kinetic_r']}",
+            f"{live} usable, {record['emg_cycles']} cycles" if live else NONE, by or NONE, offset_words(one),
+        ))  # fmt: skip
+        records.append(record)
     columns = (
         "participant", "group", "session, condition", "trials", "left: kept / dropped", "right: kept / dropped",
         "on a plate (left, right)", "EMG", "contacts by", "shift of contacts",
@@ -161,7 +164,7 @@ def offset_words(one: PooledCycles) -> str:
         return NONE
     if one.contact_offset_s is None:
         return "not shifted: no plate recorded a step"
-    steps = "1 step" if one.offset_steps == 1 else f"{one.offset_steps} steps"
+    steps = counted(one.offset_steps, "step")
     return f"{1000.0 * one.contact_offset_s:+.0f} ms ({steps} that a plate or an event also recorded)"
 
 
@@ -194,7 +197,7 @@ def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
         return None
     rows = tuple(
         (
-            " ".join(part for part in (str(row.session), str(row.condition)) if part),
+            f"{row.session} {row.condition}".strip(),
             str(row.trial),
             SIDE_WORDS[str(row.side)],
             f"{row.start_s:.2f} to {row.end_s:.2f}",
@@ -205,14 +208,6 @@ def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
     headings = ("session, condition", "trial", "side", "from, to [s]", "why")
     caption = f"{sets[0].subject}: cycles left out, n = {len(rows)}."
     return Table(f"left_out-{name}", caption, headings, rows, numbers)
-
-
-def _named(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
-    words = {"participant": one.subject, "group": one.group, "session": one.session, "condition": one.condition}
-    named = table.copy()
-    for place, (column, word) in enumerate(words.items()):
-        named.insert(place, column, word)
-    return named
 
 
 def mean_cell(mean: float, spread: float, count: int, digits: int) -> str:

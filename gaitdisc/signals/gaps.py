@@ -178,7 +178,10 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
                 LEAST_SHARE * float(np.subtract(*np.percentile(x[known], [99, 1]))), LEAST.get(channel.unit, 0.0)
             )
             spread = 1.4826 * float(np.median(np.abs(size - np.median(size)))) if len(size) else 0.0
-            far = np.abs(x - _running_median(x, half)) > max(MAD_TIMES * spread, least)
+            middle = np.full(len(x), np.nan)  # the running median, where its window is whole
+            if len(x) > 2 * half:
+                middle[half : len(x) - half] = np.median(sliding_window_view(x, 2 * half + 1), axis=1)
+            far = np.abs(x - middle) > max(MAD_TIMES * spread, least)
             leap = max(LEAP_TIMES * float(np.percentile(size, 99)), least) if len(size) else np.inf
             for start, end in runs(far):
                 there, back = steps[start - 1], steps[end - 1]
@@ -219,11 +222,3 @@ def spike_findings(recording: Recording) -> list[Finding]:
             )
         )
     return findings
-
-
-def _running_median(x: NDArray[np.float64], half: int) -> NDArray[np.float64]:
-    """Median over a window about each sample; NaN where the window is not whole."""
-    middle = np.full(len(x), np.nan)
-    if len(x) > 2 * half:
-        middle[half : len(x) - half] = np.median(sliding_window_view(x, 2 * half + 1), axis=1)
-    return middle

@@ -1,5 +1,6 @@
 """Frames and joint centres of a standing person whose bones are known, hips found by circling too."""
 
+import itertools
 import re
 from dataclasses import replace
 
@@ -28,11 +29,12 @@ from manufactured_body import (
 from texts import says
 
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, ShapeError
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrated, exchanged_in_static, landmark_order
 from gaitdisc.kinematics.functional_hips import functional_hips, sphere_centre
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
+from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.kinematics.pose import DavisHip, harrington_hip
+from gaitdisc.kinematics.pose import davis_hip, harrington_hip
 from gaitdisc.recording import Recording
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -73,7 +75,7 @@ def test_hips_after_davis_need_leg_lengths():
         ankle_width_m=MEASURES.ankle_width_m,
     )
     points = calibrated(static_of(PLUG_IN_GAIT), chosen, legs).points
-    expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
+    expected = davis_hip(WIDTH, 0.81, 0.82, RADIUS, "r")
     np.testing.assert_allclose(points["pelvis"]["hip_r"], expected, atol=1e-9)
 
 
@@ -81,7 +83,7 @@ def test_plug_in_gait_takes_its_own_hips_where_leg_lengths_are_known():
     legs = replace(MEASURES, leg_length_m={"l": 0.80, "r": 0.82})
     static, chosen = static_of(PLUG_IN_GAIT), marker_set("plug_in_gait")
     davis = calibrated(static, chosen, legs)
-    expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
+    expected = davis_hip(WIDTH, 0.81, 0.82, RADIUS, "r")
     np.testing.assert_allclose(davis.points["pelvis"]["hip_r"], expected, atol=1e-9)
     assert not [finding for finding in davis.findings if finding.kind == "hip"]
     without_legs = calibrated(static, chosen, MEASURES)
@@ -286,3 +288,36 @@ def test_a_body_calibrated_with_them_has_its_joints_there():
         np.testing.assert_allclose(found.points["pelvis"][joint], place, atol=1e-12)
     standing = motion(static_of(RAJAGOPAL), found)
     assert abs(standing.angles["hip_flexion_r"]).max() > 0.5  # thigh axes end in the hip
+
+
+UP = np.array([0.0, 1.0, 0.0])
+PIG = marker_set("plug_in_gait")
+
+
+@pytest.fixture(scope="module")
+def places():
+    static = static_of(PLUG_IN_GAIT)
+    names = PIG.names(marker_labels(static))
+    return dict(zip(names, marker_places(static, list(names.values()))[0], strict=True))
+
+
+def test_a_standing_person_contradicts_nothing(places):
+    assert min(landmark_order(PIG, places, UP))[0] > 0
+
+
+def test_exchanges_of_two_plug_in_gait_markers_are_found_and_named(places):
+    for pair in [*itertools.combinations(places, 2)][::4]:
+        wrong = {**places, pair[0]: places[pair[1]], pair[1]: places[pair[0]]}
+        assert min(landmark_order(PIG, wrong, UP))[0] <= 0, pair
+        assert exchanged_in_static(PIG, wrong, UP) == pair
+
+
+@pytest.mark.parametrize("turn_deg", [-70, -30, 30, 70])
+def test_feet_that_turn_out_or_in_are_no_exchange(places, turn_deg):
+    angle = np.radians(turn_deg)
+    turn = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+    turned = dict(places)
+    for side, way in (("R", turn), ("L", turn.T)):
+        for name in ("HEE", "TOE"):
+            turned[side + name] = places[f"{side}ANK"] + way @ (places[side + name] - places[f"{side}ANK"])
+    assert not [what for value, what in landmark_order(PIG, turned, UP) if value <= 0 and "ahead" in what]

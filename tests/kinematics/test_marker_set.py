@@ -1,9 +1,133 @@
-"""What a marker set says of the labels of a recording: names, landmarks, followers, and what is lacking."""
+"""Marker sets: those that come along, a laboratory's own and bad ones; what they say of the labels of a recording."""
+
+import re
+from pathlib import Path
 
 import pytest
+from manufactured_body import MEASURES, PLUG_IN_GAIT, known_angles, markers_of, renamed, static_of
 
-from gaitdisc.errors import SchemaError
-from gaitdisc.kinematics.marker_set import choices, marker_set, shipped_marker_sets, sided
+from gaitdisc.errors import ChannelError, ReadError, SchemaError
+from gaitdisc.kinematics.marker_set import (
+    choices,
+    marker_set,
+    read_marker_set,
+    recognised_marker_set,
+    shipped_marker_sets,
+    sided,
+)
+from gaitdisc.kinematics.markers import marker_labels
+from gaitdisc.kinematics.motion import moved_body
+
+OWN = """
+title = "Our laboratory"
+
+[landmarks]
+asis = "{side} spine"
+sacrum = "sacrum"
+thigh_wand = "{side} thigh"
+knee_lateral = "{side} knee"
+shank_wand = "{side} shank"
+ankle_lateral = "{side} ankle"
+heel = "{side} heel"
+toe = "{side} toe"
+
+[joint_centres]
+hip = "harrington"
+knee = "chord"
+ankle = "chord"
+
+[tracked]
+pelvis = ["{side} spine", "sacrum"]
+thigh = ["hip", "{side} thigh", "{side} knee"]
+shank = ["knee", "{side} shank", "{side} ankle"]
+foot = ["ankle", "{side} heel", "{side} toe"]
+"""
+
+
+def written(tmp_path, text: str):
+    path = tmp_path / "ours.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_sets_that_come_along():
+    assert list(shipped_marker_sets()) == ["gait2354", "helen_hayes", "oxford_foot", "plug_in_gait", "rajagopal"]
+    for one in shipped_marker_sets().values():
+        assert one.title
+        assert one.citation
+
+
+def test_a_laboratory_writes_its_own_in_twenty_lines(tmp_path):
+    assert len([line for line in OWN.splitlines() if line and not line.startswith("[")]) <= 20
+    own = {"SACR": "sacrum"}
+    for side, word in (("L", "left"), ("R", "right")):
+        ends = ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")
+        names = ("spine", "thigh", "knee", "shank", "ankle", "heel", "toe")
+        own |= {f"{side}{end}": f"{word} {name}" for end, name in zip(ends, names, strict=True)}
+    known = known_angles(60)
+    path = written(tmp_path, OWN)
+    markers, static = renamed(markers_of(known, PLUG_IN_GAIT), own), renamed(static_of(PLUG_IN_GAIT), own)
+    angles = moved_body(markers, static, path, MEASURES, (1, 0, 0)).angles
+    for name, values in known.items():
+        assert abs(angles[name] - values).max() < 1e-9, name
+
+
+def test_the_set_on_the_page_can_be_read(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "kinematics.md").read_text(encoding="utf-8")
+    [text] = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert read_marker_set(written(tmp_path, text)).followers("pelvis") == ("LASI", "RASI", "SACR")
+
+
+def test_the_nearest_name_is_given():
+    with pytest.raises(SchemaError, match="'plugin_gait', the nearest is 'plug_in_gait'"):
+        marker_set("plugin_gait")
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(ReadError, match=r"absent\.toml: No such file"):
+        read_marker_set(tmp_path / "absent.toml")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (('hip = "harrington"', 'hip = "bell"'), "takes harrington, davis; ours.toml: found 'bell'"),
+        (('hip = "harrington"', ""), r"hip, knee, ankle; ours\.toml has no hip"),
+        (("[tracked]", "[trackd]"), "ours.toml: found 'trackd', the nearest is 'tracked'"),
+        (('heel = "{side} heel"', ""), "asis,.* ours.toml has no heel"),
+        (('heel = "{side} heel"', 'heal = "{side} heel"'), "found 'heal', the nearest is 'heel'"),
+        (('heel = "{side} heel"', 'heel = "heel"'), r"both sides with \{S\}, .* found 'heel'. Write it as heel ="),
+        (
+            ('heel = "{side} heel"', 'heel = "{side} heel +"'),
+            r"landmarks\.heel must name markers .* found '\{side\} heel \+'",
+        ),
+        (('heel = "{side} heel"', "heel = 3"), r"landmarks\.heel of a marker set"),
+        (('knee = "chord"', 'knee = "midpoint"'), "'midpoint' needs landmarks.knee_medial; ours.toml does not name it"),
+        (('"{side} heel", ', ""), r"ours\.toml has 2: ankle,"),
+        (('foot = ["ankle"', 'foot = ["knee"'), r"joint centre above it \(ankle\); ours\.toml names 'knee'"),
+        (('foot = ["ankle",', 'foot = ["ankle" '), r"a marker set must be a TOML file; ours\.toml: "),
+        (("[joint_centres]", '[axes]\nfoot = "tilted"\n[joint_centres]'), "takes flat, as placed; .* found 'tilted'"),
+        (('shank = ["knee", "{side} shank", "{side} ankle"]', "shank = 5"), r"a list of names; ours\.toml: found 5"),
+        (("[landmarks]", "aliases = 3\n[landmarks]"), r"a table; ours\.toml: found 3"),
+    ],
+)
+def test_a_bad_set_gets_one_clear_error(tmp_path, change, words):
+    assert change[0] in OWN
+    with pytest.raises(SchemaError, match=words):
+        read_marker_set(written(tmp_path, OWN.replace(*change)))
+
+
+def test_recognition_prefers_the_set_with_more_of_the_markers():
+    plain = marker_labels(static_of(PLUG_IN_GAIT))
+    assert recognised_marker_set(plain, plain).name == "plug_in_gait"
+    foot = [f"{side}{name}" for side in "LR" for name in ("HFB", "TUB", "SHN", "MMA", "P1M", "P5M", "LCA", "STL")]
+    assert recognised_marker_set([*plain, *foot], [*plain, *foot]).name == "oxford_foot"
+
+
+def test_labels_of_no_set_name_the_nearest_one():
+    plain = [label for label in marker_labels(static_of(PLUG_IN_GAIT)) if label != "RTHI"]
+    with pytest.raises(ChannelError, match=r"a\.c3d.*RASI.*plug_in_gait.*RTHI"):
+        recognised_marker_set(plain, plain, "a.c3d")
 
 
 @pytest.mark.parametrize(("name", "right"), [("{S}ASI", "RASI"), ("knee_{s}", "knee_r"), ("{side} knee", "right knee")])

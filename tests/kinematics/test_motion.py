@@ -30,10 +30,12 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.markers import WalkingFrame
-from gaitdisc.kinematics.motion import angles_of_poses, chosen_marker_set, joint_angles, motion
+from gaitdisc.kinematics.motion import angles_of_poses, chosen_marker_set, motion, moved_body
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.recording import Recording
 
+PIG_ENDS = ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")
+WALK = markers_of(known_angles(60), PLUG_IN_GAIT)
 MIRRORED = Laboratory(np.diag([1.0, 1.0, -1.0]))
 
 
@@ -63,7 +65,9 @@ def check_angles(angles: Recording, known: dict[str, np.ndarray], atol: float = 
 def test_known_angles_are_recovered_by_every_set(name, joints):
     known = known_angles(150)
     markers, static = markers_of(known, SETS[name]), static_of(SETS[name])
-    check_angles(joint_angles(markers, static, replace(marker_set(name), joints=joints), MEASURES, (1, 0, 0)), known)
+    check_angles(
+        moved_body(markers, static, replace(marker_set(name), joints=joints), MEASURES, (1, 0, 0)).angles, known
+    )
 
 
 @pytest.mark.parametrize("name", SETS)
@@ -72,7 +76,7 @@ def test_the_set_is_recognised_and_said(name):
     chosen = chosen_marker_set(static, static)
     assert chosen.name == name
     found = motion(static, calibrated(static, chosen, MEASURES))
-    assert found.marker_set == name
+    assert found.calibration.marker_set.name == name
     assert any(finding.kind == "marker set" and finding.what.startswith(name) for finding in found.findings)
 
 
@@ -84,14 +88,14 @@ def test_angles_do_not_depend_on_the_laboratory(seed):
     here, there = laboratory(seed), laboratory(seed + 1)
     markers = markers_of(known, PLUG_IN_GAIT, here)
     forward = here.axes @ [1, 0, 0]
-    check_angles(joint_angles(markers, static_of(PLUG_IN_GAIT, there), None, MEASURES, tuple(forward)), known)
+    check_angles(moved_body(markers, static_of(PLUG_IN_GAIT, there), None, MEASURES, tuple(forward)).angles, known)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_direction_of_walking_is_found(seed):
     """The pelvis goes straight on, so forward is found exactly, and with it pelvis and foot progression."""
     known, here = known_angles(200, seed), laboratory(seed)
-    found = joint_angles(markers_of(known, RAJAGOPAL, here), static_of(RAJAGOPAL), None)
+    found = moved_body(markers_of(known, RAJAGOPAL, here), static_of(RAJAGOPAL), None).angles
     check_angles(found, known, 1e-6)
 
 
@@ -111,14 +115,14 @@ def test_foot_progression_is_the_way_the_toes_point():
     """Standing with the right foot turned out by 20 deg and the left one turned in by 5."""
     known = {name: np.zeros(150) for name in known_angles(2)}
     known["ankle_rotation_r"][:], known["ankle_rotation_l"][:] = -20.0, 5.0
-    angles = joint_angles(markers_of(known, RAJAGOPAL), static_of(RAJAGOPAL), None)
+    angles = moved_body(markers_of(known, RAJAGOPAL), static_of(RAJAGOPAL), None).angles
     np.testing.assert_allclose(angles["foot_progression_angle_r"], -20.0, atol=1e-6)
     np.testing.assert_allclose(angles["foot_progression_angle_l"], 5.0, atol=1e-6)
 
 
 def test_the_pelvis_is_followed_in_the_walker_s_frame():
     here = laboratory(1)
-    angles = joint_angles(markers_of(known_angles(150), RAJAGOPAL, here), static_of(RAJAGOPAL), None)
+    angles = moved_body(markers_of(known_angles(150), RAJAGOPAL, here), static_of(RAJAGOPAL), None).angles
     np.testing.assert_allclose(np.diff(angles["pelvis_tx"]), 0.013, atol=1e-8)
     up = here.axes @ [0, 1, 0]
     np.testing.assert_allclose(angles["pelvis_ty"] * up.sum(), 0.95 * up.sum() + here.origin @ up * up.sum(), atol=1e-8)
@@ -182,51 +186,47 @@ def test_a_static_trial_of_another_person_is_said():
     assert not [finding for finding in same.findings if finding.kind == "another shape"]
 
 
-def test_no_static_trial_is_refused():
-    markers = markers_of(known_angles(60), RAJAGOPAL)
-    for given_set in (None, "rajagopal"):
-        with pytest.raises(ChannelError, match=r"need a static.*none"):
-            joint_angles(markers, None, given_set)
+EXCHANGED = {f"{side}{end}": f"{other}{end}" for side, other in ("LR", "RL") for end in PIG_ENDS}
 
 
-def test_a_mirrored_trial_is_refused():
+@pytest.mark.parametrize(
+    ("markers", "error", "words"),
+    [
+        (markers_of(known_angles(60), PLUG_IN_GAIT, MIRRORED), ShapeError, r"walk\.c3d.*left.*right"),
+        (renamed(WALK, EXCHANGED), ShapeError, "left and right are exchanged"),
+        (without(WALK, "RTHI"), ChannelError, r"thigh_r.*3 points.*walk\.c3d.*RKNE.*no RTHI"),
+    ],
+    ids=["mirrored", "sides exchanged", "a marker less"],
+)
+def test_markers_that_do_not_fit_the_static_trial_are_refused(markers, error, words):
     calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
-    with pytest.raises(ShapeError, match=r"walk\.c3d.*left.*right"):
-        motion(markers_of(known_angles(60), PLUG_IN_GAIT, MIRRORED), calibration)
-
-
-def test_a_trial_whose_sides_are_exchanged_is_refused():
-    markers = markers_of(known_angles(60), PLUG_IN_GAIT)
-    exchanged = renamed(markers, {label: {"L": "R", "R": "L"}.get(label[0], label[0]) + label[1:]
-                                  for label in {name[:-2] for name in markers.names} - {"SACR"}})  # fmt: skip
-    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
-    with pytest.raises(ShapeError, match="left and right are exchanged"):
-        motion(exchanged, calibration)
-
-
-def test_a_marker_that_the_trial_lacks_is_named():
-    markers = without(markers_of(known_angles(60), PLUG_IN_GAIT), "RTHI")
-    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
-    with pytest.raises(ChannelError, match=r"thigh_r.*3 points.*walk\.c3d.*RKNE.*no RTHI"):
+    with pytest.raises(error, match=words):
         motion(markers, calibration)
 
 
-def test_labels_of_no_set_are_refused():
-    markers = renamed(markers_of(known_angles(60), PLUG_IN_GAIT), {"RTHI": "Q1", "LKNE": "Q2"})
-    with pytest.raises(ChannelError, match=r"plug_in_gait.*LKNE, RTHI"):
-        joint_angles(markers, markers, None, MEASURES)
+STRANGE = renamed(WALK, {"RTHI": "Q1", "LKNE": "Q2"})
+ANGLES = moved_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL)).angles
 
 
-def test_markers_of_another_set_than_the_given_one_are_refused():
-    static = static_of(PLUG_IN_GAIT)
-    with pytest.raises(ChannelError, match=r"gait2354; static\.c3d.*no L\.ASIS.*1"):
-        joint_angles(static, static, "gait2354", MEASURES)
-
-
-def test_angles_are_no_markers():
-    angles = joint_angles(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL))
-    with pytest.raises(ChannelError, match=r"<marker>\.x.*static\.c3d has pelvis_tilt"):
-        joint_angles(angles, Recording(angles.time, angles.values, angles.channels, source=static_of(RAJAGOPAL).source))
+@pytest.mark.parametrize(
+    ("markers", "static", "given_set", "words"),
+    [
+        (WALK, None, None, r"need a static.*none"),
+        (WALK, None, "rajagopal", r"need a static.*none"),
+        (STRANGE, STRANGE, None, r"plug_in_gait.*LKNE, RTHI"),
+        (static_of(PLUG_IN_GAIT), static_of(PLUG_IN_GAIT), "gait2354", r"gait2354; static\.c3d.*no L\.ASIS.*1"),
+        (
+            ANGLES,
+            replace(ANGLES, source=static_of(RAJAGOPAL).source),
+            None,
+            r"<marker>\.x.*static\.c3d has pelvis_tilt",
+        ),
+    ],
+    ids=["no static trial", "nor with a set", "labels of no set", "markers of another set", "angles"],
+)
+def test_without_the_markers_of_one_set_in_both_trials_a_body_is_not_followed(markers, static, given_set, words):
+    with pytest.raises(ChannelError, match=words):
+        moved_body(markers, static, given_set, MEASURES)
 
 
 @pytest.fixture(scope="module")
@@ -235,13 +235,13 @@ def person(gait_data):
         path = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
         static = read_trial(path, reader=reader)
         walk = read_trial(gait_data / "young_straight_and_turn/HC030A/straight/HC030A05.c3d", reader=reader)
-        return static, walk, read_body_measures(path)
+        calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
+        return static, walk, calibration
 
 
 def test_a_real_walk_has_the_angles_that_the_laboratory_computed(person):
     """Plug-in Gait's own angles stand in the file; after the difference of the static trial, sagittal rms <= 2 deg."""
-    static, walk, measures = person
-    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    static, walk, calibration = person
     moving, still = (motion(trial.stream("markers"), calibration).angles for trial in (walk, static))
     theirs, theirs_still = walk.stream("kinematics"), static.stream("kinematics")
     for side in "rl":
@@ -255,8 +255,7 @@ def test_a_real_walk_has_the_angles_that_the_laboratory_computed(person):
 
 def test_the_pelvis_of_a_real_walk_has_the_signs_of_the_package(person):
     """Tilt backwards is positive where Plug-in Gait has forwards; list is right side down, its left obliquity."""
-    static, walk, measures = person
-    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    _, walk, calibration = person
     found, theirs = motion(walk.stream("markers"), calibration, (0, 1, 0)).angles, walk.stream("kinematics")
     for ours, label, sign in (("pelvis_tilt", "RPelvisAngles.x", -1), ("pelvis_list", "LPelvisAngles.y", 1),
                               ("pelvis_rotation", "RPelvisAngles.z", 1)):  # fmt: skip
@@ -265,20 +264,18 @@ def test_the_pelvis_of_a_real_walk_has_the_signs_of_the_package(person):
 
 def test_a_real_walk_in_another_laboratory_s_frame_has_the_same_angles(person):
     """y up in place of z, the walkway askew by 37 deg, the origin elsewhere; neither up nor forward is given."""
-    static, walk, measures = person
+    _, walk, calibration = person
     turned = Rotation.from_euler("xy", [-90, 37], degrees=True).as_matrix()
     markers = walk.stream("markers")
     places = markers.values.reshape(len(markers.time), -1, 3) @ turned.T + np.array([0.3, -0.2, 1.0])
     elsewhere = markers.with_values(places.reshape(markers.values.shape))
-    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
     here, there = (motion(one, calibration).angles for one in (markers, elsewhere))
     for name in here.names[:-3]:
         np.testing.assert_allclose(there[name], here[name], atol=1e-6, err_msg=name)
 
 
 def test_the_feet_of_a_real_walk_have_the_signs_of_the_package(person):
-    static, walk, measures = person
-    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    _, walk, calibration = person
     found, theirs = motion(walk.stream("markers"), calibration, (0, 1, 0)).angles, walk.stream("kinematics")
     for side in "rl":
         for ours, label in ((f"foot_progression_angle_{side}", "FootProgressAngles.z"),
@@ -289,9 +286,8 @@ def test_the_feet_of_a_real_walk_have_the_signs_of_the_package(person):
 
 
 def test_a_real_static_trial_of_another_person_is_said(person, gait_data):
-    static, walk, measures = person
+    _, walk, own = person
     path = gait_data / "young_static" / "HC031A" / "HC031A01.c3d"
-    own = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
     other = calibrated(read_trial(path).stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
     kinds = ("another shape", "exchanged markers", "broken segment")
     assert not [one for one in motion(walk.stream("markers"), own).findings if one.kind in kinds]
@@ -337,7 +333,7 @@ def test_hip_rotation_has_opensim_s_sign_on_both_sides(gait_data):
         some = (markers.time >= start) & (markers.time <= end)
         return replace(markers, time=markers.time[some], values=markers.values[some], suspect=None)
 
-    found = joint_angles(between(1.06, 3.23), between(1.995, 2.015), "rajagopal", joints="free")
+    found = moved_body(between(1.06, 3.23), between(1.995, 2.015), "rajagopal", joints="free").angles
     for side in "lr":
         theirs = np.interp(found.time, angles.time, angles[f"hip_rotation_{side}"])
         assert np.corrcoef(found[f"hip_rotation_{side}"], theirs)[0, 1] > 0.4

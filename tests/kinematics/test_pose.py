@@ -12,10 +12,10 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.pose import (
-    DavisHip,
     Pose,
     chord_centre,
     clinical_angles,
+    davis_hip,
     fitted_pose,
     harrington_hip,
     hip_of_spines,
@@ -237,8 +237,8 @@ def test_hips_are_where_a_laboratory_s_own_model_has_them(gait_data, person):
     assert width is not None
     assert measures.marker_diameter_m is not None
     for side in "lr":
-        davis = DavisHip(width, (legs["l"] + legs["r"]) / 2, legs[side], measures.marker_diameter_m / 2)
-        for name, ours in (("HJCHarrington", harrington_hip(width, depth, side)), ("HJC", davis.centre(side))):
+        davis = davis_hip(width, (legs["l"] + legs["r"]) / 2, legs[side], measures.marker_diameter_m / 2, side)
+        for name, ours in (("HJCHarrington", harrington_hip(width, depth, side)), ("HJC", davis)):
             theirs = np.einsum("fji,fj->fi", axes, place[f"{side.upper()}{name}"] - middle)
             np.testing.assert_allclose(ours, np.median(theirs, axis=0), atol=1e-3, err_msg=f"{side} {name}")
 

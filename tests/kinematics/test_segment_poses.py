@@ -23,7 +23,7 @@ from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
-from gaitdisc.kinematics.motion import Motion, joint_angles, motion, segment_angles
+from gaitdisc.kinematics.motion import Motion, motion, moved_body, segment_angles
 from gaitdisc.kinematics.pose import SEGMENTS, Pose
 from gaitdisc.kinematics.segment_poses import (
     carried_joint,
@@ -197,7 +197,7 @@ def test_a_planar_body_agrees_with_opensim_s_planar_model(gait_data):
     files = (folder / "ExperimentalData" / "subject01_static.trc", folder / "ExperimentalData" / "subject01_walk.trc")
     static, walk = (read_trial(file).stream("markers") for file in files)
     theirs = read_trial(folder / "IK" / "subject01_walk_IK.mot").stream("kinematics")
-    ours = joint_angles(walk, static, joints="planar")
+    ours = moved_body(walk, static, joints="planar").angles
     for name in ("pelvis_tilt", *(f"{flexion}_{side}" for flexion in FLEXIONS for side in "rl")):
         apart = ours[name] - np.interp(walk.time, theirs.time, theirs[name])
         assert apart.std() <= 3.0, f"{name} {apart.std():.2f} deg"

@@ -1,16 +1,22 @@
+"""Segments in motion and the wrenches that move them: pendulums, a top, a standing leg, a mass that is carried."""
+
 import numpy as np
 import pytest
 import swinging_links as links
 from scipy.spatial.transform import Rotation
 
+from gaitdisc.errors import SamplingError, ShapeError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import (
     GRAVITY,
     RigidBody,
     SegmentMotion,
     joint_wrenches,
+    moment_per_foot_kg,
+    nearest_rotations,
     needed_wrench,
     segment_motion,
+    segment_motions,
     smoothed_pose,
 )
 from gaitdisc.kinetics.platform import Wrench
@@ -79,3 +85,91 @@ def test_a_standing_leg_has_the_moments_of_statics():
         assert wrench.about(joint)[0] == pytest.approx(by_hand, abs=1e-12)
     # the force passes 7 cm ahead of the ankle: the calf holds, which is towards plantarflexion, negative about z
     assert carried[0].about(np.array(places["foot"]))[0, 2] < -20
+
+
+FAST = np.arange(400) / 200
+AXIS = np.array([2.0, -1.0, 2.0]) / 3
+
+
+def turning():
+    """About a fixed axis by 0.8 sin(4 t), its origin on a circle."""
+    angle = 0.8 * np.sin(4 * FAST)
+    rotation = Rotation.from_rotvec(angle[:, None] * AXIS).as_matrix()
+    return Pose(np.stack([np.cos(3 * FAST), np.sin(3 * FAST), FAST], 1), rotation)
+
+
+def test_derivatives_of_a_known_motion():
+    moving = segment_motion(turning(), 200.0)
+    inner = slice(2, -2)
+    assert moving.angular_velocity[inner] == pytest.approx((3.2 * np.cos(4 * FAST))[inner, None] * AXIS, abs=1e-5)
+    assert moving.angular_acceleration[inner] == pytest.approx((-12.8 * np.sin(4 * FAST))[inner, None] * AXIS, abs=1e-3)
+    assert moving.acceleration[inner] == pytest.approx(-9 * (turning().origin * [1, 1, 0])[inner], abs=1e-5)
+    assert np.isnan(moving.acceleration[:2]).all() and np.isnan(moving.angular_velocity[-2:]).all()
+
+
+def test_a_point_of_the_segment_accelerates_as_its_path_does():
+    pose, point = turning(), np.array([0.1, -0.3, 0.05])
+    path = pose.to_laboratory(point)
+    expected = segment_motion(Pose(path, pose.rotation), 200.0).acceleration
+    found = segment_motion(pose, 200.0).acceleration_of(point)
+    assert found[2:-2] == pytest.approx(expected[2:-2], abs=2e-4)
+
+
+def test_smoothing_keeps_slow_turns_and_takes_tremor_away():
+    slow = turning()
+    tremor = Rotation.from_rotvec(np.outer(0.02 * np.sin(2 * np.pi * 30 * FAST), [0, 0, 1])).as_matrix()
+    smooth = smoothed_pose(Pose(slow.origin, slow.rotation @ tremor), FAST, 6.0)
+    inner = slice(60, -60)
+    apart = Rotation.from_matrix(smooth.rotation[inner]).inv() * Rotation.from_matrix(slow.rotation[inner])
+    assert apart.magnitude().max() < 2e-3
+    assert np.abs(np.swapaxes(smooth.rotation, 1, 2) @ smooth.rotation - np.eye(3)).max() < 1e-12
+
+
+def test_a_body_that_falls_accelerates_by_g():
+    origin = np.outer(-0.5 * 9.81 * FAST**2, [0.0, 1.0, 0.0])
+    poses = {"foot_r": Pose(origin, np.tile(np.eye(3), (400, 1, 1)))}
+    moving = segment_motions(poses, FAST, np.inf, ["foot_r", "foot_l"])
+    assert list(moving) == ["foot_r"]
+    assert moving["foot_r"].acceleration[2:-2, 1] == pytest.approx(-9.81, rel=1e-6)
+
+
+def test_a_mirror_image_is_made_a_rotation():
+    assert np.linalg.det(nearest_rotations(np.diag([1.0, 1.0, -0.1])[None]))[0] == pytest.approx(1.0)
+
+
+def test_a_long_gap_stays_unknown():
+    origin = np.array(turning().origin)
+    origin[100:200] = np.nan
+    moving = segment_motion(smoothed_pose(Pose(origin, turning().rotation), FAST, 6.0), 200.0)
+    assert np.isnan(moving.acceleration[100:200]).all()
+    assert np.isfinite(moving.acceleration[10:90]).all()
+
+
+def test_frames_that_do_not_fit_are_refused():
+    with pytest.raises(ShapeError, match=r"foot_r.*400 frames.*399 times"):
+        segment_motions({"foot_r": turning()}, FAST[:-1], np.inf, ["foot_r"])
+    with pytest.raises(SamplingError, match="5 samples"):
+        segment_motion(Pose(np.zeros((3, 3)), np.tile(np.eye(3), (3, 1, 1))), 100.0)
+
+
+ABOVE = np.array([0.0, 0.0, 1.0])
+
+
+def test_a_mass_swung_on_a_circle_needs_the_moment_of_a_pendulum():
+    """1 kg at radius r: r^2 times the angular acceleration, and r g sin of the angle from hanging."""
+    rate, radius = 200.0, 0.4
+    t = np.arange(400) / rate
+    angle = 0.5 * np.sin(2 * np.pi * t)
+    middle = radius * np.column_stack([np.sin(angle), 0 * t, -np.cos(angle)])
+    ahead = np.column_stack([np.cos(angle), 0 * t, np.sin(angle)]) * 0.1
+    found = moment_per_foot_kg(np.zeros((400, 3)), middle - ahead, middle + ahead, ABOVE, rate)
+    speedup = -0.5 * (2 * np.pi) ** 2 * np.sin(2 * np.pi * t)
+    true = radius**2 * speedup + 9.80665 * radius * np.sin(angle)
+    inner = slice(5, -5)
+    assert found[inner] == pytest.approx(true[inner], abs=0.01)
+
+
+def test_it_does_not_matter_which_way_the_person_walks():
+    still = np.zeros((9, 3))
+    turned = [moment_per_foot_kg(still, still - one, still + 3 * one, ABOVE, 100.0)[4] for one in 0.04 * np.eye(3)[:2]]
+    assert turned[0] == pytest.approx(turned[1])

@@ -8,7 +8,7 @@ from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Filters
-from gaitdisc.kinematics.motion import joint_angles
+from gaitdisc.kinematics.motion import moved_body
 from gaitdisc.kinematics.pose import clinical_angles, rotation_of
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
@@ -282,9 +282,9 @@ def test_tilt_and_list_of_real_turns_are_those_of_the_markers(gait_data):
     for name, file in (("HC030A", "HC030A22.c3d"), ("HC002D", "HC002D25.c3d")):
         static = next(iter([*(gait_data / "young_static" / name).glob("*"), *(folder / name / "static").glob("*")]))
         walk = read_trial(folder / name / "turn" / file)
-        ours = joint_angles(
+        ours = moved_body(
             walk.stream("markers"), read_trial(static).stream("markers"), measures=read_body_measures(static)
-        )
+        ).angles
         found = with_pelvis_and_foot(walk.stream("kinematics"))
         for angle in ("pelvis_tilt", "pelvis_list"):
             assert np.sqrt(np.nanmean((found[angle] - ours[angle]) ** 2)) < 1.0, (name, angle)
