@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -17,10 +17,10 @@ from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.process import Walk
 from gaitdisc.results.kind import Kind
-from gaitdisc.results.over_participants import OVER, TESTS, OverParticipants, PairTests
-from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ParticipantResponse, ResponseRun
+from gaitdisc.results.over_participants import OVER, TESTS
+from gaitdisc.results.participant_response import QUANTITY, RESPONSE, ParticipantResponse, ResponseRun
 from gaitdisc.results.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
-from gaitdisc.results.provenance import Provenance, Refusal, made_now
+from gaitdisc.results.provenance import Refusal, made_now
 from gaitdisc.results.study_run import created_before, save_run
 from gaitdisc.results.unit_folder import damaged_units, unit_name
 from gaitdisc.write_lock import write_lock
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from gaitdisc.response.fit_response import ResponseSettings
 
 Progress = Callable[[float], None]
-SHARE_OF_PROCESSING = 0.1
+SHARE_OF_PROCESSING = 0.1  # of a participant's work
 SECTION = "4.2, Eqs. 4.1-4.5"
 POOLED = "none: cycles pooled over trials"
 
@@ -101,7 +101,8 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
     if not errors:
         progress(SHARE_OF_PROCESSING)
         try:
-            response = _fitted(study, participant, walks, partial(_after_processing, progress))
+            rest = 1 - SHARE_OF_PROCESSING
+            response = _fitted(study, participant, walks, lambda share: progress(SHARE_OF_PROCESSING + rest * share))
         except GaitdiscError as error:
             errors[""] = error
         else:
@@ -119,10 +120,6 @@ def response_settings(study: Study) -> ResponseSettings:
 
     training = TrainingSettings(seed=study.models.seed)
     return ResponseSettings(study.models.outputs, study.held_out.seconds, study.held_out.share or 0.0, training)
-
-
-def _after_processing(progress: Progress, share: float) -> None:
-    progress(SHARE_OF_PROCESSING + (1 - SHARE_OF_PROCESSING) * share)
 
 
 def _fitted(
@@ -148,9 +145,9 @@ def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> 
     words = refused.walks if refused else tuple(keys)
     walks = [WALK.kept(_walk_folder(folder, participant, word), keys[word]) for word in words if word in keys]
     whole = tuple(walk for walk in walks if walk is not None)
-    return (
-        ParticipantUnit(whole, response, refused.refusals if refused else (), key) if len(whole) == len(words) else None
-    )
+    if len(whole) < len(words):
+        return None
+    return ParticipantUnit(whole, response, refused.refusals if refused else (), key)
 
 
 def _loaded(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
@@ -186,13 +183,21 @@ def run_study(
         fitted = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
         stored = (QUANTITY.kept(folder / "quantities" / name, key) for name, key in fitted)
         quantities = tuple(quantity for quantity in stored if quantity is not None)
-        tests, over = _compared(study, responses, quantities)
+        settings, tests, over = public_settings(study), (), ()
+        if study.conditions.device is not None:
+            from gaitdisc.response.over_participants import compare_models, compare_participants
+
+            settings |= {"fits": asdict(response_settings(study))}
+            tests = (compare_models(responses),)
+            over = (compare_participants(responses, quantities, study.models.seed),)
+        files = {name: sha for one in units for walk in (*one.walks, *one.cycles) for name, sha in walk.files.items()}
+        section = POOLED if study.conditions.device is None else SECTION
         run = ResponseRun(
             public_title(study),
             study.conditions.nominal,
             study.conditions.device or "",
             tuple(refusal for unit in units for refusal in unit.refusals),
-            _provenance(study, units),
+            made_now(settings, study.models.seed, files, section),
             {
                 WALK.file: tuple(walk for unit in units for walk in unit.walks),
                 RESPONSE.file: responses,
@@ -207,22 +212,3 @@ def run_study(
         run = created_before(run, folder)
         save_run(run, folder)
     return run
-
-
-def _compared(
-    study: Study, responses: tuple[ParticipantResponse, ...], quantities: tuple[DataQuantity, ...]
-) -> tuple[tuple[PairTests, ...], tuple[OverParticipants, ...]]:
-    """What the participants say together of the models; nothing where the study compares no device."""
-    if study.conditions.device is None:
-        return (), ()
-    from gaitdisc.response.over_participants import compare_models, compare_participants
-
-    return (compare_models(responses),), (compare_participants(responses, quantities, study.models.seed),)
-
-
-def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
-    files = {name: sha for unit in units for walk in (*unit.walks, *unit.cycles) for name, sha in walk.files.items()}
-    if study.conditions.device is None:
-        return made_now(public_settings(study), study.models.seed, files, POOLED)
-    settings = {**public_settings(study), "fits": asdict(response_settings(study))}
-    return made_now(settings, study.models.seed, files, SECTION)

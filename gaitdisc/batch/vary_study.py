@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 import pandas as pd
 
@@ -21,17 +23,17 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.recording import Trajectory
-from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
-from gaitdisc.response.modalities import (
+from gaitdisc.response.fit_response import fit_response, report_share
+from gaitdisc.response.over_participants import compare_participants
+from gaitdisc.response.vary import (
     LENGTHS_S,
     Setting,
     compare_variants,
+    first_share,
     fit_data_quantity,
     fit_without,
     settings_around,
-    shortened,
 )
-from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results.over_participants import OVER
 from gaitdisc.results.participant_response import QUANTITY, RESPONSE, DataQuantity, ResponseRun
 from gaitdisc.results.provenance import Refusal
@@ -40,6 +42,7 @@ from gaitdisc.results.variants import QUESTIONS, VARIANT_COLUMNS, VARIANTS, Vari
 from gaitdisc.write_lock import write_lock
 
 Progress = Callable[[float], None]
+Unit = TypeVar("Unit")
 
 
 def vary_study(
@@ -53,26 +56,53 @@ def vary_study(
     """
     if question not in QUESTIONS:
         raise SchemaError(f"questions are {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
+    compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
+    with _varied(study, folder, compute, workers, progress) as (run, people):
+        lengths = [response.held_out_s for response in run.responses] or [0.0]
+        tests = compare_variants(people, question)
+        held_out_s = (min(lengths), max(lengths))
+        varied = VariantRun(run.title, run.exo, question, people, tests, run.refusals, held_out_s, run.renewed)
+        save_variant_run(varied, folder / question)
+    return varied
+
+
+def ablate_study(
+    study: Study,
+    folder: Path,
+    lengths_s: Sequence[float] = LENGTHS_S,
+    part: str = "first",
+    workers: Workers | None = None,
+    progress: StudyProgress = lambda *_: None,
+) -> ResponseRun:
+    """Fit every participant's models to less and less data; the run itself is made first where it is not there.
+
+    lengths_s: of the training part [s]; its whole length is always added. Who had to be refused is in `refusals`.
+    """
+    compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
+    with _varied(study, folder, compute, workers, progress) as (run, quantities):
+        over = compare_participants(run.responses, quantities, study.models.seed)
+        ablated = run.with_units(QUANTITY, quantities).with_units(OVER, (over,))
+        save_run(ablated, folder)
+    return ablated
+
+
+@contextmanager
+def _varied(
+    study: Study,
+    folder: Path,
+    compute: Callable[..., Unit | Refusal],
+    workers: Workers | None,
+    progress: StudyProgress,
+) -> Iterator[tuple[ResponseRun, tuple[Unit, ...]]]:
+    """Run of a study with those who are refused now, and what is computed of each participant; the run is locked."""
     workers = workers or Workers()
     run = run_study(study, folder, workers)
     with write_lock(folder, run=True):
         people = [study.participant(response.participant) for response in run.responses]
-        compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
         found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
-        computed = tuple(each for each in found if isinstance(each, Variants))
-        lengths = [response.held_out_s for response in run.responses] or [0.0]
-        varied = VariantRun(
-            run.title,
-            run.exo,
-            question,
-            computed,
-            compare_variants(computed, question),
-            (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
-            (min(lengths), max(lengths)),
-            run.renewed,
-        )
-        save_variant_run(varied, folder / question)
-    return varied
+        refused = tuple(each for each in found if isinstance(each, Refusal))
+        run = replace(run, refusals=(*run.refusals, *refused))
+        yield run, tuple(each for each in found if not isinstance(each, Refusal))
 
 
 def computed_variants(
@@ -86,22 +116,51 @@ def computed_variants(
     stored = VARIANTS.kept(place, key)
     if stored is not None:
         return stored
-    found = (_modalities if question == "modalities" else _sensitivity)(study, participant, progress)
+    if question == "sensitivity":
+        found = _sensitivity(study, participant, progress)
+    else:
+        table = _fitted(study, participant, partial(fit_without, settings=response_settings(study), progress=progress))
+        found = table if isinstance(table, Refusal) else Variants(participant.id, question, table, {})
     if isinstance(found, Variants):
         VARIANTS.save(found, place, key)
     return found
 
 
-def _modalities(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
+def computed_quantity(
+    study: Study,
+    participant: Participant,
+    folder: Path,
+    lengths_s: Sequence[float],
+    part: str,
+    progress: Progress,
+) -> DataQuantity | Refusal:
+    """Compute what less data (lengths [s]) gives a participant, or load what rests on the same files and settings."""
+    key = response_key(unit_keys(study, participant))
+    place = folder / "quantities" / participant.id
+    stored = QUANTITY.kept(place, key)
+    if stored is not None and stored.part == part:
+        there = {round(float(length), 6) for length in stored.table["length_s"]} | set(stored.left_away)
+        if {round(length, 6) for length in lengths_s} <= there:
+            return stored
+    whole = RESPONSE.kept(folder / "responses" / participant.id, key)
+    fit = partial(fit_data_quantity, settings=response_settings(study), lengths_s=lengths_s, part=part, whole=whole)
+    quantity = _fitted(study, participant, partial(fit, progress=progress))
+    if isinstance(quantity, Refusal):
+        return quantity
+    QUANTITY.save(quantity, place, key)
+    return QUANTITY.kept(place, key) or quantity
+
+
+def _fitted(study: Study, participant: Participant, fit: Callable[[Trajectory, Trajectory], Unit]) -> Unit | Refusal:
+    """What is fitted to both walks of a participant, or why it cannot be."""
     walks, refusals = processed_walks(study, participant)
     if refusals:
         return refusals[0]
     nominal, exo = (walks[word].trajectory for word in study.conditions.both)
     try:
-        table = fit_without(nominal, exo, response_settings(study), progress)
+        return fit(nominal, exo)
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(error))
-    return Variants(participant.id, "modalities", table, {})
 
 
 def _sensitivity(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
@@ -117,7 +176,7 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
     settings = _settings(study)
     for number, setting in enumerate(settings):
         try:
-            share = partial(lambda before, done: progress((before + done) / len(settings)), number)
+            share = partial(report_share, progress, number, len(settings))
             tables.append(_under(study, trials, setting, share).assign(variant=setting.name))
         except GaitdiscError as error:
             left_away[setting.name] = str(public.error(error))
@@ -134,76 +193,11 @@ def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, progr
     nominal, exo = (trials[word].processed(filtered) for word in study.conditions.both)
     fits = response_settings(study)
     null = filter_null_of(exo, filtered.filters)
-    less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))
-    found = fit_response(less_nominal, less_exo, fits, null, progress).r2
+    less = [first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo)]
+    found = fit_response(less[0], less[1], fits, null, progress).r2
     return found[found["walk"] == "exo"]
-
-
-def _first_share(walk: Trajectory, fits: ResponseSettings, share: float) -> Trajectory:
-    """Walk of whose training part the first so much is used."""
-    if share == 1:
-        return walk
-    return shortened(walk, fits, share * len(held_out_part(walk, fits)[0].time) / walk.rate_hz, "first")
 
 
 def _settings(study: Study) -> tuple[Setting, ...]:
     filters = study.filters
     return settings_around(filters.kinematics_hz, filters.emg_lowpass_hz, bool(study.models.emg))
-
-
-def ablate_study(
-    study: Study,
-    folder: Path,
-    lengths_s: Sequence[float] = LENGTHS_S,
-    part: str = "first",
-    workers: Workers | None = None,
-    progress: StudyProgress = lambda *_: None,
-) -> ResponseRun:
-    """Fit every participant's models to less and less data; the run itself is made first where it is not there.
-
-    lengths_s: of the training part [s]; its whole length is always added. Who had to be refused is in `refusals`.
-    """
-    workers = workers or Workers()
-    run = run_study(study, folder, workers)
-    with write_lock(folder, run=True):
-        people = [study.participant(response.participant) for response in run.responses]
-        compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
-        found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
-        quantities = tuple(each for each in found if isinstance(each, DataQuantity))
-        run = replace(
-            run.with_units(QUANTITY, quantities).with_units(
-                OVER, (compare_participants(run.responses, quantities, study.models.seed),)
-            ),
-            refusals=(*run.refusals, *(each for each in found if isinstance(each, Refusal))),
-        )
-        save_run(run, folder)
-    return run
-
-
-def computed_quantity(
-    study: Study,
-    participant: Participant,
-    folder: Path,
-    lengths_s: Sequence[float],
-    part: str,
-    progress: Callable[[float], None],
-) -> DataQuantity | Refusal:
-    """Compute what less data (lengths [s]) gives a participant, or load what rests on the same files and settings."""
-    key = response_key(unit_keys(study, participant))
-    place = folder / "quantities" / participant.id
-    stored = QUANTITY.kept(place, key)
-    if stored is not None and stored.part == part:
-        there = {round(float(length), 6) for length in stored.table["length_s"]} | set(stored.left_away)
-        if {round(length, 6) for length in lengths_s} <= there:
-            return stored
-    walks, refusals = processed_walks(study, participant)
-    if refusals:
-        return refusals[0]
-    nominal, exo = (walks[word].trajectory for word in study.conditions.both)
-    try:
-        whole = RESPONSE.kept(folder / "responses" / participant.id, key)
-        quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress, whole)
-    except GaitdiscError as error:
-        return Refusal(participant.id, "", str(error))
-    QUANTITY.save(quantity, place, key)
-    return QUANTITY.kept(place, key) or quantity

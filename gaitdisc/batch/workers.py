@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -209,14 +209,10 @@ def _reason(error: BaseException, jobs: int) -> str:
     signals = re.search(r"\{(\w+)", str(error))
     what = "ran out of memory" if isinstance(error, MemoryError) else f"was killed ({signals[1] if signals else '?'})"
     fewer = f"run it with --jobs {jobs - 1}, or on" if jobs > 1 else "use"
+    memory = "an unknown amount"
+    with suppress(AttributeError, OSError, ValueError):
+        memory = f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB"
     return (
         f"The process of a participant {what} {TRIES} times, probably because memory is short (this machine has "
-        f"{_memory()}). Results of the others are kept; {fewer} a machine with more memory."
+        f"{memory}). Results of the others are kept; {fewer} a machine with more memory."
     )
-
-
-def _memory() -> str:
-    try:
-        return f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB"
-    except (AttributeError, OSError, ValueError):
-        return "an unknown amount"

@@ -22,7 +22,7 @@ def ablate(
     """Fit the models to less and less data, to find how much is enough."""
     from gaitdisc.batch.vary_study import ablate_study
     from gaitdisc.batch.workers import Workers
-    from gaitdisc.response.modalities import LENGTHS_S
+    from gaitdisc.response.vary import LENGTHS_S
 
     loaded, folder = claimed(study, out)
     lengths, workers = tuple(length) if length else LENGTHS_S, Workers(jobs, cluster)

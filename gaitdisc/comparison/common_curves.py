@@ -45,15 +45,20 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     """
     findings: list[Finding] = []
     shared = _shared(walks, wanted, findings)
-    if not wanted:
-        shared = _sound(shared, walks, findings)
+    spoiled = {f.channel: f.kind for walk in walks for f in walk.findings if f.kind in SPOILED and f.severity != "note"}
+    named = [f"{c.name} ({spoiled[c.name]})" for c in shared if c.name in spoiled and not wanted]
+    if named:
+        what = f"{', '.join(named)}: excluded; name one with --channel to compare it nevertheless"
+        findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these channels"))
+        shared = [c for c in shared if c.name not in spoiled]
     by_channel = {c.name: _near_each_other([_whole(walk, c.name) for walk in walks], c) for c in shared}
     shared = [c for c in shared if _usable(c, by_channel[c.name], walks, findings)]
     shared = _moving(shared, by_channel, walks, findings)
     if not shared:
         raise ChannelError(
             "walks can be compared only in channels that all have, in the same unit, and that vary",
-            f"{' and '.join(_name(walk) for walk in walks[:2])} have {_counts(walks)} channels, none of that kind"
+            f"{' and '.join(map(walk_name, walks[:2]))} have "
+            f"{' and '.join(str(len(walk.channels)) for walk in walks[:2])} channels, none of that kind"
             + (f": {findings[0].what}" if findings else ""),
             "Map the labels of both files to the same names in a study's [channels], and state the units.",
         )
@@ -66,7 +71,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
                 f"{most - fewest} of {most} strides are not used: in them at least one of the {len(shared)} "
                 "channels is missing"
             )
-            findings.append(Finding("note", "strides", _name(walk), what, "the number of strides only"))
+            findings.append(Finding("note", "strides", walk_name(walk), what, "the number of strides only"))
         curves.append(np.stack([part[:fewest] for part in parts], axis=2))
     return CommonCurves(tuple(shared), tuple(curves), tuple(findings))
 
@@ -77,14 +82,19 @@ def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[
     for name in wanted:
         if name not in everywhere:
             nearest = nearest_word(name, everywhere)
-            lacking = [_name(walk) for walk, unit in zip(walks, units, strict=True) if name not in unit]
+            lacking = [walk_name(walk) for walk, unit in zip(walks, units, strict=True) if name not in unit]
             raise ChannelError(
                 f"channel {name!r} must be in all walks to be compared",
                 f"{', '.join(lacking)} lack{'s' if len(lacking) == 1 else ''} it"
                 + (f"; the nearest that all have is {nearest!r}" if nearest else ""),
                 f"Choose one of: {', '.join(everywhere) or 'none'}.",
             )
-    _say_lacking(walks, units, findings)
+    everything = {name for unit in units for name in unit}
+    for walk, unit in zip(walks, units, strict=True):
+        absent = sorted(everything - set(unit))
+        if absent:
+            what = f"no {list_names(absent)}, although another walk has them"
+            findings.append(Finding("note", "not compared", walk_name(walk), what, "the comparison of these channels"))
     kept = []
     for channel in walks[0].channels:
         if channel.name not in everywhere or (wanted and channel.name not in wanted):
@@ -96,24 +106,6 @@ def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[
         else:
             kept.append(channel)
     return kept
-
-
-def _say_lacking(walks: Sequence[WalkSummary], units: list[dict[str, str]], findings: list[Finding]) -> None:
-    everything = {name for unit in units for name in unit}
-    for walk, unit in zip(walks, units, strict=True):
-        absent = sorted(everything - set(unit))
-        if absent:
-            what = f"no {list_names(absent)}, although another walk has them"
-            findings.append(Finding("note", "not compared", _name(walk), what, "the comparison of these channels"))
-
-
-def _sound(shared: list[Channel], walks: Sequence[WalkSummary], findings: list[Finding]) -> list[Channel]:
-    spoiled = {f.channel: f.kind for walk in walks for f in walk.findings if f.kind in SPOILED and f.severity != "note"}
-    named = [f"{c.name} ({spoiled[c.name]})" for c in shared if c.name in spoiled]
-    if named:
-        what = f"{', '.join(named)}: excluded; name one with --channel to compare it nevertheless"
-        findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these channels"))
-    return [c for c in shared if c.name not in spoiled]
 
 
 def _whole(walk: WalkSummary, name: str) -> NDArray[np.float64]:
@@ -138,7 +130,9 @@ def _usable(
     for part, walk in zip(parts, walks, strict=True):
         if len(part) <= LEAST_KEPT * len(walk.curves) and len(part) < len(walk.curves):
             what = f"{len(walk.curves) - len(part)} of {len(walk.curves)} strides have gaps and are excluded"
-            findings.append(Finding("warning", "gaps", _name(walk), what, "the comparison of this walk", channel.name))
+            findings.append(
+                Finding("warning", "gaps", walk_name(walk), what, "the comparison of this walk", channel.name)
+            )
             return False
     return all(len(part) for part in parts)
 
@@ -155,7 +149,7 @@ def _moving(
         size = max(float(np.abs(part).max()) for part in parts)
         if max(float(np.ptp(part)) for part in parts) <= STILL * max(size, 1.0):
             still.append(channel.name)
-        elif any(_same(parts, by_channel[other.name]) for other in kept):
+        elif any(_repeats(parts, by_channel[other.name]) for other in kept):
             twins.append(channel.name)
         else:
             kept.append(channel)
@@ -166,20 +160,18 @@ def _moving(
     return kept
 
 
-def _same(one: list[NDArray[np.float64]], other: list[NDArray[np.float64]]) -> bool:
-    return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6) for a, b in zip(one, other, strict=True))
+def _repeats(parts: list[NDArray[np.float64]], others: list[NDArray[np.float64]]) -> bool:
+    pairs = zip(parts, others, strict=True)
+    return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6) for a, b in pairs)
 
 
-def _name(walk: WalkSummary) -> str:
+def walk_name(walk: WalkSummary) -> str:
+    """Who walked, and how."""
     return " ".join(part for part in (walk.subject, walk.condition) if part)
 
 
 def _both(walks: Sequence[WalkSummary]) -> str:
-    return ", ".join(_name(walk) for walk in walks) if len(walks) == 2 else f"{len(walks)} walks"
-
-
-def _counts(walks: Sequence[WalkSummary]) -> str:
-    return " and ".join(str(len(walk.channels)) for walk in walks[:2])
+    return ", ".join(map(walk_name, walks)) if len(walks) == 2 else f"{len(walks)} walks"
 
 
 def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Alignment:

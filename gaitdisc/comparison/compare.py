@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.comparison.common_curves import CommonCurves, aligned, common_curves, common_shift
+from gaitdisc.comparison.common_curves import CommonCurves, aligned, common_curves, common_shift, walk_name
 from gaitdisc.errors import ComparisonError
-from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.recording import PERCENT
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignment, Exchange, Mismatch, Smallest
 from gaitdisc.results.pooled_cycles import WalkSummary
-from gaitdisc.results.provenance import Provenance, made_now
+from gaitdisc.results.provenance import made_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,
@@ -76,16 +77,38 @@ def compare_walks(
         default
     returns: its p speaks of these two recordings; that other people, or another day, would give the same it cannot say
     """
+    names = (walk_name(first), walk_name(second))
     common = common_curves((first, second), wanted)
-    means = [curves.mean(axis=0) for curves in common.curves]
-    alignment = common_shift(means[0], means[1])
+    one, other = common.curves
+    alignment = common_shift(one.mean(axis=0), other.mean(axis=0))
     if alignment.applied:
-        common = replace(common, curves=(*aligned(common.curves[:1], alignment.percent), common.curves[1]))
-    limits = _limits(common.channels, means[1], smallest)
-    compared = _of_strides(common, (_name(first), _name(second)), plan, alignment, limits)
-    made = _provenance(plan, smallest, {**first.files, **second.files})
-    findings = (*first.findings, *second.findings, *common.findings)
-    return _mismatch((_name(first), _name(second)), common.channels, compared, findings, made)
+        [one] = aligned([one], alignment.percent)
+    as_curve = len(one) < FEWEST_IN_EACH
+    fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
+    if len(other) < fewest:
+        raise ComparisonError(
+            f"{names[1]} is the reference, whose strides give the spread: it must have at least {fewest}",
+            f"it has {len(other)}, {names[0]} has {len(one)}",
+            "Record longer. Name a walk of a single stride, such as a periodic simulation, first.",
+        )
+    correlation, shortest = stride_correlation(other), len(other)
+    if not as_curve:
+        correlation, shortest = np.maximum(stride_correlation(one), correlation), min(len(one), shortest)
+    length = block_length(float(correlation.max()), shortest)
+    worth, blocks = block_worth(correlation, length), block_means(other, length)
+    if as_curve:
+        mean, count = one.mean(axis=0), 1
+        test = one_sample_test(blocks - mean, plan, worth)
+    else:
+        own = block_means(one, length)
+        mean, count = own.mean(axis=0), len(own)
+        test = two_sample_test(own, blocks, plan, worth)
+    means = (mean, blocks.mean(axis=0))
+    unit = "stride" if length == 1 else f"block of {length} strides"
+    exchange = _exchange(unit, (count, len(blocks)), (len(one), len(other)), test)
+    limits = _limits(common.channels, other.mean(axis=0), smallest)
+    compared = _Compared(test, exchange, means[1] - means[0], means, (_sd(one), _sd(other)), alignment, limits)
+    return _mismatch(names, common, compared, (first, second), _settings(plan, smallest))
 
 
 def compare_people(
@@ -124,10 +147,8 @@ def compare_people(
     middles = (means[0].mean(axis=0), means[1].mean(axis=0))
     limits = _limits(common.channels, middles[1], smallest)
     compared = _Compared(test, exchange, gap, middles, (sds[0], sds[1]), alignment, limits)
-    files = {name: sha for walk in walks for name, sha in walk.files.items()}
-    findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
     names = (pairs[0][0].condition, pairs[0][1].condition)
-    return _mismatch(names, common.channels, compared, findings, _provenance(plan, smallest, files))
+    return _mismatch(names, common, compared, walks, _settings(plan, smallest))
 
 
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
@@ -143,52 +164,9 @@ def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple
     return float(shifts[int(np.argmin(left))]), min(left)
 
 
-def _of_interest(findings: Sequence[Finding], channels: Sequence[Channel]) -> tuple[Finding, ...]:
-    """Return the findings about what was compared, each once, the severest first."""
-    names = {channel.name for channel in channels} | {""}
-    kept = dict.fromkeys(finding for finding in findings if finding.channel in names or finding.kind == "unit")
-    return tuple(sorted(kept, key=lambda finding: finding.rank))
-
-
 def _limits(channels: Sequence[Channel], curves: NDArray[np.float64], smallest: Smallest) -> NDArray[np.float64]:
     reaches = np.ptp(curves, axis=0)
     return np.array([smallest.of(c.unit, float(reach)) for c, reach in zip(channels, reaches, strict=True)])
-
-
-def _of_strides(
-    common: CommonCurves,
-    names: tuple[str, str],
-    plan: PermutationPlan,
-    alignment: Alignment,
-    limits: NDArray[np.float64],
-) -> _Compared:
-    first, second = common.curves
-    as_curve = len(first) < FEWEST_IN_EACH
-    fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
-    if len(second) < fewest:
-        raise ComparisonError(
-            f"{names[1]} is the reference, whose strides give the spread: it must have at least {fewest}",
-            f"it has {len(second)}, {names[0]} has {len(first)}",
-            "Record longer. Name a walk of a single stride, such as a periodic simulation, first.",
-        )
-    if as_curve:
-        correlation, shortest = stride_correlation(second), len(second)
-    else:
-        correlation = np.maximum(stride_correlation(first), stride_correlation(second))
-        shortest = min(len(first), len(second))
-    length = block_length(float(correlation.max()), shortest)
-    worth = block_worth(correlation, length)
-    units = [block_means(curves, length) for curves in common.curves]
-    curve = first.mean(axis=0)
-    if as_curve:
-        test = one_sample_test(units[1] - curve, plan, worth)
-        means, counts = (curve, units[1].mean(axis=0)), (1, len(units[1]))
-    else:
-        test = two_sample_test(units[0], units[1], plan, worth)
-        means, counts = (units[0].mean(axis=0), units[1].mean(axis=0)), (len(units[0]), len(units[1]))
-    unit = "stride" if length == 1 else f"block of {length} strides"
-    exchange = _exchange(unit, counts, (len(first), len(second)), test)
-    return _Compared(test, exchange, means[1] - means[0], means, (_sd(first), _sd(second)), alignment, limits)
 
 
 def _exchange(unit: str, counts: tuple[int, int], strides: tuple[int, int], test: ClusterTest) -> Exchange:
@@ -197,11 +175,16 @@ def _exchange(unit: str, counts: tuple[int, int], strides: tuple[int, int], test
 
 def _mismatch(
     names: tuple[str, str],
-    channels: tuple[Channel, ...],
+    common: CommonCurves,
     compared: _Compared,
-    findings: tuple[Finding, ...],
-    provenance: Provenance,
+    walks: Sequence[WalkSummary],
+    settings: Mapping[str, Any],
 ) -> Mismatch:
+    """Mismatch with the findings about what was compared, each once, the severest first."""
+    about = {channel.name for channel in common.channels} | {""}
+    findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
+    kept = dict.fromkeys(finding for finding in findings if finding.channel in about or finding.kind == "unit")
+    files = {name: sha256 for walk in walks for name, sha256 in walk.files.items()}
     half = compared.test.threshold * compared.test.standard_error
     curves = {
         "first": compared.means[0],
@@ -216,13 +199,13 @@ def _mismatch(
     return Mismatch(
         names[0],
         names[1],
-        channels,
+        common.channels,
         curves,
-        _regions(channels, compared),
-        _summary(channels, compared),
+        _regions(common.channels, compared),
+        _summary(common.channels, compared),
         compared.exchange,
-        _of_interest(findings, channels),
-        provenance,
+        tuple(sorted(kept, key=lambda finding: finding.rank)),
+        made_now(settings, settings["seed"], files, SECTION),
         compared.alignment,
     )
 
@@ -263,9 +246,8 @@ def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
     return pd.DataFrame(rows, columns=pd.Index(CHANNEL_COLUMNS))
 
 
-def _provenance(plan: PermutationPlan, smallest: Smallest, files: Mapping[str, str]) -> Provenance:
-    named = {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
-    return made_now({**asdict(plan), **named}, plan.seed, files, SECTION)
+def _settings(plan: PermutationPlan, smallest: Smallest) -> dict[str, Any]:
+    return asdict(plan) | {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
 
 
 def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -278,7 +260,3 @@ def _rms(values: NDArray[np.float64]) -> float:
 
 def _in_sd(gap: float, sd: float) -> float:
     return gap / sd if sd > 0 else float("nan")
-
-
-def _name(walk: WalkSummary) -> str:
-    return " ".join(part for part in (walk.subject, walk.condition) if part)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 WINDOW_S = 4.0
 _DRAWN = ("nominal", "augmented")
-_BANDED, _BOUNDS = "augmented", ("low", "high")
+_BANDED, _BAND = "augmented", ("augmented_low", "augmented_high")
 CONFIDENCE = 0.95
 MOST_VECTOR_POINTS = 6_000  # faint strides beyond this are drawn as pixels, or the page grows by megabytes
 
@@ -42,23 +42,14 @@ def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
     """Measured and predicted second derivatives of the last `WINDOW_S` seconds, a band where there is one."""
     held = response.held_out
     shown = held.time >= (held.time[-1] - WINDOW_S if len(held.time) else 0.0)
+    known = {"measured": held.measured, **{model: held.predicted[model] for model in _DRAWN if model in held.predicted}}
+    if _BANDED in held.bands:
+        known |= dict(zip(_BAND, held.bands[_BANDED], strict=True))
     tables = [
         pd.DataFrame(
-            {
-                "variable": variable,
-                "unit": response.units[column],
-                "time_s": held.time[shown],
-                "percent": held.phi[shown],
-                "measured": held.measured[shown, column],
-                **{m: held.predicted[m][shown, column] for m in _DRAWN if m in held.predicted},
-                **{
-                    f"{_BANDED}_{word}": held.bands[_BANDED][bound][shown, column]
-                    for bound, word in enumerate(_BOUNDS)
-                    if _BANDED in held.bands
-                },
-            }
-        )
-        for column, variable in enumerate(response.outputs)
+            {"variable": variable, "unit": unit, "time_s": held.time[shown], "percent": held.phi[shown]}
+        ).assign(**{name: values[shown, column] for name, values in known.items()})
+        for column, (variable, unit) in enumerate(zip(response.outputs, response.units, strict=True))
     ]
     return pd.concat(tables, ignore_index=True)
 
@@ -66,23 +57,31 @@ def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
 def _figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("variable", sort=False))
     drawn, cells = panels_for(len(groups), 2, 1.05, Room(left=0.82, across=0.82, top=0.5))
-    r2 = r2_by_variable(response)
+    r2 = r2_by_variable(response)[[f"{model}_on_exo" for model in _DRAWN]]
     for axes, (variable, rows) in zip(cells, groups, strict=True):
         _draw(axes, rows)
-        axes.set_title(_title(str(variable), r2), loc="left", color=SIDES[side_of(str(variable))].colour)
+        nominal, augmented = (float(r2[column].loc[str(variable)]) for column in r2)
+        known = np.isfinite(nominal) and np.isfinite(augmented)
+        title = label(str(variable)) + (f": R² {number(nominal)} → {number(augmented)}" if known else "")
+        axes.set_title(title, loc="left", color=SIDES[side_of(str(variable))].colour)
         up = upwards(str(variable))
         axes.set_ylabel(f"[{unit_text(str(rows['unit'].iloc[0]))}]" + (f"\n↑ {up}" if up else ""))
         axes.set_xlim(rows["time_s"].iloc[0], rows["time_s"].iloc[-1])
     for axes in cells[-2:]:
         axes.set_xlabel("time in the trial [s]")
     legend(drawn, cells[0].get_lines())
-    return Figure(name, _caption(response, groups[0][1]), _alt(response, len(groups), r2), numbers, drawn)
+    alt = (
+        f"Measured and predicted accelerations of {response.participant} in {counted(len(groups), 'panel')}; median R² "
+        f"{number(r2['nominal_on_exo'].median())} for Nominal and {number(r2['augmented_on_exo'].median())} "
+        f"for Augmented."
+    )
+    return Figure(name, _caption(response, groups[0][1]), alt, numbers, drawn)
 
 
 def _draw(axes: Axes, rows: pd.DataFrame) -> None:
     rows = _broken(rows)
     time, measured = rows["time_s"], rows["measured"]
-    low, high = (f"{_BANDED}_{word}" for word in _BOUNDS)
+    low, high = _BAND
     if low in rows:
         axes.fill_between(time, rows[low], rows[high], color=MODELS[_BANDED].colour, alpha=0.25, linewidth=0)
     axes.plot(time, measured, color=MEASURED.colour, linewidth=1.4, label="measured")
@@ -109,44 +108,20 @@ def _broken(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([rows, holes]).sort_values("time_s", kind="stable")
 
 
-def _title(variable: str, r2: pd.DataFrame) -> str:
-    nominal, augmented = (float(r2[f"{model}_on_exo"].loc[variable]) for model in _DRAWN)
-    if not (np.isfinite(nominal) and np.isfinite(augmented)):
-        return label(variable)
-    return f"{label(variable)}: R² {number(nominal)} → {number(augmented)}"
-
-
 def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
-    models, held = listed_models(rows), f"last {response.held_out_s:.4g} s held out, used by no model"
+    looks = {"nominal": "orange, dashed: Nominal", "augmented": "green, solid: Augmented"}
+    models = "; ".join(words for model, words in looks.items() if model in rows)
+    held, band = response.held_out, ""
+    if _BANDED in held.bands:  # what the bands hold of all held-out samples, in the mean over variables
+        inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
+        said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
+        band = f"Pale green: 90 % band of Augmented, from refits on blocks; measured inside such a band: {said}. "
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
-        f"{counted(len(rows), 'sample')} shown of {len(response.held_out.time)}; split: {held}. Black: measured "
-        f"second derivative; {models}; shaded: the residual of each model. {_band_words(response)}R² (Nominal → "
-        "Augmented) is over all held-out samples. Each panel has its own unit; titles in red: left; in blue: right."
-    )
-
-
-def _band_words(response: ParticipantResponse) -> str:
-    """What the bands hold of all held-out samples, in the mean over variables."""
-    held = response.held_out
-    if _BANDED not in held.bands:
-        return ""
-    inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
-    said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
-    return f"Pale green: 90 % band of Augmented, from refits on blocks; measured inside such a band: {said}. "
-
-
-def listed_models(rows: pd.DataFrame) -> str:
-    """Legend in words of the models that have a column."""
-    looks = {"nominal": "orange, dashed: Nominal", "augmented": "green, solid: Augmented"}
-    return "; ".join(words for model, words in looks.items() if model in rows)
-
-
-def _alt(response: ParticipantResponse, count: int, r2: pd.DataFrame) -> str:
-    return (
-        f"Measured and predicted accelerations of {response.participant} in {counted(count, 'panel')}; median R² "
-        f"{number(r2['nominal_on_exo'].median())} for Nominal and {number(r2['augmented_on_exo'].median())} "
-        f"for Augmented."
+        f"{counted(len(rows), 'sample')} shown of {len(held.time)}; split: last {response.held_out_s:.4g} s held out, "
+        f"used by no model. Black: measured second derivative; {models}; shaded: the residual of each model. {band}R² "
+        "(Nominal → Augmented) is over all held-out samples. Each panel has its own unit; titles in red: left; in "
+        "blue: right."
     )
 
 
@@ -165,21 +140,15 @@ def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
     """Mean residual and its interval by variable, model and percent with n; each stride in a column of its own."""
     means = {model: mean_interval(response.residuals[model]) for model in MODELS if model in response.residuals}
     tables = []
-    for column, variable in enumerate(response.outputs):
+    for column, (variable, unit) in enumerate(zip(response.outputs, response.units, strict=True)):
         for model, found in means.items():
-            strides = response.residuals[model][:, :, column]
-            table = pd.DataFrame(
-                {
-                    "variable": variable,
-                    "unit": response.units[column],
-                    "model": model,
-                    "percent": PERCENT,
-                    "n": found.strides[:, column],
-                    "mean": found.mean[:, column],
-                    "low": found.low[:, column],
-                    "high": found.high[:, column],
-                }
+            table = pd.DataFrame({"variable": variable, "unit": unit, "model": model, "percent": PERCENT}).assign(
+                n=found.strides[:, column],
+                mean=found.mean[:, column],
+                low=found.low[:, column],
+                high=found.high[:, column],
             )
+            strides = response.residuals[model][:, :, column]
             each = pd.DataFrame(strides.T, columns=pd.Index([f"stride_{i + 1}" for i in range(len(strides))]))
             tables.append(pd.concat([table, each], axis=1))
     return pd.concat(tables, ignore_index=True)
@@ -211,11 +180,10 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         values = of_variable[["mean", *each]].to_numpy()
         values = values[np.isfinite(values)]
         reach = 1.05 * float(np.max(np.abs(values))) if len(values) else 1.0
-        low, high = -(reach or 1.0), reach or 1.0
         for column, (model, curves) in enumerate(of_variable.groupby("model", sort=False)):
             axes = grid[row][column]
             _draw_residual(axes, curves, each, str(model), as_pixels)
-            axes.set_ylim(low, high)
+            axes.set_ylim(-(reach or 1.0), reach or 1.0)
             axes.set_xlim(0, 100)
             axes.set_xticks([0, 25, 50, 75, 100])
             axes.tick_params(labelleft=column == 0)
@@ -270,9 +238,8 @@ def _residual_caption(response: ParticipantResponse, numbers: pd.DataFrame) -> s
 
 
 def _residual_alt(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
-    start = (
-        f"Residuals over the stride of {response.participant}, {counted(numbers['variable'].nunique(), 'variable')}. "
-    )
+    variables = counted(numbers["variable"].nunique(), "variable")
+    start = f"Residuals over the stride of {response.participant}, {variables}. "
     if not numbers["low"].notna().any():
         return f"{start}There are too few strides for an interval of the mean."
     parts = [

@@ -103,16 +103,9 @@ def _shade(axes: Axes, curves: pd.DataFrame, one: pd.Series, other: pd.Series | 
 
 def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:
     """Mark the stretches along the foot of the panel too, where a thin shade would be overlooked."""
+    style = {"color": "#b06f00", "linewidth": 2.2, "solid_capstyle": "butt", "transform": axes.get_xaxis_transform()}
     for row in regions:
-        ends = [float(row["from_percent"]) - 0.5, float(row["to_percent"]) + 0.5]
-        axes.plot(
-            ends,
-            [0.02, 0.02],
-            color="#b06f00",
-            linewidth=2.2,
-            transform=axes.get_xaxis_transform(),
-            solid_capstyle="butt",
-        )
+        axes.plot([float(row["from_percent"]) - 0.5, float(row["to_percent"]) + 0.5], [0.02, 0.02], **style)
 
 
 def mismatch_key(mismatch: Mismatch, kind: str) -> list[Artist]:
@@ -241,32 +234,23 @@ def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
 
 
 def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
+    """Rows of one channel: every region in which it differs, or its largest gap where there is none."""
     regions = mismatch.regions_of(name)
-    if not regions:
-        row = mismatch.summary_of(name)
-        gap = _signed(float(row["largest_gap"]), str(row["unit"]))
-        return [
-            (spoken(name), NONE, gap, f"{row['at_percent']:.0f}", _in_sd(float(row["gap_sd"])), p_cell(float(row["p"])))
-        ]
     return [
         (
             spoken(name),
-            f"{row['from_percent']:.0f} to {row['to_percent']:.0f}",
-            _signed(float(row["gap"]), str(row["unit"])),
+            f"{row['from_percent']:.0f} to {row['to_percent']:.0f}" if regions else NONE,
+            _signed(float(row["gap" if regions else "largest_gap"]), str(row["unit"])),
             f"{row['at_percent']:.0f}",
-            _in_sd(float(row["gap_sd"])),
+            amount(abs(row["gap_sd"])) if math.isfinite(row["gap_sd"]) else NONE,
             p_cell(float(row["p"])),
         )
-        for row in regions
+        for row in regions or [mismatch.summary_of(name)]
     ]
 
 
 def _signed(gap: float, unit: str) -> str:
     return with_unit(f"{'−' if gap < 0 else '+'}{amount(abs(gap))}", unit)
-
-
-def _in_sd(value: float) -> str:
-    return amount(abs(value)) if math.isfinite(value) else NONE
 
 
 def write_mismatch_report(mismatch: Mismatch, folder: Path) -> Path:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 from gaitdisc.results.mismatch import Exchange, Mismatch
 from gaitdisc.words import amount, counted, direction_words, listed, number, p_words, region_words, spoken, with_unit
@@ -29,7 +27,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     if 1 / mismatch.exchange.permutations >= P_PRINTED:
         moved = [*moved, smallest_p_sentence(mismatch)]
     sentences = [_gap(mismatch, ordered[0]), *moved]
-    sentences += [_further(mismatch, name) for name in ordered[1:MOST_NAMED]]
+    sentences += [_gap(mismatch, name, further=True) for name in ordered[1:MOST_NAMED]]
     if len(ordered) > MOST_NAMED:
         more = len(ordered) - MOST_NAMED
         others = _shortened(ordered[MOST_NAMED:])
@@ -158,26 +156,15 @@ def _shortened(names: list[str]) -> str:
     return f"{', '.join(words[:MOST_LISTED])} and {len(words) - MOST_LISTED} more"
 
 
-def _largest(mismatch: Mismatch, name: str) -> dict[str, Any]:
-    return max(mismatch.regions_of(name), key=lambda row: abs(row["gap"]))
-
-
-def _size(row: Mapping[str, Any]) -> str:
-    sd = float(row["gap_sd"])
+def _gap(mismatch: Mismatch, name: str, further: bool = False) -> str:
+    """Largest gap of a channel; further: whether a sentence before it names the two walks."""
+    row = max(mismatch.regions_of(name), key=lambda row: abs(row["gap"]))
+    way, sd = direction_words(name, float(row["gap"]), str(row["unit"])), float(row["gap_sd"])
     in_sd = f"{amount(abs(sd))} stride-to-stride SD, " if math.isfinite(sd) else ""
-    return f"{region_words(row)} ({in_sd}{p_words(float(row['p']))})"
-
-
-def _gap(mismatch: Mismatch, name: str) -> str:
-    row = _largest(mismatch, name)
-    way = direction_words(name, float(row["gap"]), str(row["unit"]))
-    return f"In {mismatch.second} {way} than in {mismatch.first} {_size(row)}{_kind(mismatch, name)}."
-
-
-def _further(mismatch: Mismatch, name: str) -> str:
-    row = _largest(mismatch, name)
-    way = direction_words(name, float(row["gap"]), str(row["unit"]))
-    return f"{way[0].upper()}{way[1:]} {_size(row)}{_kind(mismatch, name)}."
+    size = f"{region_words(row)} ({in_sd}{p_words(float(row['p']))}){_kind(mismatch, name)}."
+    if further:
+        return f"{way[0].upper()}{way[1:]} {size}"
+    return f"In {mismatch.second} {way} than in {mismatch.first} {size}"
 
 
 def _timing(mismatch: Mismatch, name: str) -> str:

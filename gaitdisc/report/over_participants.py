@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeVar
+from itertools import product
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -11,52 +12,53 @@ import pandas as pd
 from gaitdisc.report.data_quantity import length_sentences, length_table, quantity_figure, quantity_sentences
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
+from gaitdisc.report.pair_tests import direction_found
 from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.r2 import held_out_text, models_key
 from gaitdisc.report.table import Table
+from gaitdisc.results.over_participants import OverParticipants
 from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Item = TypeVar("Item")
 MEASURES = {"peak_to_peak": "peak to peak", "rms": "root mean square"}
 OFFSETS = {"augmented": -0.18, "exo": 0.18}
+ENDS = ("shift", "low", "high")  # of a test: the estimate and its interval
 LOWEST = -100.0  # percent; what a model makes more than twice as large stands at the edge
 BASELINE_WORDS = {
     "ridge": "ridge with phase harmonics",
     "linear": "ridge on the network’s inputs",
     "null": "null of the filters",
 }
-_COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
 
 
 def over_blocks(run: ResponseRun) -> list[Block]:
     """Parts of the page that have something to say, in their order."""
-    blocks = [
-        Block("reduced", "Residuals of the models over the stride", tuple(reduction_sentences(run)),
-              _there(reduction_figure(run)), _there(reduction_table(run))),
-        Block("baselines", "Networks compared with simpler baselines", tuple(baseline_sentences(run)),
-              (), _there(baseline_table(run))),
-        Block("quantity", "How much data is enough", (*quantity_sentences(run), *length_sentences(run)),
-              _there(quantity_figure(run)), _there(length_table(run))),
-        Block("responders", "Sub-groups of responders", responder_sentences(run), (), _there(responder_table(run))),
-    ]  # fmt: skip
-    return [block for block in blocks if block.sentences]
+    parts = (
+        ("reduced", "Residuals of the models over the stride", reduction_sentences(run), reduction_figure(run),
+         reduction_table(run)),
+        ("baselines", "Networks compared with simpler baselines", baseline_sentences(run), None, baseline_table(run)),
+        ("quantity", "How much data is enough", [*quantity_sentences(run), *length_sentences(run)],
+         quantity_figure(run), length_table(run)),
+        ("responders", "Sub-groups of responders", responder_sentences(run), None, responder_table(run)),
+    )  # fmt: skip
+    return [
+        Block(anchor, heading, tuple(sentences), (figure,) if figure else (), (table,) if table else ())
+        for anchor, heading, sentences, figure, table in parts
+        if sentences
+    ]
 
 
-def responder_sentences(run: ResponseRun) -> tuple[str, ...]:
+def responder_sentences(run: ResponseRun) -> list[str]:
     """Verdict on sub-groups, and what `none` is worth; empty for one participant."""
     if run.over is None or len(run.responses) < 2:
-        return ()
-    verdict = f"{run.over.responders_said}."
+        return []
+    said = [f"{run.over.responders_said}."]
     if len(run.over.responders) and not run.over.responders["group"].any():
-        return (
-            verdict,
-            "This does not prove homogeneity: so few people show only large differences.",
-        )
-    return (verdict,)
+        said.append("This does not prove homogeneity: so few people show only large differences.")
+    return said
 
 
 def responder_table(run: ResponseRun) -> Table | None:
@@ -72,21 +74,19 @@ def responder_table(run: ResponseRun) -> Table | None:
     return Table("responders", caption, ("group", "participants"), rows, found)
 
 
-def _there(thing: Item | None) -> tuple[Item, ...]:
-    return () if thing is None else (thing,)
-
-
 @in_style
 def reduction_figure(run: ResponseRun) -> Figure | None:
     """Reduction of the stride-averaged residual against Nominal, one row a variable; None without numbers."""
     if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
         return None
     reductions, tests = run.over.reductions, run.over.reduction_tests
+    from matplotlib.lines import Line2D
+
     names = list(dict.fromkeys(reductions["variable"]))
     drawn, [row] = panels(1, 2, 0.34 * len(names) + 0.2, Room(left=1.75, across=0.3, top=0.6))
     for axes, (measure, words) in zip(row, MEASURES.items(), strict=True):
         for place, variable in enumerate(names):
-            _draw(axes, reductions[reductions["variable"] == variable], _of(tests, measure, variable), place, measure)
+            _draw(axes, run.over, variable, measure, place)
         low = max(LOWEST, 100 * float(np.nanmin(reductions[f"{measure}_reduction"])) - 5)
         axes.set_xlim(min(low, 0.0), 100)
         axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
@@ -95,8 +95,19 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
         axes.tick_params(labelleft=axes is row[0])
         axes.set_xlabel("reduction relative to Nominal [%]")
         axes.set_title(words)
-    legend(drawn, _key(len(tests) > 0))
-    return Figure("reduction", _caption(run), " ".join(reduction_sentences(run)), reductions, drawn)
+    key = models_key(tuple(OFFSETS), linestyle="", ms=4, mew=0)
+    if len(tests):
+        bar = {"marker": "|", "color": "#111111", "ms": 8, "mew": 1.6, "linewidth": 1.4}
+        key.append(Line2D([], [], **bar, label="estimate, 95 % interval"))
+    legend(drawn, key)
+    caption = (
+        "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
+        f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
+        f"square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
+        f"{held_out_text(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. "
+        "After Fig. 4.3 of the dissertation, which gives one number: 52.8 %, hip, one participant, without the measure."
+    )
+    return Figure("reduction", caption, " ".join(reduction_sentences(run)), reductions, drawn)
 
 
 def reduction_table(run: ResponseRun) -> Table | None:
@@ -106,10 +117,16 @@ def reduction_table(run: ResponseRun) -> Table | None:
     reductions, tests = run.over.reductions, run.over.reduction_tests
     rows = []
     for variable in dict.fromkeys(reductions["variable"]):
-        own = reductions[(reductions["variable"] == variable) & (reductions["model"] != "nominal")]
-        cells = [_cell(own, tests, variable, measure, model) for measure in MEASURES for model in OFFSETS]
-        n = int(own.loc[own["model"] == "augmented", "rms_reduction"].notna().sum())
-        rows.append((label(str(variable)), str(n), *cells))
+        own = reductions[reductions["variable"] == variable].groupby("model")
+        cells = []
+        for measure, model in product(MEASURES, OFFSETS):
+            found = _tested(tests, measure, variable, model)
+            if found is None:
+                cells.append(number(100 * float(own[f"{measure}_reduction"].median()[model]), 0))
+            else:
+                middle, low, high = (number(float(found[key]), 0) for key in ENDS)
+                cells.append(f"{middle}{'*' if found['different'] else ''}\n[{low}, {high}]")
+        rows.append((label(str(variable)), str(own["rms_reduction"].count()["augmented"]), *cells))
     interval = (
         "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed rank, Holm-Sidak "
         "over the variables, alpha = 0.05"
@@ -145,52 +162,25 @@ def reduction_sentences(run: ResponseRun) -> list[str]:
     return said
 
 
-def _draw(axes: Axes, rows: pd.DataFrame, tests: pd.DataFrame, place: int, measure: str) -> None:
+def _draw(axes: Axes, over: OverParticipants, variable: str, measure: str, place: int) -> None:
+    rows = over.reductions[over.reductions["variable"] == variable]
     for model, offset in OFFSETS.items():
         look, y = MODELS[model], place + offset
         values = 100 * rows.loc[rows["model"] == model, f"{measure}_reduction"].dropna().to_numpy()
         axes.plot(np.maximum(values, LOWEST), np.full(len(values), y), look.mark, color=look.colour, ms=2.6, mew=0,
                   alpha=0.6)  # fmt: skip
-        found = tests[tests["second"] == model]
-        if len(found) and np.isfinite(found["shift"].iloc[0]):
-            middle, low, high = (max(100 * float(found[key].iloc[0]), LOWEST) for key in ("shift", "low", "high"))
+        found = _tested(over.reduction_tests, measure, variable, model)
+        if found is not None:
+            middle, low, high = (max(float(found[key]), LOWEST) for key in ENDS)
             axes.hlines(y, low, high, color=look.colour, linewidth=1.4)
             axes.plot([middle], [y], "|", color="#111111", ms=8, mew=1.6)
 
 
-def _of(tests: pd.DataFrame, measure: str, variable: str) -> pd.DataFrame:
-    return tests[(tests["measure"] == measure) & (tests["variable"] == variable)]
-
-
-def _cell(own: pd.DataFrame, tests: pd.DataFrame, variable: str, measure: str, model: str) -> str:
-    found = _of(tests, measure, variable)
-    found = found[found["second"] == model]
-    if len(found) and np.isfinite(found["shift"].iloc[0]):
-        test = found.iloc[0]
-        star = "*" if test["different"] else ""
-        middle, low, high = (number(100 * float(test[key]), 0) for key in ("shift", "low", "high"))
-        return f"{middle}{star}\n[{low}, {high}]"
-    return number(100 * float(own.loc[own["model"] == model, f"{measure}_reduction"].median()), 0)
-
-
-def _key(tested: bool) -> list:
-    from matplotlib.lines import Line2D
-
-    marks = models_key(tuple(OFFSETS), linestyle="", ms=4, mew=0)
-    middle = Line2D([], [], marker="|", color="#111111", ms=8, mew=1.6, linewidth=1.4, label="estimate, 95 % interval")
-    return [*marks, middle] if tested else marks
-
-
-def _caption(run: ResponseRun) -> str:
-    over = run.over
-    people = 0 if over is None else over.reductions["participant"].nunique()
-    return (
-        "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
-        f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
-        f"square over the stride; n = {counted(people, 'participant')}; split: last {held_out_text(run)} s held out. "
-        f"Marks: participants; values below {number(LOWEST, 0)} % are at the edge. After Fig. 4.3 of the "
-        "dissertation, which gives one number: 52.8 %, hip, one participant, without the measure."
-    )
+def _tested(tests: pd.DataFrame, measure: str, variable: str, model: str) -> pd.Series | None:
+    """Test of one reduction, with its shift and interval in percent; None where it was not tested."""
+    chosen = (tests["measure"] == measure) & (tests["variable"] == variable) & (tests["second"] == model)
+    found = tests[chosen & tests["shift"].notna()]
+    return None if found.empty else found.assign(**{end: 100 * found[end] for end in ENDS}).iloc[0]
 
 
 def baseline_table(run: ResponseRun) -> Table | None:
@@ -200,10 +190,10 @@ def baseline_table(run: ResponseRun) -> Table | None:
     tests = run.over.baselines
     rows = []
     for (variable, model), found in tests.groupby(["variable", "model"], sort=False):
-        cells = [_cell_baseline(found[found["first"] == kind].iloc[0]) for kind in BASELINE_WORDS]
+        cells = [_against(found[found["first"] == kind].iloc[0]) for kind in BASELINE_WORDS]
         rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(found["n"].max())), *cells))
-    order = list(dict.fromkeys(tests["variable"]))
-    rows.sort(key=lambda row: [label(str(variable)) for variable in order].index(row[0]))
+    order = [label(str(variable)) for variable in dict.fromkeys(tests["variable"])]
+    rows.sort(key=lambda row: order.index(row[0]))
     caption = (
         "R² [1] of the network minus R² of a baseline without a network, on the held-out device walk, n = "
         f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher "
@@ -211,7 +201,14 @@ def baseline_table(run: ResponseRun) -> Table | None:
         "0.05. The ridge regression of the other tables is the one with phase harmonics."
     )
     groups = (("", 3), ("network minus baseline", 3))
-    return Table("baselines", caption, _COLUMNS, tuple(rows), tests, groups)
+    columns = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
+    return Table("baselines", caption, columns, tuple(rows), tests, groups)
+
+
+def _against(row: pd.Series) -> str:
+    if not math.isfinite(row["p"]):
+        return "not tested"
+    return f"{number(row['shift'], 3)} {direction_found(row)}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"
 
 
 def baseline_sentences(run: ResponseRun) -> list[str]:
@@ -236,10 +233,3 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
             else f"{network} exceeds every baseline in all variables."
         )
     return said
-
-
-def _cell_baseline(row: pd.Series) -> str:
-    if not math.isfinite(row["p"]):
-        return "not tested"
-    verdict = ("higher" if row["rank_biserial"] > 0 else "lower") if row["different"] else "not significant"
-    return f"{number(row['shift'], 3)} {verdict}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,16 +24,12 @@ if TYPE_CHECKING:
 MOST_NAMED = 6  # variables in one sentence
 SMALLEST_SHOWN = 1e-4
 _WORDS = {**MODEL_WORDS, "perfect": "R² = 1"}
-_FAMILY_WORDS = {
+_FAMILY_WORDS = {  # of `FAMILIES`, in their order
     "pair": "the variables of one pair",
     "all": "all tests of all pairs",
     "variable": "the pairs of one variable",
 }
 _GROUPS = (("", 1), ("R²", 2), ("exact signed rank", 4), ("Holm-Sidak", 3), ("difference", 3))
-_COLUMNS = (
-    "variable", "{first}", "{second}", "n", "zeros", "W", "p", "level of its step", "adjusted p", "{second} is",
-    "median", "shift [95 %]", "rank-biserial",
-)  # fmt: skip
 MOST = 10  # variables in one figure
 HEIGHT = 3.1  # of the panel [inch]
 PLACES = {"nominal": -0.27, "augmented": 0.0, "exo": 0.27}
@@ -79,7 +76,8 @@ def p_text(p: float) -> str:
 
 def _pair_table(tests: PairTests, first: str, second: str) -> Table:
     numbers = tests.of_pair(first, second)
-    rows = tuple(_cells(row) for _, row in numbers.iterrows())
+    columns = _columns(first, second)
+    rows = tuple(_cells(row, columns) for _, row in numbers.iterrows())
     count = int(numbers["p"].notna().sum())
     missing = [f"{label(str(row.variable))}: {row.left_out}" for row in numbers.itertuples() if row.left_out]
     explained = (
@@ -95,30 +93,41 @@ def _pair_table(tests: PairTests, first: str, second: str) -> Table:
         f"n = {counted(tests.participants, 'participant')}, Holm-Sidak over {counted(count, 'test')}, alpha = "
         f"{tests.alpha:g}; {explained}.{one_sign}{' Left out: ' + '; '.join(missing) + '.' if missing else ''}"
     )
-    columns = tuple(title.format(first=_WORDS[first], second=_WORDS[second]) for title in _COLUMNS)
-    return Table(f"tests-{first}-{second}", caption, columns, rows, numbers, _GROUPS)
+    return Table(f"tests-{first}-{second}", caption, ("variable", *columns), rows, numbers, _GROUPS)
 
 
-def _cells(row: pd.Series) -> tuple[str, ...]:
+def _columns(first: str, second: str) -> dict[str, Callable[[pd.Series], str]]:
+    """Headings after that of the variable, and how each writes a row that was tested."""
+    return {
+        _WORDS[first]: lambda row: number(row["median_first"], 3),
+        _WORDS[second]: lambda row: number(row["median_second"], 3),
+        "n": lambda row: str(int(row["n"])),
+        "zeros": lambda row: str(int(row["zeros"])),
+        "W": lambda row: f"{row['w']:g}",
+        "p": lambda row: p_text(row["p"]),
+        "level of its step": lambda row: f"{row['step_level']:.4f}",
+        "adjusted p": lambda row: p_text(row["p_adjusted"]),
+        f"{_WORDS[second]} is": direction_found,
+        "median": lambda row: number(row["median_difference"], 4),
+        "shift [95 %]": lambda row: f"{number(row['shift'], 4)}\n[{_bound(row['low'])}, {_bound(row['high'])}]",
+        "rank-biserial": lambda row: "–" if math.isnan(row["rank_biserial"]) else number(row["rank_biserial"]),
+    }
+
+
+def _cells(row: pd.Series, columns: Mapping[str, Callable[[pd.Series], str]]) -> tuple[str, ...]:
+    name = label(row["variable"])
     if not math.isfinite(row["p"]):
-        nothing = ("not tested",) * (len(_COLUMNS) - 4)
-        return (label(row["variable"]), "–", "–", str(int(row["n"])), *nothing)
-    direction = "higher" if row["rank_biserial"] > 0 else "lower"
-    return (
-        label(row["variable"]),
-        number(row["median_first"], 3),
-        number(row["median_second"], 3),
-        str(int(row["n"])),
-        str(int(row["zeros"])),
-        f"{row['w']:g}",
-        p_text(row["p"]),
-        f"{row['step_level']:.4f}",
-        p_text(row["p_adjusted"]),
-        direction if row["different"] else "not significant",
-        number(row["median_difference"], 4),
-        f"{number(row['shift'], 4)}\n[{_bound(row['low'])}, {_bound(row['high'])}]",
-        "–" if math.isnan(row["rank_biserial"]) else number(row["rank_biserial"]),
-    )
+        return (name, "–", "–", str(int(row["n"])), *("not tested",) * (len(columns) - 3))
+    return (name, *(write(row) for write in columns.values()))
+
+
+def direction_found(row: pd.Series) -> str:
+    """In which direction a test says that the second differs from the first.
+
+    >>> direction_found(pd.Series({"different": True, "rank_biserial": -1.0}))
+    'lower'
+    """
+    return ("higher" if row["rank_biserial"] > 0 else "lower") if row["different"] else "not significant"
 
 
 def _families_table(tests: PairTests) -> Table:

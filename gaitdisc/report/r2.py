@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 _TESTED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
-LOWEST = -0.25  # R2 below this is drawn as an arrow at the edge, with its value
+LOWEST = -0.25  # R2 below this is drawn at the edge of the axis, with its value
 FEWEST_FOR_BOXES = 5
 MOST_VALUES = 3  # that are written one by one
 ROW_IN, LABELLED_ROW_IN = 0.36, 0.5  # a row's height; three lines of labels need more
 _OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
-_R2_GROUPS = (("", 1), ("network", 4), ("ridge, phase harmonics", 4), ("ridge, inputs alone", 3), ("noise", 1))
+_R2_GROUPS = (("network", 4), ("ridge, phase harmonics", 4), ("ridge, inputs alone", 3), ("noise", 1))
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,9 @@ class R2Column:
     """One column of the table."""
 
     key: str
-    model: str  # as in the response's table; the null belongs to none
-    kind: str  # as in the response's table
-    walk: str  # as in the response's table
+    model: str  # as the response's table names it, as kind and walk; the null belongs to none
+    kind: str
+    walk: str
 
     @property
     def title(self) -> str:
@@ -56,28 +56,17 @@ R2_TABLE = (
 def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
     """R2 of one participant, (variable, column of `R2_TABLE`); NaN where it was not computed."""
     known = response.r2
-    found = {
-        (variable, "" if kind == "null" else model, kind, walk): r2
-        for variable, model, kind, walk, r2 in zip(
-            *(known[name] for name in ("variable", "model", "kind", "walk", "r2")), strict=True
-        )
-    }
-    columns = {
-        column.key: [found.get((v, column.model, column.kind, column.walk), np.nan) for v in response.outputs]
-        for column in R2_TABLE
-    }
-    return pd.DataFrame(columns, index=pd.Index(response.outputs, name="variable"), dtype=float)
-
-
-def medians(table: pd.DataFrame) -> pd.Series:
-    """Median of each column of `r2_by_variable` over the variables that were computed."""
-    return table.median(axis=0, skipna=True)
+    places = {(column.model or "nominal", column.kind, column.walk): column.key for column in R2_TABLE}
+    keys = [places.get(key, "") for key in zip(known["model"], known["kind"], known["walk"], strict=True)]
+    wide = known.assign(key=np.array(keys, str)).pivot_table("r2", "variable", "key", aggfunc="last")
+    rows = pd.Index(response.outputs, name="variable")
+    return wide.reindex(index=rows, columns=pd.Index([column.key for column in R2_TABLE])).astype(float)
 
 
 def participant_medians(run: ResponseRun) -> pd.DataFrame:
     """Median over variables of every participant, (participant, column of `R2_TABLE`)."""
     names = pd.Index([response.participant for response in run.responses], name="participant")
-    rows = [medians(r2_by_variable(response)) for response in run.responses]
+    rows = [r2_by_variable(response).median() for response in run.responses]
     return pd.DataFrame(rows, columns=pd.Index([c.key for c in R2_TABLE])).set_axis(names, axis=0)
 
 
@@ -124,24 +113,15 @@ def r2_figures(run: ResponseRun) -> list[Figure]:
 
 def r2_numbers(run: ResponseRun) -> pd.DataFrame:
     """Participant, variable, model (empty for the null), kind and r2 on the held-out device walk."""
-    tables = []
-    for response in run.responses:
-        table = r2_by_variable(response)
-        for column in R2_TABLE:
-            if column.walk == "exo" and column.kind != "linear":
-                tables.append(
-                    pd.DataFrame(
-                        {
-                            "participant": response.participant,
-                            "variable": table.index,
-                            "model": column.model,
-                            "kind": column.kind,
-                            "r2": table[column.key].to_numpy(),
-                        }
-                    )
-                )
-    columns = pd.Index(["participant", "variable", "model", "kind", "r2"])
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+    columns = [column for column in R2_TABLE if column.walk == "exo" and column.kind != "linear"]
+    rows = [
+        (response.participant, variable, column.model, column.kind, value)
+        for response in run.responses
+        for table in [r2_by_variable(response)]
+        for column in columns
+        for variable, value in table[column.key].items()
+    ]
+    return pd.DataFrame(rows, columns=pd.Index(["participant", "variable", "model", "kind", "r2"]))
 
 
 def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
@@ -275,11 +255,8 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
     """R2 of one participant: rows variables, columns models, with the median below."""
     table = r2_by_variable(response)
     units = dict(zip(response.outputs, response.units, strict=True))
-    rows = [
-        (f"{label(str(v))} [{unit_text(units[str(v)])}]", *(number(x, 3) for x in values.to_numpy()))
-        for v, values in table.iterrows()
-    ]
-    rows.append(("median", *(number(x, 3) for x in medians(table).to_numpy())))
+    rows = [(f"{label(str(v))} [{unit_text(units[str(v)])}]", *_cells(values)) for v, values in table.iterrows()]
+    rows.append(("median", *_cells(table.median())))
     samples, without = sample_counts(response), sample_counts(response, "nominal")
     caption = (
         f"{response.participant}: R² [1] of the second derivative of each variable (unit in brackets) on held-out "
@@ -290,8 +267,7 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
     )
     numbers = table.reset_index()
     numbers.insert(1, "unit", list(response.units))
-    columns = ("variable", *(column.title for column in R2_TABLE))
-    return Table(f"r2-{name}", caption, columns, tuple(rows), numbers, _R2_GROUPS, summary=True)
+    return _table_of_r2(f"r2-{name}", caption, ("variable",), rows, numbers)
 
 
 def study_r2_table(run: ResponseRun) -> Table:
@@ -299,33 +275,26 @@ def study_r2_table(run: ResponseRun) -> Table:
     long = quartiles_over_participants(run)
     rows = []
     for variable in variables(run):
-        of_variable = long[long["variable"] == variable].set_index("column")
-        by_column = of_variable[["median", "q1", "q3"]].T
-        cells = [_quartiles(*by_column[column.key]) for column in R2_TABLE]
-        rows.append((label(variable), str(int(of_variable["n"].max())), *cells))
+        of_variable = long[long["variable"] == variable]
+        quartiles = of_variable[["median", "q1", "q3"]].to_numpy()
+        rows.append((label(variable), str(int(of_variable["n"].max())), *(_quartiles(*each) for each in quartiles)))
     people = participant_medians(run)
-    over = people.quantile([0.5, 0.25, 0.75])
-    cells = [_quartiles(*over[column.key]) for column in R2_TABLE]
-    rows.append(("median over variables", str(len(people)), *cells))
+    over = people.quantile([0.5, 0.25, 0.75]).T.to_numpy()
+    rows.append(("median over variables", str(len(people)), *(_quartiles(*each) for each in over)))
     caption = (
         f"R² [1] of the second derivative of each variable on held-out walking, median [quartiles] over participants, "
         f"n = {counted(len(people), 'participant')} (column n: those who have the variable); split: last "
         f"{held_out_text(run)} s of each walk held out."
     )
-    groups = (("", 2), *_R2_GROUPS[1:])
-    columns = ("variable", "n", *(column.title for column in R2_TABLE))
-    return Table("r2-study", caption, columns, tuple(rows), long, groups, summary=True)
+    return _table_of_r2("r2-study", caption, ("variable", "n"), rows, long)
 
 
 def participants_table(run: ResponseRun) -> Table:
     """Median over variables of every participant, with the median participant below."""
     people = participant_medians(run)
     counts = [sample_counts(response) for response in run.responses]
-    rows = [
-        (str(person), n, *(number(x, 3) for x in values.to_numpy()))
-        for n, (person, values) in zip(counts, people.iterrows(), strict=True)
-    ]
-    rows.append(("median", "", *(number(x, 3) for x in medians(people).to_numpy())))
+    rows = [(str(person), n, *_cells(r2)) for n, (person, r2) in zip(counts, people.iterrows(), strict=True)]
+    rows.append(("median", "", *_cells(people.median())))
     numbers = people.reset_index()
     numbers.insert(1, "samples", counts)
     caption = (
@@ -333,8 +302,19 @@ def participants_table(run: ResponseRun) -> Table:
         f"{counted(len(people), 'participant')} (column n: held-out samples of the device walk); split: last "
         f"{held_out_text(run)} s of each walk held out, used by no model."
     )
-    columns = ("participant", "n", *(column.title for column in R2_TABLE))
-    return Table("participants", caption, columns, tuple(rows), numbers, (("", 2), *_R2_GROUPS[1:]), summary=True)
+    return _table_of_r2("participants", caption, ("participant", "n"), rows, numbers)
+
+
+def _table_of_r2(
+    name: str, caption: str, first: tuple[str, ...], rows: list[tuple[str, ...]], numbers: pd.DataFrame
+) -> Table:
+    """Table whose columns, after the first, are those of `R2_TABLE`, and whose last row sums up the others."""
+    columns = (*first, *(column.title for column in R2_TABLE))
+    return Table(name, caption, columns, tuple(rows), numbers, (("", len(first)), *_R2_GROUPS), summary=True)
+
+
+def _cells(values: pd.Series) -> tuple[str, ...]:
+    return tuple(number(value, 3) for value in values)
 
 
 def not_computed(run: ResponseRun, response: ParticipantResponse) -> list[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.r2 import R2_TABLE, held_out_text, medians, participant_medians, r2_by_variable, sample_counts
+from gaitdisc.report.r2 import R2_TABLE, held_out_text, participant_medians, r2_by_variable, sample_counts
 from gaitdisc.results.participant_response import ParticipantResponse, ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listed, number, plain
 
@@ -59,7 +59,7 @@ def study_sentences(run: ResponseRun) -> list[str]:
 def participant_sentences(response: ParticipantResponse) -> list[str]:
     """What one participant shows: what the models explain, whether the device model helps, ridge, and the null."""
     table = r2_by_variable(response)
-    middle = medians(table)
+    middle = table.median()
     computed = int(table[_ON_EXO["nominal"]].notna().sum())
     whole = len(table)
     over = f"{whole} variables" if computed == whole else f"{computed} of {whole} variables, the others not computed"
@@ -216,7 +216,7 @@ def _printed(values: pd.DataFrame, caption: str) -> rich.table.Table:
     for name, row in values.iterrows():
         table.add_row(plain(str(name)), *(_short(float(row[column.key])) for column in _SHOWN))
     table.add_section()
-    middle = medians(values)
+    middle = values.median()
     table.add_row("median", *(_short(float(middle[column.key])) for column in _SHOWN), style="bold")
     return table
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -46,15 +46,6 @@ class ResponseSettings:
     harmonics: int = 8  # harmonics of percent stride in the ridge regression
 
 
-@dataclass(frozen=True, eq=False)
-class FittedResponse:
-    """The models of one participant, of every kind."""
-
-    network: ResponseModels
-    ridge: ResponseModels  # regressions with phase harmonics
-    linear: ResponseModels  # regressions on the networks' own inputs alone
-
-
 def fit_response(
     nominal: Trajectory,
     exo: Trajectory,
@@ -76,18 +67,28 @@ def fit_response(
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
     on_nominal, on_exo = (held_out_samples(held, settings) for held in (held_nominal, held_exo))
     parts = training_samples(nominal, exo, settings)
-    fitted = fit_both(*parts, settings, progress or _log_tenths())
-    kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
-    scored = [_scored(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
-    predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
-    bands = response_bands(fitted.network, refitted_network, *parts, on_exo) if banded else {}
+    fitted = fit_kinds(*parts, settings, progress or _log_tenths())
+    null = [
+        (variable, "nominal", "null", "exo", float(null_r2[variable]), len(on_exo))
+        for variable in settings.outputs
+        if null_r2 and variable in null_r2
+    ]
+    predicted = {name: model(on_exo.x) for name, model in fitted["network"].on_exo().items()}
+    bands = response_bands(fitted["network"], refitted_network, *parts, on_exo) if banded else {}
     return ParticipantResponse(
         participant=exo.subject or nominal.subject,
         inputs=on_exo.inputs,
         outputs=settings.outputs,
         units=tuple(rate_unit(exo.channels[column].unit, 2) for column in exo.columns(settings.outputs)),
-        r2=pd.concat([*scored, _null_rows(null_r2 or {}, settings, len(on_exo))], ignore_index=True),
-        fits=pd.concat([_fit_rows(kind, models) for kind, models in kinds.items()], ignore_index=True),
+        r2=pd.DataFrame([*_scores(fitted, on_nominal, on_exo, settings), *null], columns=pd.Index(R2_COLUMNS)),
+        fits=pd.DataFrame(
+            [
+                (name, kind, fit.decay, fit.epochs, fit.n_training, fit.n_inner)
+                for kind, models in fitted.items()
+                for name, fit in models.fits().items()
+            ],
+            columns=pd.Index(FIT_COLUMNS),
+        ),
         held_out=HeldOut(on_exo.time, on_exo.phi, on_exo.y, predicted, bands),
         residuals={name: residual_strides(held_exo, on_exo, values) for name, values in predicted.items()},
         held_out_s=len(held_exo.time) / held_exo.rate_hz,
@@ -113,16 +114,16 @@ def training_samples(nominal: Trajectory, exo: Trajectory, settings: ResponseSet
     return first, second
 
 
-def fit_both(
+def fit_kinds(
     nominal: Samples, exo: Samples, settings: ResponseSettings, progress: Callable[[float], None] | None = None
-) -> FittedResponse:
-    """Fit networks and ridge regressions to the samples of the training parts."""
+) -> dict[str, ResponseModels]:
+    """Fit networks, ridge regressions with phase harmonics, and `linear`: ridge on the networks' own inputs."""
     ridge = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, settings.harmonics))
     linear = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=0))
     networks = fit_models(
         nominal, exo, fit=lambda part, report: fit_network(part, settings.training, report), progress=progress
     )
-    return FittedResponse(networks, ridge, linear)
+    return {"network": networks, "ridge": ridge, "linear": linear}
 
 
 def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, Trajectory]:
@@ -150,29 +151,16 @@ def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[
     return stride_curves(held_out.time, residual, strides_of_phase(held_out.time, held_out.phi))
 
 
-def _scored(
-    kind: str, models: ResponseModels, on_nominal: Samples, on_exo: Samples, settings: ResponseSettings
-) -> pd.DataFrame:
-    trials = [("nominal", models.nominal.model, "nominal", on_nominal)]
-    trials += [(name, model, "exo", on_exo) for name, model in models.on_exo().items()]
-    rows = [
-        (variable, name, kind, walk, value, len(held))
-        for name, model, walk, held in trials
-        for variable, value in zip(settings.outputs, r2(held.y, model(held.x)), strict=True)
-    ]
-    return pd.DataFrame(rows, columns=pd.Index(R2_COLUMNS))
-
-
-def _null_rows(null_r2: Mapping[str, float], settings: ResponseSettings, samples: int) -> pd.DataFrame:
-    known = [variable for variable in settings.outputs if variable in null_r2]
-    rows = [(variable, "nominal", "null", "exo", float(null_r2[variable]), samples) for variable in known]
-    return pd.DataFrame(rows, columns=pd.Index(R2_COLUMNS))
-
-
-def _fit_rows(kind: str, models: ResponseModels) -> pd.DataFrame:
-    fits = {"nominal": models.nominal, "exo": models.exo, "discrepancy": models.discrepancy}
-    rows = [(name, kind, fit.decay, fit.epochs, fit.n_training, fit.n_inner) for name, fit in fits.items()]
-    return pd.DataFrame(rows, columns=pd.Index(FIT_COLUMNS))
+def _scores(
+    fitted: Mapping[str, ResponseModels], on_nominal: Samples, on_exo: Samples, settings: ResponseSettings
+) -> Iterator[tuple[object, ...]]:
+    """Rows of `R2_COLUMNS`: the Nominal model on held-out nominal walking, and all models on that with the device."""
+    for kind, models in fitted.items():
+        trials = [("nominal", models.nominal.model, "nominal", on_nominal)]
+        trials += [(name, model, "exo", on_exo) for name, model in models.on_exo().items()]
+        for name, model, walk, held in trials:
+            for variable, value in zip(settings.outputs, r2(held.y, model(held.x)), strict=True):
+                yield variable, name, kind, walk, value, len(held)
 
 
 def _check_pair(nominal: Trajectory, exo: Trajectory) -> None:
@@ -287,6 +275,10 @@ class ResponseModels:
         """Nominal plus Discrepancy (Eq. 4.5)."""
         return augment(self.nominal.model, self.discrepancy.model)
 
+    def fits(self) -> dict[str, Fit]:
+        """Return the models that were fitted, by name."""
+        return {"nominal": self.nominal, "exo": self.exo, "discrepancy": self.discrepancy}
+
     def on_exo(self) -> dict[str, Model]:
         """Return the models that predict device walking, by the names of `gaitdisc.results`."""
         return {"nominal": self.nominal.model, "augmented": self.augmented, "exo": self.exo.model}
@@ -303,23 +295,17 @@ def fit_models(
     The Discrepancy model learns xddot_exo - f(x_exo, xdot_exo, phi_exo), what Nominal misses (Eq. 4.4).
     """
     parts = [partial(report_share, progress or (lambda _: None), done, 3) for done in range(3)]
-    f = _named("Nominal", fit, nominal, parts[0])
-    y = _named("Exo", fit, exo, parts[1])
-    g = _named("Discrepancy", fit, exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
+
+    def fit_named(model: str, samples: Samples, report: Callable[[float], None]) -> Fit:
+        try:
+            return fit(samples, report)
+        except TrainingError as error:
+            raise TrainingError(f"the {model} model: {error.needed}", error.found, error.remedy) from error
+
+    f = fit_named("Nominal", nominal, parts[0])
+    y = fit_named("Exo", exo, parts[1])
+    g = fit_named("Discrepancy", exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
     return ResponseModels(nominal=f, exo=y, discrepancy=g)
-
-
-def _named(
-    model: str,
-    fit: Callable[[Samples, Callable[[float], None]], Fit],
-    samples: Samples,
-    progress: Callable[[float], None],
-) -> Fit:
-    """Fit, and name the model where it is refused."""
-    try:
-        return fit(samples, progress)
-    except TrainingError as error:
-        raise TrainingError(f"the {model} model: {error.needed}", error.found, error.remedy) from error
 
 
 def report_share(progress: Callable[[float], None], done: int, count: int, fraction: float) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -26,7 +27,7 @@ from gaitdisc.results.over_participants import (
 )
 from gaitdisc.results.participant_response import BASELINES, MODELS, DataQuantity, ParticipantResponse
 from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
-from gaitdisc.statistics.groups import Groups, find_groups
+from gaitdisc.statistics.groups import find_groups
 from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by
 from gaitdisc.statistics.signed_rank import signed_rank, smallest_p
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_strides
@@ -34,6 +35,8 @@ from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_stride
 FEWEST = 6  # the fewest of whom a two-sided exact test can be below 0.05
 ALPHA = 0.05
 LEVEL = 0.95
+TESTED = ("w", "p", "median_first", "median_second", "median_difference", "shift", "low", "high", "rank_biserial")
+MEASURES = ("peak_to_peak", "rms")
 
 
 def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = ALPHA) -> pd.DataFrame:
@@ -62,35 +65,26 @@ def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) ->
     """
     if len(quantities) < FEWEST:
         return no_rows("lengths")
-    tables = {q.participant: q.table[(q.table["kind"] == "network") & (q.table["walk"] == "exo")] for q in quantities}
-    longest = {person: float(table["length_s"].max()) for person, table in tables.items()}
-    whole = pd.DataFrame({p: _r2(table, "exo", longest[p]) for p, table in tables.items()}).T
-    lengths = sorted({float(n) for p, table in tables.items() for n in table["length_s"] if n < longest[p]})
+    table = pd.concat([each.table.assign(participant=each.participant) for each in quantities], ignore_index=True)
+    table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
+    longest = table.groupby("participant")["length_s"].transform("max")
+    whole = by_participant(table[(table["length_s"] == longest) & (table["model"] == "exo")])
     parts = []
-    for length in lengths:
-        models = {
-            model: pd.DataFrame({p: _r2(table, model, length) for p, table in tables.items()}).T.reindex(
-                index=whole.index, columns=whole.columns
-            )
-            for model in ("augmented", "exo")
-        }
-        for first, second, columns in (("augmented", "exo", models["exo"]), ("exo", WHOLE, whole)):
-            found = compare_columns(models[first], columns, alpha)
-            parts.append(found.assign(length_s=length, first=first, second=second))
+    for length, rows in table[table["length_s"] < longest].groupby("length_s"):
+        augmented, exo = (by_participant(rows[rows["model"] == model]).reindex_like(whole) for model in MODELS[1:])
+        for first, second, pair in (("augmented", "exo", (augmented, exo)), ("exo", WHOLE, (exo, whole))):
+            parts.append(compare_columns(*pair, alpha).assign(length_s=length, first=first, second=second))
     return pd.concat(parts, ignore_index=True)[list(LENGTH_COLUMNS)]
+
+
+def by_participant(table: pd.DataFrame, values: str = "r2") -> pd.DataFrame:
+    """Numbers of a table of one row a participant and variable, as (participant, variable)."""
+    return table.pivot_table(index="participant", columns="variable", values=values, sort=False, dropna=False)
 
 
 def why_no_lengths(quantities: Sequence[DataQuantity]) -> str:
     """Why the lengths are not tested; empty where they are."""
     return too_few(len(quantities)) if len(quantities) < FEWEST else ""
-
-
-def _r2(table: pd.DataFrame, model: str, length: float) -> pd.Series:
-    chosen = table[(table["model"] == model) & (table["length_s"] == length)]
-    return chosen.groupby("variable", sort=False)["r2"].first().astype(float)
-
-
-MEASURES = ("peak_to_peak", "rms")
 
 
 def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
@@ -117,15 +111,9 @@ def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.Dat
     if reductions["participant"].nunique() < FEWEST:
         return no_rows("reduction_tests")
     parts = []
-    for measure in MEASURES:
-        for model in MODELS[1:]:
-            own = reductions[reductions["model"] == model]
-            found = own.pivot_table(
-                index="participant", columns="variable", values=f"{measure}_reduction", sort=False, dropna=False
-            )
-            parts.append(
-                compare_columns(found * 0.0, found, alpha).assign(measure=measure, first="nominal", second=model)
-            )
+    for measure, model in product(MEASURES, MODELS[1:]):
+        found = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
+        parts.append(compare_columns(found * 0.0, found, alpha).assign(measure=measure, first="nominal", second=model))
     return pd.concat(parts, ignore_index=True)[list(REDUCTION_TEST_COLUMNS)]
 
 
@@ -137,27 +125,24 @@ def representative(reductions: pd.DataFrame, model: str = "augmented", measure: 
 
 
 def _of_one(response: ParticipantResponse) -> pd.DataFrame:
-    residuals = response.residuals
-    sizes = {model: _sizes(curves) for model, curves in residuals.items()}
-    parts = []
-    for model, size in sizes.items():
-        table = size.assign(
+    sizes = {model: _sizes(curves) for model, curves in response.residuals.items()}
+    nominal = sizes["nominal"].where(sizes["nominal"] > 0)
+    tables = [
+        pd.concat([size, (1 - size / nominal).add_suffix("_reduction")], axis=1).assign(
             participant=response.participant,
             variable=response.outputs,
             unit=response.units,
             model=model,
-            strides=len(residuals[model]),
+            strides=len(response.residuals[model]),
         )
-        for measure in MEASURES:
-            nominal = sizes["nominal"][measure].where(sizes["nominal"][measure] > 0)
-            table[f"{measure}_reduction"] = 1 - size[measure] / nominal
-        parts.append(table)
-    return pd.concat(parts, ignore_index=True)
+        for model, size in sizes.items()
+    ]
+    return pd.concat(tables, ignore_index=True)
 
 
 def _sizes(residuals: NDArray[np.float64]) -> pd.DataFrame:
     if len(residuals) < LEAST_STRIDES:
-        return pd.DataFrame(np.full((residuals.shape[2], len(MEASURES)), np.nan), columns=pd.Index(MEASURES))
+        return pd.DataFrame(np.nan, index=range(residuals.shape[2]), columns=pd.Index(MEASURES))
     mean = mean_over_strides(residuals)
     return pd.DataFrame({measure: getattr(mean, measure) for measure in MEASURES})
 
@@ -173,7 +158,7 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
         said = f"Sub-groups were not tested, because this needs {FEWEST_GROUPED} participants ({who})"
         return no_rows("responders"), said
     try:
-        groups = find_responders(complete, seed)
+        groups = find_groups(discrepancy_curves(complete), seed=seed)
     except ComparisonError as error:
         return no_rows("responders"), f"Sub-groups were not tested: {error}"
     numbers = (groups.count, groups.silhouette, groups.p, groups.stability)
@@ -181,11 +166,6 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
         (response.participant, int(group), *numbers) for response, group in zip(complete, groups.labels, strict=True)
     ]
     return pd.DataFrame(rows, columns=pd.Index(RESPONDER_COLUMNS)), f"{groups.why} ({who})"
-
-
-def find_responders(responses: Sequence[ParticipantResponse], seed: int = 0) -> Groups:
-    """Look for sub-groups of participants whose discrepancies have one shape over the stride."""
-    return find_groups(discrepancy_curves(responses), seed=seed)
 
 
 def discrepancy_curves(responses: Sequence[ParticipantResponse]) -> NDArray[np.float64]:
@@ -308,31 +288,13 @@ def too_few(participants: int) -> str:
 
 
 def _row(variable: str, first: pd.Series, second: pd.Series) -> Mapping[str, object]:
-    absent = [i for i, (a, b) in enumerate(zip(first, second, strict=True)) if not np.isfinite(a) or not np.isfinite(b)]
-    names = [str(first.index[i]) for i in absent]
-    left_out = f"not computed: {', '.join(names)}" if names else ""
+    known = np.isfinite(first.to_numpy(float)) & np.isfinite(second.to_numpy(float))
+    names = {int(place): str(first.index[place]) for place in np.flatnonzero(~known).tolist()}
+    left_out = f"not computed: {', '.join(names.values())}" if names else ""
     row: dict[str, object] = {"variable": variable, "left_out": left_out}
-    if len(first) - len(absent) < FEWEST:
-        nothing = dict.fromkeys(
-            (
-                "w", "p", "median_first", "median_second", "median_difference", "shift", "low", "high", "rank_biserial",
-            ),
-            np.nan,
-        )  # fmt: skip
-        return row | {"n": len(first) - len(absent), "zeros": 0, "ties": False} | nothing
-    found = signed_rank(first.to_numpy(), second.to_numpy(), dict(zip(absent, names, strict=True)), LEVEL)
-    there = np.setdiff1d(np.arange(len(first)), absent)
-    return row | {
-        "n": found.n,
-        "zeros": found.zeros,
-        "ties": found.ties,
-        "w": found.w,
-        "p": found.p,
-        "median_first": float(first.iloc[there].median()),
-        "median_second": float(second.iloc[there].median()),
-        "median_difference": found.median,
-        "shift": found.shift,
-        "low": found.low,
-        "high": found.high,
-        "rank_biserial": found.rank_biserial,
-    }
+    if known.sum() < FEWEST:
+        return row | {"n": int(known.sum()), "zeros": 0, "ties": False} | dict.fromkeys(TESTED, np.nan)
+    found = signed_rank(first.to_numpy(), second.to_numpy(), names, LEVEL)
+    medians = float(first[known].median()), float(second[known].median())
+    tested = (found.w, found.p, *medians, found.median, found.shift, found.low, found.high, found.rank_biserial)
+    return row | {"n": found.n, "zeros": found.zeros, "ties": found.ties} | dict(zip(TESTED, tested, strict=True))

@@ -50,7 +50,13 @@ def find_groups(
     >>> find_groups(apart).count, find_groups(rng.standard_normal((12, 3))).count
     (2, 0)
     """
-    _check(features)
+    if features.ndim != 2 or len(features) < FEWEST or not np.isfinite(features).all():
+        missing = int(np.sum(~np.isfinite(features)))
+        raise ComparisonError(
+            f"sub-groups need at least {FEWEST} participants with complete features",
+            f"found {features.shape}" + (f", {missing} values missing" if missing else ""),
+            "Exclude participants with missing features by name.",
+        )
     rng = np.random.default_rng(seed)
     labels, silhouette = best_cut(features, most)
     centred = features - features.mean(axis=0)
@@ -59,18 +65,16 @@ def find_groups(
     p = (1 + sum(value >= silhouette for value in drawn)) / (1 + clouds)
     stability = _stability(features, labels, rng)
     count = int(labels.max())
-    if count < 2:
-        return Groups(
-            0, np.zeros_like(labels), silhouette, p, stability, "No sub-groups: no feature separates the participants"
-        )
     measured = f"{count} groups separate with silhouette {silhouette:.2f}, p = {p:.3f}, stability {stability:.2f}"
-    if p > alpha:
-        why = f"No sub-groups: {measured}; a single normal distribution separates as well by chance"
+    if count < 2:
+        why = "no feature separates the participants"
+    elif p > alpha:
+        why = f"{measured}; a single normal distribution separates as well by chance"
     elif stability < LEAST_STABILITY:
-        why = f"No sub-groups: {measured}; the groups change when a fifth of the participants is left out"
+        why = f"{measured}; the groups change when a fifth of the participants is left out"
     else:
         return Groups(count, labels, silhouette, p, stability, f"Sub-groups: {measured}")
-    return Groups(0, np.zeros_like(labels), silhouette, p, stability, why)
+    return Groups(0, np.zeros_like(labels), silhouette, p, stability, f"No sub-groups: {why}")
 
 
 def best_cut(features: NDArray[np.float64], most: int = 4) -> tuple[NDArray[np.intp], float]:
@@ -142,13 +146,3 @@ def _stability(features: NDArray[np.float64], labels: NDArray[np.intp], rng: np.
         again = fcluster(linkage(features[chosen], "ward"), int(labels.max()), "maxclust")
         found.append(adjusted_rand(labels[chosen], np.asarray(again, np.intp)))
     return float(np.mean(found))
-
-
-def _check(features: NDArray[np.float64]) -> None:
-    if features.ndim != 2 or len(features) < FEWEST or not np.isfinite(features).all():
-        missing = int(np.sum(~np.isfinite(features)))
-        raise ComparisonError(
-            f"sub-groups need at least {FEWEST} participants with complete features",
-            f"found {features.shape}" + (f", {missing} values missing" if missing else ""),
-            "Exclude participants with missing features by name.",
-        )

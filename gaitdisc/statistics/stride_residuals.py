@@ -62,15 +62,9 @@ def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], stride
 class StrideMean:
     """Mean of curves over strides, with its interval at every point of the stride."""
 
-    # (phase, column) [each column's unit], mean over strides, and the ends of its interval; NaN where fewer than five
-    # strides have a value
-    mean: NDArray[np.float64]
-    # (phase, column) [each column's unit], mean over strides, and the ends of its interval; NaN where fewer than five
-    # strides have a value
-    low: NDArray[np.float64]
-    # (phase, column) [each column's unit], mean over strides, and the ends of its interval; NaN where fewer than five
-    # strides have a value
-    high: NDArray[np.float64]
+    mean: NDArray[np.float64]  # (phase, column) [each column's unit]; NaN where fewer than five strides have a value
+    low: NDArray[np.float64]  # (phase, column) [each column's unit], lower end of the interval
+    high: NDArray[np.float64]  # (phase, column) [each column's unit], upper end of the interval
     strides: NDArray[np.intp]  # (phase, column), strides with a value
     effective: NDArray[np.float64]  # (column,), how many independent strides they are worth
     level: float  # of the interval, at each point by itself: the curve as a whole leaves it more often

@@ -6,7 +6,7 @@ from texts import says
 from gaitdisc.batch.vary_study import computed_variants, vary_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.errors import SchemaError
-from gaitdisc.response.modalities import ALL, AS_STUDIED
+from gaitdisc.response.vary import ALL, AS_STUDIED
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.variants import Variants, load_variant_run
 

@@ -19,7 +19,7 @@ from gaitdisc.report.variants import (
     variant_tables,
     write_variants,
 )
-from gaitdisc.response.modalities import AS_STUDIED, compare_variants
+from gaitdisc.response.vary import AS_STUDIED, compare_variants
 from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
 

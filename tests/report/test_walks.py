@@ -14,7 +14,6 @@ from gaitdisc.report.r2 import (
     LOWEST,
     R2_TABLE,
     held_out_text,
-    medians,
     not_computed,
     participant_medians,
     participants_table,
@@ -50,7 +49,7 @@ def test_what_was_not_computed_is_nan_and_leaves_the_median_alone(response_maker
     response.r2.loc[response.r2["variable"] == "ankle_angle_l", "r2"] = np.nan
     table = r2_by_variable(response)
     assert table.loc["ankle_angle_l"].isna().all()
-    assert medians(table)["exo_on_exo"] == table.loc["hip_flexion_r", "exo_on_exo"]
+    assert table.median()["exo_on_exo"] == table.loc["hip_flexion_r", "exo_on_exo"]
 
 
 def test_quartiles_over_participants_count_who_has_the_variable(run_maker):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import SamplingError
-from gaitdisc.response.modalities import fit_data_quantity
+from gaitdisc.response.vary import fit_data_quantity
 
 ANKLE = "ankle_angle_r"
 

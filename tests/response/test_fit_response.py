@@ -14,7 +14,7 @@ from gaitdisc.response.fit_response import (
     Fit,
     ResponseSettings,
     covered,
-    fit_both,
+    fit_kinds,
     fit_linear,
     fit_models,
     fit_network,
@@ -39,7 +39,7 @@ SPRING = 40.0
 
 @pytest.fixture(scope="module")
 def fitted(nominal, exo, settings):
-    return fit_both(*training_samples(nominal, exo, settings), settings)
+    return fit_kinds(*training_samples(nominal, exo, settings), settings)
 
 
 @pytest.fixture
@@ -49,7 +49,7 @@ def response(judged):
 
 def test_the_discrepancy_model_is_the_spring(fitted, exo, settings):
     held = gait_samples(held_out_part(exo, settings)[1], settings.outputs)[0]
-    found = fitted.network.discrepancy.model(held.x)
+    found = fitted["network"].discrepancy.model(held.x)
     spring = -SPRING * np.maximum(held.x[:, 1], 0.0)
     assert r2(spring[:, None], found[:, 1:])[0] > 0.94
     assert np.sqrt(np.mean((found[:, 1] - spring) ** 2)) < 0.06 * np.std(held.y[:, 1])
@@ -88,13 +88,13 @@ def test_the_held_out_part_is_never_seen(nominal, exo, settings, fitted):
         replace(walk, x=walk.x + 50.0 * ~seen[:, None], xddot=np.where(seen[:, None], walk.xddot, -7e3))
         for walk in (nominal, exo)
     ]
-    again = fit_both(*training_samples(*changed, settings), settings)
+    again = fit_kinds(*training_samples(*changed, settings), settings)
     for name in ("nominal", "exo", "discrepancy"):
-        one, other = (getattr(found.network, name).model for found in (fitted, again))
+        one, other = (found["network"].fits()[name].model for found in (fitted, again))
         for key, weights in one.weights().items():
             assert weights.tobytes() == other.weights()[key].tobytes()
         assert one.x_scale.mean.tobytes() == other.x_scale.mean.tobytes()
-        ridges = [getattr(found.ridge, name).model.weights.tobytes() for found in (fitted, again)]
+        ridges = [found["ridge"].fits()[name].model.weights.tobytes() for found in (fitted, again)]
         assert ridges[0] == ridges[1]
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gaitdisc.response.modalities import ALL, compare_variants, fit_without, input_families
+from gaitdisc.response.vary import ALL, compare_variants, fit_without, input_families
 from gaitdisc.results.variants import Variants
 
 INPUTS = tuple(

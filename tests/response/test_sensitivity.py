@@ -1,7 +1,7 @@
 import pandas as pd
 import pytest
 
-from gaitdisc.response.modalities import AS_STUDIED, compare_variants, settings_around
+from gaitdisc.response.vary import AS_STUDIED, compare_variants, settings_around
 from gaitdisc.results.variants import Variants
 
 

@@ -5,7 +5,8 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.response.over_participants import discrepancy_curves, find_responders, responder_table
+from gaitdisc.response.over_participants import discrepancy_curves, responder_table
+from gaitdisc.statistics.groups import find_groups
 
 PHASE = np.linspace(0, 2 * np.pi, 101)
 
@@ -20,13 +21,13 @@ def response(i, kind, outputs=("ankle_angle_r", "emg_sol_r")):
 
 
 def test_two_kinds_of_responders_are_told_apart():
-    found = find_responders([response(i, i % 2) for i in range(12)])
+    found = find_groups(discrepancy_curves([response(i, i % 2) for i in range(12)]))
     assert found.count == 2
     assert len(set(found.labels[::2])) == len(set(found.labels[1::2])) == 1
 
 
 def test_one_kind_has_no_sub_groups():
-    assert find_responders([response(i, 0) for i in range(12)]).count == 0
+    assert find_groups(discrepancy_curves([response(i, 0) for i in range(12)])).count == 0
 
 
 def test_all_outputs_weigh_alike():

@@ -1,4 +1,4 @@
-"""Which inputs carry the response (section 6.2.2), other settings, and how much data is enough (section 4.2.4)."""
+"""Models with one thing changed at a time: inputs left away (section 6.2.2), filters, less data (section 4.2.4)."""
 
 from __future__ import annotations
 
@@ -21,18 +21,21 @@ from gaitdisc.response.fit_response import (
     held_out_part,
     held_out_samples,
     report_share,
+    training_samples,
 )
-from gaitdisc.response.over_participants import ALPHA, FEWEST, compare_columns
-from gaitdisc.response.samples import PHASE, gait_samples
+from gaitdisc.response.over_participants import ALPHA, FEWEST, by_participant, compare_columns
+from gaitdisc.response.samples import PHASE
 from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
 from gaitdisc.statistics.r2 import r2
 
 ALL = "all inputs"
 MODELS = ("augmented", "exo")
-Fitted = Callable[[Samples], Model]
 LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
-PARTS = ("first", "last")
+ANGLES_HZ = (4.0, 6.0, 8.0, 10.0, 12.0)
+EMG_HZ = (4.0, 6.0, 10.0, 15.0, 20.0)
+SHARES = (0.25, 0.5)
+AS_STUDIED = "as in the study"
 
 
 def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
@@ -82,10 +85,10 @@ def fit_without(
         costs nothing may carry the response as well as those that stand in for it.
     """
     progress = progress or (lambda _: None)
-    training = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
+    training = training_samples(nominal, exo, settings)
     held = held_out_samples(held_out_part(exo, settings)[1], settings)
     families = {ALL: (), **input_families(held.inputs)}
-    kinds: dict[str, Fitted] = {
+    kinds: dict[str, Callable[[Samples], Model]] = {
         "network": lambda samples: fit_network(samples, settings.training).model,
         "ridge": lambda samples: fit_linear(samples, settings.harmonics).model,
     }
@@ -120,8 +123,10 @@ def compare_variants(people: Sequence[Variants], question: str, alpha: float = A
         pairs = [((ALL, model), (one, model), (ALL, "without")) for model in MODELS for one in variants if one != ALL]
     else:
         pairs = [((one, "nominal"), (one, "augmented"), ("nominal", "augmented")) for one in variants]
+    order = {"index": table["participant"].unique(), "columns": table["variable"].unique()}
+    wide = {key: by_participant(rows).reindex(**order) for key, rows in table.groupby(["variant", "model"], sort=False)}
     parts = [
-        compare_columns(_by_participant(table, *before), _by_participant(table, *after), alpha).assign(
+        compare_columns(wide[before], wide[after], alpha).assign(
             variant=after[0], model=after[1], first=first, second=second
         )
         for before, after, (first, second) in pairs
@@ -129,22 +134,9 @@ def compare_variants(people: Sequence[Variants], question: str, alpha: float = A
     return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
 
 
-def _by_participant(table: pd.DataFrame, variant: str, model: str) -> pd.DataFrame:
-    chosen = table[(table["variant"] == variant) & (table["model"] == model)]
-    wide = chosen.pivot_table(index="participant", columns="variable", values="r2", sort=False, dropna=False)
-    return wide.reindex(index=table["participant"].unique(), columns=table["variable"].unique())
-
-
 def _without(samples: Samples, left_away: Sequence[str]) -> Samples:
-    kept = [name not in left_away for name in samples.inputs]
-    names = tuple(name for name, keep in zip(samples.inputs, kept, strict=True) if keep)
-    return replace(samples, x=samples.x[:, np.array(kept)], inputs=names)
-
-
-ANGLES_HZ = (4.0, 6.0, 8.0, 10.0, 12.0)
-EMG_HZ = (4.0, 6.0, 10.0, 15.0, 20.0)
-SHARES = (0.25, 0.5)
-AS_STUDIED = "as in the study"
+    kept = [column for column, name in enumerate(samples.inputs) if name not in left_away]
+    return replace(samples, x=samples.x[:, kept], inputs=tuple(samples.inputs[column] for column in kept))
 
 
 @dataclass(frozen=True)
@@ -187,39 +179,38 @@ def fit_data_quantity(
         again
     Source: Ebers 2023, section 4.2.4 and Fig. 4.4.
     """
-    if part not in PARTS:
+    if part not in ("first", "last"):
         raise SamplingError(
             "the training part must be taken from its first or last seconds", f"found {part!r}", "Write first or last."
         )
     progress = progress or (lambda _: None)
-    training = {"nominal": held_out_part(nominal, settings)[0], "exo": held_out_part(exo, settings)[0]}
-    whole_s = min(len(walk.time) / walk.rate_hz for walk in training.values())
+    whole_s = min(_training_s(walk, settings) for walk in (nominal, exo))
     wanted = sorted({length for length in lengths_s if length < whole_s})
-    left_away = {
-        length: f"the training part is {whole_s:.1f} s long" for length in sorted(set(lengths_s)) if length >= whole_s
-    }
-    tables = []
+    too_long = sorted({length for length in lengths_s if length >= whole_s})
+    left_away = dict.fromkeys(too_long, f"the training part is {whole_s:.1f} s long")
+    fitted: dict[float, ParticipantResponse] = {}
     for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
-        less_nominal, less_exo = (shortened(walk, settings, length, part) for walk in (nominal, exo))
+        less = [shortened(walk, settings, length, part) for walk in (nominal, exo)]
         report = partial(report_share, progress, number, len(wanted) + 1)
         try:
-            response = fit_response(less_nominal, less_exo, settings, progress=report)
+            fitted[length] = fit_response(less[0], less[1], settings, progress=report)
         except TrainingError as error:
             left_away[length] = str(error)
-            continue
-        tables.append(_with_length(response, length))
     if whole:
-        tables.append(_with_length(whole, whole_s))
+        fitted[whole_s] = whole
     progress(1.0)
-    columns = pd.Index(QUANTITY_COLUMNS)
-    table = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=columns)
-    return DataQuantity(exo.subject or nominal.subject, part, table, left_away)
+    tables = [pd.DataFrame(columns=pd.Index(QUANTITY_COLUMNS))] if not fitted else []
+    for length, response in fitted.items():
+        fits, scores = response.fits, response.r2
+        used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
+        scores = scores[scores["kind"] != "null"]  # the filters' null has no length
+        tables.append(scores.assign(length_s=length, n_training=used)[list(QUANTITY_COLUMNS)])
+    return DataQuantity(exo.subject or nominal.subject, part, pd.concat(tables, ignore_index=True), left_away)
 
 
-def _with_length(response: ParticipantResponse, length_s: float) -> pd.DataFrame:
-    fits, r2 = response.fits, response.r2
-    used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
-    return r2[r2["kind"] != "null"].assign(length_s=length_s, n_training=used)  # the filters' null has no length
+def first_share(walk: Trajectory, settings: ResponseSettings, share: float) -> Trajectory:
+    """Walk of whose training part the first so much is used."""
+    return walk if share == 1 else shortened(walk, settings, share * _training_s(walk, settings), "first")
 
 
 def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
@@ -235,3 +226,8 @@ def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, par
     else:
         usable[: max(0, good[-1] + 1 - keep)] = False
     return replace(walk, usable=usable)
+
+
+def _training_s(walk: Trajectory, settings: ResponseSettings) -> float:
+    training = held_out_part(walk, settings)[0]
+    return len(training.time) / training.rate_hz
