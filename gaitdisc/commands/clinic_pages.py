@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from gaitdisc.ingest.study import Study
-    from gaitdisc.report.clinic.values import PageWords
+    from gaitdisc.report.clinic.laboratory import PageWords
     from gaitdisc.results.clinical_reference import ClinicalReference, PersonSession
     from gaitdisc.results.pooled_cycles import PooledCycles
     from gaitdisc.results.provenance import Provenance
@@ -50,7 +50,7 @@ def kept_reference(run_folder: Path) -> ClinicalReference | None:
 
 def keep_words(language: str, run_folder: Path) -> list[str]:
     """Copy a table of words into a run, or take it away for `en`; gives the words that it lacks."""
-    from gaitdisc.report.clinic.values import read_words, write_words
+    from gaitdisc.report.clinic.laboratory import read_words, write_words
 
     if language == "en":
         remove_file(run_folder / WORDS)
@@ -63,22 +63,21 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
 
 def write_english(path: Path) -> Path:
     """Write the table of words that is to be filled in."""
-    from gaitdisc.report.clinic.values import write_words
+    from gaitdisc.report.clinic.laboratory import write_words
 
     return write_words(path, _english())
 
 
 def _english() -> list[str]:
     from gaitdisc.clinic.rules import rule_words
-    from gaitdisc.report.clinic.values import english_words
+    from gaitdisc.report.clinic.laboratory import english_words
 
     return english_words(rule_words())
 
 
 def kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
-    from gaitdisc.report.clinic.laboratory import load_laboratory
-    from gaitdisc.report.clinic.values import ENGLISH, read_words
+    from gaitdisc.report.clinic.laboratory import ENGLISH, load_laboratory, read_words
 
     words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
     return replace(words, laboratory=load_laboratory(run_folder))

@@ -11,6 +11,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from gaitdisc.report.clinic.laboratory import ENGLISH, TIERS, PageWords
 from gaitdisc.report.clinic.panels import (
     MOST_SINGLE,
     Panel,
@@ -20,22 +21,20 @@ from gaitdisc.report.clinic.panels import (
     sheet,
     svg,
 )
-from gaitdisc.report.clinic.values import (
-    ENGLISH,
-    MARKS,
-    TIERS,
-    PageWords,
-    change_table,
+from gaitdisc.report.clinic.sentences import (
     contrast_sentences,
-    files_table,
     laboratory_sentences,
     noted_sentences,
-    numbers_table,
     outstanding_sentences,
-    profile_svg,
-    profile_table,
     quality_sentence,
     score_sentences,
+)
+from gaitdisc.report.clinic.values import (
+    MARKS,
+    change_table,
+    numbers_table,
+    profile_svg,
+    profile_table,
     values_table,
 )
 from gaitdisc.report.figure import file_names
@@ -89,6 +88,7 @@ def write_person_page(
     beside = folder / "people" / name
     main, *others = person.readings
     script = SCRIPT.read_text(encoding="utf-8")
+    files = {file: sha256 for reading in person.readings for file, sha256 in reading.pooled.files.items()}
     shown = {
         "say": say,
         "title": person.title,
@@ -103,7 +103,9 @@ def write_person_page(
         "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
         "contrasts": [_contrast(one, beside, say) for one in person.contrasts if one is not person.before_after],
         "method": _method(person),
-        "files": _saved(files_table(list(person.readings)), beside, "", say),
+        "files": _saved(
+            words_table("files", f"Files, n = {len(files)}.", ("file", "SHA-256"), files.items()), beside, "", say
+        ),
         "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
         "script": Markup(script),
         "script_hash": f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",

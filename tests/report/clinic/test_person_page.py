@@ -12,11 +12,10 @@ from texts import says
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.laboratory import Laboratory
+from gaitdisc.report.clinic.laboratory import Laboratory, PageWords
 from gaitdisc.report.clinic.panels import Panel, sheet
 from gaitdisc.report.clinic.person_page import index_rows, page_names, write_index, write_person_page
 from gaitdisc.report.clinic.person_pdf import draw_panel, write_person_pdf
-from gaitdisc.report.clinic.values import PageWords
 from gaitdisc.results.clinical_reference import PersonSession
 from gaitdisc.results.leg_curves import KINEMATICS
 from gaitdisc.results.provenance import Refusal
@@ -64,6 +63,8 @@ def test_the_numbers_of_every_sheet_and_table_lie_beside_it(page):
     beside = page.with_suffix("")
     names = {path.name for path in beside.iterdir()}
     assert {"kinematics.csv", "kinetics.csv", "emg.csv", "cycles.csv", "spatiotemporal.csv", "files.csv"} <= names
+    files = pd.read_csv(beside / "files.csv").to_numpy().tolist()
+    assert files == [["P01 walk, file 1", 64 * "a"], ["P01 turn, file 1", 64 * "a"]]
     for name in re.findall(r"P01/([\w-]+\.csv)", page.read_text(encoding="utf-8")):
         assert len(pd.read_csv(beside / name)) == 101
 
