@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -68,12 +67,6 @@ CONTRAST = (
 RANKS = {"red": 0, "amber": 1, "green": 2}
 COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")
 HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]", "stands out", "why")
-
-
-def page_names(titles: Sequence[str]) -> list[str]:
-    """Name of the page of each, without ending; no two alike."""
-    named = file_names(titles)
-    return [named[title] for title in titles]
 
 
 def write_person_page(
@@ -211,7 +204,30 @@ def _method(person: PersonSession) -> list[str]:
 
 def index_rows(person: PersonSession, name: str, say: PageWords = ENGLISH) -> list[dict[str, str]]:
     """Rows of the index for a person and session, with the name of the page."""
-    return [_row(reading, person, name, say) for reading in person.readings]
+    rows = []
+    for reading in person.readings:
+        pooled = reading.pooled
+        score = reading.profile.both if reading.profile else None
+        tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
+        first = [
+            f"{mark} {sentences[0].partition(';')[0]}" + (f" (+{len(sentences) - 1})" if len(sentences) > 1 else "")
+            for mark, sentences in tiers
+            if sentences
+        ]
+        rows.append(
+            {
+                "light": reading.light,
+                "subject": pooled.subject,
+                "person": person.title,
+                "condition": pooled.condition,
+                "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
+                "score": number(score.value, 1) if score else NONE,
+                "noted": "\n".join(first) or NONE if not reading.silent else NONE,
+                "why": "; ".join(reading.reasons) or NONE,
+                "page": f"people/{name}.html" if name else "",
+            }
+        )
+    return rows
 
 
 def write_index(
@@ -245,28 +261,6 @@ def write_index(
         "people": counted(len({row["subject"] for row in rows}), "person").replace("persons", "people"),
     }
     return write_whole(folder / "index.html", page_text("people", shown))
-
-
-def _row(reading: ClinicalReading, person: PersonSession, name: str, say: PageWords) -> dict[str, str]:
-    pooled = reading.pooled
-    score = reading.profile.both if reading.profile else None
-    tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
-    first = "\n".join(f"{mark} {each[0].partition(';')[0]}{_more(each)}" for mark, each in tiers if each) or NONE
-    return {
-        "light": reading.light,
-        "subject": pooled.subject,
-        "person": person.title,
-        "condition": pooled.condition,
-        "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
-        "score": number(score.value, 1) if score else NONE,
-        "noted": first if not reading.silent else NONE,
-        "why": "; ".join(reading.reasons) or NONE,
-        "page": f"people/{name}.html" if name else "",
-    }
-
-
-def _more(sentences: Sequence[str]) -> str:
-    return f" (+{len(sentences) - 1})" if len(sentences) > 1 else ""
 
 
 def _reference_words(reference: ClinicalReference | None) -> str:
