@@ -29,8 +29,7 @@ import numpy as np
 from scipy.stats import spearmanr
 from sensing_walks import Person, chosen_walks
 
-from gaitdisc.networks.trained_network import Ensemble
-from gaitdisc.sensing.reconstructor import ENSEMBLE, fit_reconstructor
+from gaitdisc.sensing.reconstructor import ENSEMBLE, Ensemble, fit_reconstructor
 from gaitdisc.sensing.state_errors import coverage, half_widths
 
 

@@ -28,11 +28,11 @@ from further import Made, Number, main
 
 import gaitdisc as gd
 from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
-from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
+from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.sensing.calibration import calibrated, first_strides
-from gaitdisc.sensing.reconstructor import ENSEMBLE, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import ENSEMBLE, Ensemble, Sensing, fit_reconstructor
 from gaitdisc.sensing.state_errors import coverage, half_widths
 from gaitdisc.sensing.windows import split_by_trial, stacked
 

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.errors import GaitdiscError, SchemaError, WriteError
+from gaitdisc.own_files import file_sha256
 from gaitdisc.whole_file import remove_file, write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from gaitdisc.ingest.study import Study
-    from gaitdisc.report.clinic.values import PageWords
+    from gaitdisc.report.clinic.laboratory import PageWords
     from gaitdisc.results.clinical_reference import ClinicalReference, PersonSession
-    from gaitdisc.results.pooled_cycles import PooledCycles
     from gaitdisc.results.provenance import Provenance
     from gaitdisc.results.study_run import StudyRun
 
@@ -50,7 +50,7 @@ def kept_reference(run_folder: Path) -> ClinicalReference | None:
 
 def keep_words(language: str, run_folder: Path) -> list[str]:
     """Copy a table of words into a run, or take it away for `en`; gives the words that it lacks."""
-    from gaitdisc.report.clinic.values import read_words, write_words
+    from gaitdisc.report.clinic.laboratory import read_words, write_words
 
     if language == "en":
         remove_file(run_folder / WORDS)
@@ -63,22 +63,21 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
 
 def write_english(path: Path) -> Path:
     """Write the table of words that is to be filled in."""
-    from gaitdisc.report.clinic.values import write_words
+    from gaitdisc.report.clinic.laboratory import write_words
 
     return write_words(path, _english())
 
 
 def _english() -> list[str]:
     from gaitdisc.clinic.rules import rule_words
-    from gaitdisc.report.clinic.values import english_words
+    from gaitdisc.report.clinic.laboratory import english_words
 
     return english_words(rule_words())
 
 
 def kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
-    from gaitdisc.report.clinic.laboratory import load_laboratory
-    from gaitdisc.report.clinic.values import ENGLISH, read_words
+    from gaitdisc.report.clinic.laboratory import ENGLISH, load_laboratory, read_words
 
     words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
     return replace(words, laboratory=load_laboratory(run_folder))
@@ -104,23 +103,18 @@ def say_new_recordings(study: Study) -> None:
         typer.echo(words.format(new), err=True)
 
 
-def _keep_laboratory(run_folder: Path) -> None:
-    """Note beside a run what `clinic.toml` says, so that pages of another laboratory do not stand."""
+def page_of_run(run: StudyRun, run_folder: Path) -> Path:
+    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
     from gaitdisc.report.clinic.laboratory import Laboratory, load_laboratory
+    from gaitdisc.report.saved_page import page_of
+    from gaitdisc.results.kind import find_kind
     from gaitdisc.results.unit_folder import sealed_text
 
     own, place = load_laboratory(run_folder), run_folder / LABORATORY / "laboratory.json"
     if own == Laboratory():
         remove_file(place)
-    else:
+    else:  # so that pages of another laboratory do not stand
         write_whole(place, sealed_text(asdict(own)))
-
-
-def page_of_run(run: StudyRun, run_folder: Path) -> Path:
-    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
-    _keep_laboratory(run_folder)
-    from gaitdisc.report.saved_page import page_of
-    from gaitdisc.results.kind import find_kind
 
     def drawn() -> Path:
         page = find_kind(run_folder).draw(run, run_folder)
@@ -138,86 +132,79 @@ def write_people(
 
     if not run.of(CYCLES):
         return None
-    from gaitdisc.batch.read_people import people_of, sessions_of
+    from gaitdisc.batch.read_people import cycles_of_people, read_session
     from gaitdisc.report.clinic.kept_parts import hash_cycles, keep_part, read_part
-    from gaitdisc.report.clinic.person_page import index_rows, page_names, write_index
+    from gaitdisc.report.clinic.person_page import index_rows, write_index
+    from gaitdisc.report.figure import file_names
 
-    report, reference, people = run_folder / "report", kept_reference(run_folder), people_of(run)
+    report, reference, people = run_folder / "report", kept_reference(run_folder), cycles_of_people(run)
     say = kept_words(run_folder)
-    names = dict(zip(people, page_names(people), strict=True))
-    house = say.laboratory
+    names, house = file_names(list(people)), say.laboratory
     shared = repr(replace(say, laboratory=replace(house, affected={}, comments={})))
-    rests_on = (_hash_folder(run_folder / REFERENCE), shared, run.nominal, str(pdf))
-    rows: dict[str, list[dict[str, str]]] = {}
-    keys: dict[str, str] = {}
+    files = sorted(path for path in (run_folder / REFERENCE).glob("*") if path.is_file())
+    rests_on = (" ".join(map(file_sha256, files)), shared, run.nominal, str(pdf))
+    rows: list[dict[str, str]] = []
     failed: list[tuple[str, str]] = []
-
-    def stands(title: str, own: Sequence[PooledCycles]) -> bool:
+    for title, own in people.items():
+        name = names[title]
         said = (repr(words.get(own[0].subject)) for words in (house.affected, house.comments))
-        keys[title] = hash_cycles(own, *rests_on, *said)
-        kept = read_part(report, f"people-{names[title]}", keys[title])
+        key = hash_cycles(own, *rests_on, *said)
+        kept = read_part(report, f"people-{name}", key)
         if kept:
-            rows[title] = kept
-        return bool(kept)
-
-    for title, person in sessions_of(run, reference, stands):
-        if isinstance(person, GaitdiscError):
-            failed.append((title, str(person)))
+            rows += kept
             continue
         try:
-            pages = _pages(person, names[title], reference, run.provenance, report, say, pdf)
+            person = read_session(title, own, run.nominal, reference)
+        except GaitdiscError as error:
+            failed.append((title, str(error)))
+            continue
+        try:
+            pages = _pages(person, name, reference, run.provenance, report, say, pdf)
             for page in pages:
                 progress(page)
-            rows[title] = index_rows(person, names[title], say)
-            files = [*pages, *(report / "people" / names[title]).glob("*.csv")]
-            keep_part(report, f"people-{names[title]}", keys[title], rows[title], files)
+            drawn = index_rows(person, name, say)
+            files = [*pages, *(report / "people" / name).glob("*.csv")]
+            keep_part(report, f"people-{name}", key, drawn, files)
+            rows += drawn
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
             raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
-    own = [row for title in names for row in rows.get(title, [])]
-    return write_index(_with_failed(run, failed, run_folder), own, reference, report, say)
-
-
-def _hash_folder(folder: Path) -> str:
-    from gaitdisc.results.unit_folder import file_sha256
-
-    return " ".join(file_sha256(path) for path in sorted(folder.glob("*")) if path.is_file())
+    return write_index(_with_failed(run, failed, run_folder), rows, reference, report, say)
 
 
 def write_before_after(
     run: StudyRun, run_folder: Path, person: str, words: tuple[str, str], pdf: bool = False
 ) -> list[Path]:
     """Write the page of a person before and after, as HTML and where wanted as PDF."""
-    from gaitdisc.batch.read_people import before_and_after, readings_of
+    from gaitdisc.batch.read_people import before_and_after
     from gaitdisc.clinic.reading import contrast_of
-    from gaitdisc.report.clinic.person_page import PersonSession, page_names
+    from gaitdisc.report.figure import file_names
+    from gaitdisc.results.clinical_reference import PersonSession
 
     reference = kept_reference(run_folder)
-    before, after = before_and_after(readings_of(run, reference), person, words)
+    before, after = before_and_after(run, reference, person, words)
     title = f"{person} {words[0]} {words[1]}"
     page = PersonSession(title, (after, before), (contrast_of(before, after),))
-    name = page_names([title])[0]
+    name = file_names([title])[title]
     return _pages(page, name, reference, run.provenance, run_folder / "report", kept_words(run_folder), pdf)
 
 
 def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
     """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
-    from gaitdisc.batch.read_people import people_of, sessions_of
-    from gaitdisc.report.clinic.person_page import page_names
-    from gaitdisc.results.pooled_cycles import CYCLES
+    from gaitdisc.batch.read_people import cycles_of_people, read_session
+    from gaitdisc.report.figure import file_names
 
-    own = run.with_units(CYCLES, tuple(one for one in run.of(CYCLES) if one.subject == person))
-    if not own.of(CYCLES):
-        people = ", ".join(dict.fromkeys(one.subject for one in run.of(CYCLES))) or "nobody"
-        raise SchemaError("a page needs a person of the run", f"{person!r}; there are {people}", "Name one of them.")
-    everybody = people_of(run)
-    names = dict(zip(everybody, page_names(everybody), strict=True))
-    reference, say, found = kept_reference(run_folder), kept_words(run_folder), []
-    for title, one in sessions_of(own, reference):
-        if isinstance(one, GaitdiscError):
-            raise one
-        found += _pages(one, names[title], reference, run.provenance, run_folder / "report", say, pdf)
+    people = cycles_of_people(run)
+    own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
+    if not own:
+        known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
+        raise SchemaError("a page needs a person of the run", f"{person!r}; there are {known}", "Name one of them.")
+    names, reference, say = file_names(list(people)), kept_reference(run_folder), kept_words(run_folder)
+    report, found = run_folder / "report", []
+    for title, cycles in own.items():
+        session = read_session(title, cycles, run.nominal, reference)
+        found += _pages(session, names[title], reference, run.provenance, report, say, pdf)
     return found
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,43 +10,6 @@ from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.trained_network import TrainedNetwork
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class RecurrentWeights:
-    """Weights of a `Shred` in double precision, as `gru_step`, `lstm_step` and `decoded` take them."""
-
-    cell: str
-    # tuple of ((ndarray, ndarray), (ndarray, ndarray)), weights (input, gate * node) and (node, gate * node), and
-    # offsets, of each recurrent layer
-    layers: tuple[tuple[tuple[Array, Array], tuple[Array, Array]], ...]
-    # (three of (input, output), three of (output,)), weights and offsets of the decoder
-    decoder: tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]
-    masked: bool  # whether the network reads beside each value that it is missing
-
-    @property
-    def nodes(self) -> int:
-        """Nodes of a recurrent layer."""
-        return len(self.layers[0][0][1])
-
-
-def recurrent_weights(network: TrainedNetwork) -> RecurrentWeights:
-    """Weights of a trained `Shred`."""
-    shred = network.network
-    assert isinstance(shred, Shred)  # nothing else is given
-    found = {name: np.ascontiguousarray(values.T, float) for name, values in network.weights().items()}
-    layers = tuple(
-        (
-            (found[f"recurrent.weight_ih_l{k}"], found[f"recurrent.weight_hh_l{k}"]),
-            (found[f"recurrent.bias_ih_l{k}"], found[f"recurrent.bias_hh_l{k}"]),
-        )
-        for k in range(shred.recurrent.num_layers)
-    )
-    weights, offsets = (
-        (found[f"decoder.first.{what}"], found[f"decoder.second.{what}"], found[f"decoder.readout.{what}"])
-        for what in ("weight", "bias")
-    )
-    return RecurrentWeights(shred.cell, layers, (weights, offsets), shred.masked)
 
 
 class CarriedWindows:
@@ -65,12 +26,27 @@ class CarriedWindows:
     """
 
     def __init__(self, network: TrainedNetwork, count: int, spacing: int) -> None:
-        self._weights = recurrent_weights(network)
+        shred = network.network
+        assert isinstance(shred, Shred)  # nothing else is given
+        self._cell, self._masked = shred.cell, shred.masked
+        named = {name: np.ascontiguousarray(values.T, float) for name, values in network.weights().items()}
+        # of each recurrent layer: weights (input, gate * node) and (node, gate * node), and their offsets
+        self._layers = [
+            tuple(
+                (named[f"recurrent.{what}_ih_l{k}"], named[f"recurrent.{what}_hh_l{k}"]) for what in ("weight", "bias")
+            )
+            for k in range(shred.recurrent.num_layers)
+        ]
+        # weights, each (input, output), and offsets of the decoder
+        self._decoder = [
+            (named[f"decoder.first.{what}"], named[f"decoder.second.{what}"], named[f"decoder.readout.{what}"])
+            for what in ("weight", "bias")
+        ]
         self._mean = network.x_scale.mean.reshape(count, -1)
         self._sd = network.x_scale.sd.reshape(count, -1)
         self._y_scale = network.y_scale
         # (phase, layer, age, node): the state of a window that has `age` readings, before the next one
-        shape = (spacing, len(self._weights.layers), count, self._weights.nodes)
+        shape = (spacing, len(self._layers), count, shred.recurrent.hidden_size)
         self._states, self._cells = (np.full(shape, np.nan) for _ in range(2))
         self._states[:, :, 0] = self._cells[:, :, 0] = 0.0
         self._silent = np.zeros(spacing, int)  # readings of a phase since one that was known
@@ -82,13 +58,13 @@ class CarriedWindows:
         reading (sensor,) [each sensor's unit]: taken one sample after the one before
         """
         read = (reading - self._mean) / self._sd
-        if self._weights.masked:
+        if self._masked:
             missing = np.isnan(read)
             self._silent[self._phase] = self._silent[self._phase] + 1 if np.isnan(reading).all() else 0
             read = np.hstack([np.where(missing, 0.0, read), missing])
-        for layer, (weights, offsets) in enumerate(self._weights.layers):
+        for layer, (weights, offsets) in enumerate(self._layers):
             states, cells = self._states[self._phase, layer], self._cells[self._phase, layer]
-            if self._weights.cell == "gru":
+            if self._cell == "gru":
                 read = gru_step(read, states, weights, offsets)
             else:
                 read, kept = lstm_step(read, (states, cells), weights, offsets)
@@ -97,7 +73,7 @@ class CarriedWindows:
         if self._silent[self._phase] >= len(self._mean):
             read = np.full_like(read, np.nan)  # no reading at all: a state that nothing shows
         self._phase = (self._phase + 1) % len(self._states)
-        return self._y_scale.unscaled(decoded(read[-1], *self._weights.decoder))
+        return self._y_scale.unscaled(decoded(read[-1], *self._decoder))
 
 
 @compiled(error_model="numpy")

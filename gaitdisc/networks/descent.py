@@ -6,7 +6,7 @@ import copy
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import torch
@@ -16,6 +16,9 @@ from torch import Tensor, nn
 from gaitdisc.errors import TrainingError
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.training_settings import Schedule, TrainingSettings
+
+if TYPE_CHECKING:
+    from gaitdisc.networks.fused_steps import FusedSteps
 
 
 class TorchSteps:
@@ -89,28 +92,6 @@ class Descent:
     arithmetic: str
 
 
-class Steps(Protocol):
-    """What computes a descent: `TorchSteps`, or `FusedSteps` where it can."""
-
-    arithmetic: str
-
-    def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
-        """Step through all samples once, in that order and at these learning rates."""
-        ...
-
-    def loss(self) -> float:
-        """Mean squared error of the scaled outputs on the check part."""
-        ...
-
-    def weights(self) -> Any:
-        """Copy of the weights as they are."""
-        ...
-
-    def restore(self, weights: Any) -> None:
-        """Give the network weights that it had before."""
-        ...
-
-
 def descend(
     network: nn.Module,
     part: tuple[Tensor, Tensor],
@@ -131,7 +112,7 @@ def descend(
     steps = _steps(network, part, check, schedule, settings)
     order = torch.Generator().manual_seed(settings.seed)
     losses: list[float] = []
-    best = steps.weights()
+    best: Any = steps.weights()
     epochs = len(schedule.rates)
     for epoch in range(1, epochs + 1):
         steps.epoch(torch.randperm(len(part[0]), generator=order), schedule.rates[epoch - 1])
@@ -158,7 +139,8 @@ def _steps(
     check: tuple[Tensor, Tensor],
     schedule: Schedule,
     settings: TrainingSettings,
-) -> Steps:
+) -> TorchSteps | FusedSteps:
+    """What computes a descent: compiled code where it can, torch elsewhere."""
     if settings.arithmetic == "auto" and settings.precision == "float32":
         from gaitdisc.networks.fused_steps import FusedSteps, can_be_fused
 

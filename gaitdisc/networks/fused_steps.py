@@ -271,11 +271,7 @@ class FusedSteps:
         self._done = 0
 
     def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
-        """Step through all samples once.
-
-        order Tensor (sample,): in which the samples are seen
-        rates (step,): learning rate of each step
-        """
+        """Step through all samples once, as `TorchSteps.epoch`."""
         number = self._done + 1 + np.arange(len(rates))
         self._done += len(rates)
         paces = np.empty((len(rates), 3), np.float32)
@@ -296,10 +292,7 @@ class FusedSteps:
         return self._weights.copy()
 
     def restore(self, weights: NDArray[np.float32]) -> None:
-        """Give the network weights that it had before.
-
-        weights (weight,): from `weights`
-        """
+        """Give the network weights that it had before, from `weights`."""
         self._weights[:] = weights
         parameters = matrices_then_offsets(self._network)
         parts = torch.from_numpy(weights).split([p.numel() for p in parameters])

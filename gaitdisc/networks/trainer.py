@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol, cast
+from typing import Any, cast
 
 import numpy as np
 import torch
@@ -31,10 +31,8 @@ class Training:
     """A trained network and how it came about."""
 
     network: TrainedNetwork
-    # weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved
-    decay: float
-    # weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved
-    penalty: float
+    decay: float  # weight decay that did best on the inner block
+    penalty: float  # readout penalty that did best there; 0 where nothing is solved
     epochs: int  # of the descent with that decay
     best_epoch: int  # the one whose weights were kept
     # mean squared error of the scaled outputs on the inner block after every one of these epochs
@@ -182,19 +180,6 @@ def _tensor(values: NDArray[np.float64], device: torch.device) -> Tensor:
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 
-class WithReadout(Protocol):
-    """A torch module whose last layer is linear and called `readout`."""
-
-    readout: nn.Linear
-
-    def features(self, x: Tensor) -> Tensor:
-        """Return what the readout reads, (sample, node).
-
-        x Tensor (sample, input): scaled inputs
-        """
-        ...
-
-
 def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: float) -> None:
     """Replace the last layer by its ridge least squares solution for the features as they are.
 
@@ -203,13 +188,13 @@ def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: floa
     network: with `features` and a linear layer `readout`; its readout is changed in place
     part pair of Tensor ((sample, input), (sample, output)): scaled samples
     """
-    parts = cast(WithReadout, network)
+    readout = cast(nn.Linear, network.readout)
     network.eval()
     with torch.no_grad():
         squares = _squares(_features(network, part[0]), part[1].cpu().double().numpy())
         weights, offset = squares.solved(penalty)
-        parts.readout.weight.copy_(torch.from_numpy(weights))
-        parts.readout.bias.copy_(torch.from_numpy(offset))
+        readout.weight.copy_(torch.from_numpy(weights))
+        readout.bias.copy_(torch.from_numpy(offset))
 
 
 def choose_penalty(
@@ -254,4 +239,4 @@ def _squares(h: NDArray[np.float64], y: NDArray[np.float64]) -> _Squares:
 
 def _features(network: nn.Module, x: Tensor) -> NDArray[np.float64]:
     with torch.no_grad():
-        return cast(WithReadout, network).features(x).cpu().double().numpy()
+        return cast(Any, network).features(x).cpu().double().numpy()

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
-from gaitdisc.recording import Samples, Scale
-from gaitdisc.sensing.reconstructor import STATIC, Reconstructor, ScaledModel
+from gaitdisc.recording import Samples
+from gaitdisc.sensing.reconstructor import STATIC, OfOne, Reconstructor, ScaledModel
 from gaitdisc.sensing.state_errors import stride_numbers
 from gaitdisc.sensing.windows import SEAM_S, present, stacked
 
@@ -20,7 +20,7 @@ STATES_WEIGHT = 3.0  # of the reconstructed states beside the readings, in stand
 
 
 @dataclass(frozen=True, eq=False)
-class Corrected:
+class Corrected(OfOne):
     """A model with what is added for one person: linear in the readings, their history and the reconstructed states."""
 
     model: ScaledModel
@@ -31,26 +31,6 @@ class Corrected:
     # taken off
     weights: NDArray[np.float64]
     offset: NDArray[np.float64]  # (state,) [each state's unit], mean error in the calibration strides
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """Those of the model."""
-        return self.model.inputs
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """Those of the model."""
-        return self.model.outputs
-
-    @property
-    def x_scale(self) -> Scale:
-        """Of every input, in the population."""
-        return self.model.x_scale
-
-    @property
-    def y_scale(self) -> Scale:
-        """Of every state, in the population."""
-        return self.model.y_scale
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """States (window, state) of the person, each in its unit."""

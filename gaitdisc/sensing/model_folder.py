@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+import zipfile
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
-from gaitdisc.recording import Recording
+from gaitdisc.recording import Recording, Scale
 from gaitdisc.recording.arrays import real_array
+from gaitdisc.regression.fourier_ridge import FourierRidge
 from gaitdisc.results.unit_folder import DamagedError, check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.sensing.reconstructor import (
     ENSEMBLE,
@@ -23,18 +26,21 @@ from gaitdisc.sensing.reconstructor import (
     OF_TEXT,
     ON_REQUEST,
     STATIC,
+    WITHOUT_NETWORK,
+    Ensemble,
     Reconstructor,
-    ScaledModel,
     Sensing,
     network_of,
 )
 from gaitdisc.sensing.windows import Lags, filled, refuse_unknown_way, windows_of
-from gaitdisc.whole_file import write_whole, written_so_far, written_together
+from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written_together
 
 if TYPE_CHECKING:
     from gaitdisc.networks.carried_windows import CarriedWindows
 
 NAME, WEIGHTS = "model.json", "weights.npz"
+WEIGHT = "weight:"  # before the name of each weight of a network
+RIDGE = ("frequencies", "phases", "weights", "offset")  # arrays of a ridge regression
 FORMAT = 1
 RATE_TOLERANCE = 1e-3
 
@@ -84,21 +90,11 @@ class SensingModel:
 @written_together()
 def save_model(model: SensingModel, folder: Path) -> None:
     """Save a model: `weights.npz`, and `model.json` with the hashes of both."""
-    from gaitdisc.regression.fourier_ridge import FourierRidge, save_ridge
-
     done = model.reconstructor
-    places = [folder / WEIGHTS]
-    if isinstance(done.model, FourierRidge):
-        save_ridge(done.model, folder / WEIGHTS)
-    else:
-        from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork, member_path, save_ensemble, save_network
-
-        if isinstance(done.model, Ensemble):
-            save_ensemble(done.model, folder / WEIGHTS)
-            places = [member_path(folder / WEIGHTS, number) for number in range(1, MEMBERS + 1)]
-        else:
-            assert isinstance(done.model, TrainedNetwork)  # there is no other kind
-            save_network(done.model, folder / WEIGHTS)
+    places = _places(done.kind, folder)
+    members = done.model.members if isinstance(done.model, Ensemble) else (done.model,)
+    for member, place in zip(members, places, strict=True):
+        save_weights(member, place)
     data = {
         "format": FORMAT,
         "kind": done.kind,
@@ -132,12 +128,15 @@ def load_model(folder: Path) -> SensingModel:
         if half.shape != (len(what.states),):
             raise ValueError(f"it has {half.size} interval half-widths for {len(what.states)} states")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
+        found = error.found if isinstance(error, DamagedError) else str(error)
         raise SchemaError(
             f"{folder.name}/{NAME} must be a model saved by gaitdisc",
-            f"it lacks {error}" if isinstance(error, KeyError) else _said(error),
+            f"it lacks {error}" if isinstance(error, KeyError) else found,
             "Run `gaitdisc reconstruct` again.",
         ) from error
-    weights = _weights(kind, what, folder)
+    build = None if kind in WITHOUT_NETWORK else network_of(kind, len(what.sensors))
+    members = tuple(load_weights(path, build) for path in _places(kind, folder))
+    weights = Ensemble(members) if kind == ENSEMBLE else members[0]
     readings = 1 if kind in STATIC else what.lags.count
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
         raise SchemaError(
@@ -149,22 +148,50 @@ def load_model(folder: Path) -> SensingModel:
     return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
 
 
-def _said(error: Exception) -> str:
-    return error.found if isinstance(error, DamagedError) else str(error)
+def _places(kind: str, folder: Path) -> list[Path]:
+    """Where the weights of a kind lie: in one file, of an ensemble in one for each member."""
+    if kind != ENSEMBLE:
+        return [folder / WEIGHTS]
+    return [folder / f"weights_{number}.npz" for number in range(1, MEMBERS + 1)]
 
 
-def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
-    if "ridge" in kind or kind == "linear":
-        from gaitdisc.regression.fourier_ridge import load_ridge
+def save_weights(model: Any, path: Path) -> None:
+    """Save a `FourierRidge` or a `TrainedNetwork` as `.npz`; what is loaded again equals it to the last bit."""
+    names = {"format": FORMAT, "inputs": model.inputs, "outputs": model.outputs}
+    if isinstance(model, FourierRidge):
+        names["penalty"] = model.penalty
+        own = {name: getattr(model, name) for name in RIDGE}
+    else:
+        own = {WEIGHT + name: values for name, values in model.weights().items()}
+    scales = {"x_mean": model.x_scale.mean, "x_sd": model.x_scale.sd}
+    scales |= {"y_mean": model.y_scale.mean, "y_sd": model.y_scale.sd}
+    with whole_file(path) as part, part.open("wb") as file:
+        np.savez(file, names=np.array(json.dumps(names)), **scales, **own)
 
-        return load_ridge(folder / WEIGHTS)
-    from gaitdisc.networks.trained_network import Ensemble, load_network, member_path
 
-    build = network_of(kind, len(what.sensors))
-    if kind == ENSEMBLE:
-        paths = [member_path(folder / WEIGHTS, number) for number in range(1, MEMBERS + 1)]
-        return Ensemble(tuple(load_network(path, build) for path in paths))
-    return load_network(folder / WEIGHTS, build)
+def load_weights(path: Path, build: Callable[[int, int], Any] | None = None) -> Any:
+    """Load what `save_weights` wrote: a network where `build` makes one of its numbers of inputs and outputs."""
+    what = "a trained network" if build else "a ridge regression"
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        names = json.loads(str(arrays["names"]))
+        if names["format"] != FORMAT:
+            raise ValueError(f"it has format {names['format']}; this version reads {FORMAT}")
+        scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])
+        named = tuple(names["inputs"]), tuple(names["outputs"]), *scales
+        if build is None:
+            return FourierRidge(*named, **{name: arrays[name] for name in RIDGE}, penalty=names["penalty"])
+        from gaitdisc.networks.trained_network import TrainedNetwork, with_weights
+
+        weights = {name.removeprefix(WEIGHT): arrays[name] for name in arrays if name.startswith(WEIGHT)}
+        return TrainedNetwork(*named, with_weights(build(len(named[0]), len(named[1])), weights))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise SchemaError(
+            f"{path.name} must be {what} saved by gaitdisc",
+            str(error),
+            "Load it as the kind of network that was saved, or train it again." if build else "Fit the model again.",
+        ) from error
 
 
 class Stream:
@@ -234,7 +261,7 @@ def _stepwise(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWi
     if reconstructor.kind not in ("shred", MASKED, ENSEMBLE, OF_TEXT):
         return _LastReadings(reconstructor)
     from gaitdisc.networks.carried_windows import CarriedWindows
-    from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
+    from gaitdisc.networks.trained_network import TrainedNetwork
 
     lags, model = reconstructor.sensing.lags, reconstructor.model
     if isinstance(model, Ensemble):

@@ -15,6 +15,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Scale
 from gaitdisc.regression.fourier_ridge import FourierRidge
 from gaitdisc.sensing.model_folder import SensingModel
+from gaitdisc.sensing.reconstructor import Ensemble
 from gaitdisc.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -36,8 +37,6 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     path: of an `.onnx` file; written whole or not at all
     """
     helper, checker = _onnx()
-    from gaitdisc.networks.trained_network import Ensemble
-
     fitted = model.reconstructor.model
     graph = _Graph(helper, np.float64 if isinstance(fitted, FourierRidge) else np.float32)
     x = graph.add("Cast", WINDOW, to=graph.type_of(graph.number))

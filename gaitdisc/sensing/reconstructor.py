@@ -18,6 +18,7 @@ from gaitdisc.recording import Recording, Samples, Scale
 from gaitdisc.sensing.windows import Lags, hidden, present, thinned, windows_of
 
 if TYPE_CHECKING:
+    from gaitdisc.networks.trained_network import TrainedNetwork
     from gaitdisc.networks.training_settings import TrainingSettings
 
 FEATURES = 1000
@@ -54,6 +55,56 @@ class ScaledModel(Model, Protocol):
     def y_scale(self) -> Scale:
         """Of every state."""
         ...
+
+
+class OfOne:
+    """A model with the names and scales of another one, its `model`."""
+
+    model: ScaledModel
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs, in order."""
+        return self.model.inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the states, in order."""
+        return self.model.outputs
+
+    @property
+    def x_scale(self) -> Scale:
+        """Of every input."""
+        return self.model.x_scale
+
+    @property
+    def y_scale(self) -> Scale:
+        """Of every state."""
+        return self.model.y_scale
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble(OfOne):
+    """Mean of networks that differ in their first weights and in the order of the samples.
+
+    Source: Lakshminarayanan, Pritzel and Blundell 2017, Simple and scalable predictive uncertainty estimation using
+        deep ensembles; without its variance head and adversarial training.
+    """
+
+    members: tuple[TrainedNetwork, ...]  # at least one; of the same inputs, outputs and scales
+
+    @property
+    def model(self) -> TrainedNetwork:  # type: ignore[override]
+        """The first member."""
+        return self.members[0]
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Mean states (window, state) for inputs (window, input)."""
+        return np.mean([member(x) for member in self.members], axis=0)
+
+    def spread(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Standard deviation among the members, (window, state) [each state's unit]: what all miss is not in it."""
+        return np.std([member(x) for member in self.members], axis=0)
 
 
 @dataclass(frozen=True)
@@ -158,7 +209,6 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
         return fit_fourier_ridge
     if kind == "fourier ridge":
         return partial(fit_fourier_ridge, features=FEATURES, seed=seed)
-    from gaitdisc.networks.trained_network import Ensemble
     from gaitdisc.networks.trainer import train
     from gaitdisc.networks.training_settings import TrainingSettings
 

@@ -14,10 +14,11 @@ from gaitdisc.networks import shred
 from gaitdisc.networks.carried_windows import CarriedWindows, decoded, gru_step, lstm_step
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.shred import ShallowDecoder, Shred
-from gaitdisc.networks.trained_network import TrainedNetwork, load_network, save_network
+from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Samples, scale_of
+from gaitdisc.sensing.model_folder import load_weights, save_weights
 
 BUILD = partial(Shred, sensors=1, nodes=16)
 
@@ -61,8 +62,8 @@ def test_it_learns_what_needs_history_and_is_loaded_as_it_was_saved(echo, tmp_pa
     later = echo.rows(slice(610, None))
     told = done.network(later.x)
     assert np.var(told - later.y) < 0.2 * np.var(later.y)
-    save_network(done.network, tmp_path / "shred.npz")
-    np.testing.assert_array_equal(load_network(tmp_path / "shred.npz", BUILD)(later.x), told)
+    save_weights(done.network, tmp_path / "shred.npz")
+    np.testing.assert_array_equal(load_weights(tmp_path / "shred.npz", BUILD)(later.x), told)
 
 
 def test_a_window_that_lacks_a_reading():

@@ -14,15 +14,10 @@ from gaitdisc.model import Model, augment
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.shred import ShallowDecoder
 from gaitdisc.networks.threads import pinned_threads, torch_threads
-from gaitdisc.networks.trained_network import (
-    Ensemble,
-    TrainedNetwork,
-    load_network,
-    member_path,
-    save_ensemble,
-    save_network,
-)
+from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import scale_of
+from gaitdisc.sensing.model_folder import load_weights, save_weights
+from gaitdisc.sensing.reconstructor import Ensemble
 
 
 def network(inputs=3, outputs=2, seed=0):
@@ -41,8 +36,8 @@ def network(inputs=3, outputs=2, seed=0):
 def test_loaded_equals_saved_to_the_last_bit(tmp_path_factory, inputs, outputs, seed):
     path = tmp_path_factory.mktemp("network") / "nominal.npz"
     saved = network(inputs, outputs, seed)
-    save_network(saved, path)
-    loaded = load_network(path, FeedForward)
+    save_weights(saved, path)
+    loaded = load_weights(path, FeedForward)
     assert (loaded.inputs, loaded.outputs) == (saved.inputs, saved.outputs)
     for name, values in saved.weights().items():
         assert values.tobytes() == loaded.weights()[name].tobytes()
@@ -71,15 +66,15 @@ def test_inputs_that_did_not_vary_weigh_nothing_and_are_named():
 
 def test_a_damaged_file_and_another_kind_of_network_are_refused(tmp_path):
     path = tmp_path / "nominal.npz"
-    save_network(network(), path)
+    save_weights(network(), path)
     with pytest.raises(SchemaError, match=r"nominal\.npz.*not.*FeedForward"):
-        load_network(path, partial(FeedForward, nodes=32))
+        load_weights(path, partial(FeedForward, nodes=32))
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
     with pytest.raises(SchemaError, match=r"nominal\.npz.*a trained network"):
-        load_network(path, FeedForward)
+        load_weights(path, FeedForward)
     with pytest.raises(SchemaError, match=r"absent\.npz"):
-        load_network(tmp_path / "absent.npz", FeedForward)
+        load_weights(tmp_path / "absent.npz", FeedForward)
 
 
 @pytest.fixture
@@ -103,13 +98,6 @@ def test_mean_and_spread_of_its_members(five):
     assert (alone.spread(x) == 0).all()
     assert (five.inputs, five.outputs) == (("a", "b", "c"), ("d", "e"))
     assert five.x_scale is five.members[0].x_scale and five.y_scale is five.members[0].y_scale
-
-
-def test_every_member_has_its_file(five, tmp_path):
-    save_ensemble(five, tmp_path / "weights.npz")
-    loaded = [load_network(member_path(tmp_path / "weights.npz", k), ShallowDecoder) for k in range(1, 6)]
-    x = np.ones((2, 3))
-    np.testing.assert_array_equal(Ensemble(tuple(loaded))(x), five(x))
 
 
 def test_threads_are_as_before_also_after_an_error():

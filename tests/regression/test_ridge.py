@@ -11,8 +11,9 @@ from sklearn.linear_model import Ridge as SklearnRidge
 from gaitdisc.errors import SchemaError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples
-from gaitdisc.regression.fourier_ridge import fit_fourier_ridge, load_ridge, save_ridge
+from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
 from gaitdisc.regression.ridge import PENALTIES, fit_ridge
+from gaitdisc.sensing.model_folder import load_weights, save_weights
 
 
 def walk(count=1000, seed=0, noise=0.0, inputs=3):
@@ -139,8 +140,8 @@ def model():
 
 
 def test_what_is_loaded_equals_what_was_saved(model, tmp_path):
-    save_ridge(model, tmp_path / "m.npz")
-    kept, x = load_ridge(tmp_path / "m.npz"), np.random.default_rng(1).normal(size=(9, 2))
+    save_weights(model, tmp_path / "m.npz")
+    kept, x = load_weights(tmp_path / "m.npz"), np.random.default_rng(1).normal(size=(9, 2))
     np.testing.assert_array_equal(kept(x), model(x))
     assert (kept.inputs, kept.outputs, kept.penalty) == (model.inputs, model.outputs, model.penalty)
 
@@ -148,8 +149,8 @@ def test_what_is_loaded_equals_what_was_saved(model, tmp_path):
 def test_a_damaged_or_missing_file(model, tmp_path):
     path = tmp_path / "m.npz"
     with pytest.raises(SchemaError, match=r"m\.npz.*a ridge regression"):
-        load_ridge(path)
-    save_ridge(model, path)
+        load_weights(path)
+    save_weights(model, path)
     path.write_bytes(path.read_bytes()[:-200])
     with pytest.raises(SchemaError, match="Fit the model again"):
-        load_ridge(path)
+        load_weights(path)

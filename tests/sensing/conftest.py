@@ -8,9 +8,9 @@ import torch
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
-from gaitdisc.networks.trained_network import Ensemble, TrainedNetwork
+from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
-from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Reconstructor, network_of, sensing
+from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Ensemble, Reconstructor, network_of, sensing
 from gaitdisc.sensing.windows import Lags, split_within
 
 

@@ -73,6 +73,8 @@ def test_every_recurrent_network_is_loaded_as_it_was(pair, untrained, tmp_path, 
     save_model(SensingModel(done, pair.channels, np.ones(1)), tmp_path)
     test = pair.parts.tested()
     np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), done(test))
+    files = {f"weights_{k}.npz" for k in range(1, 6)} if kind == "shred ensemble" else {"weights.npz"}
+    assert {path.name for path in tmp_path.iterdir()} == {"model.json", *files}
 
 
 def test_the_order_of_channels_in_a_recording_does_not_matter(pair, saved):

@@ -64,6 +64,20 @@ class Panel:
         return "   ".join([*words, *([self.about] if self.about else []), *(["(wider axis)"] if self.is_wider else [])])
 
     @property
+    def shades(self) -> list[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
+        """Bands of the reference, the wider first: what each is called, its lower and its upper end."""
+        if self.band is None:
+            return []
+        mean, sd = self.band.mean, self.band.sd
+        return [(kind, mean - many * sd, mean + many * sd) for kind, many in (("band2", 2), ("band", 1))]
+
+    @property
+    def bars(self) -> list[tuple[str, int, int]]:
+        """Bars below the curves, where a muscle is active, and above them, where sets of cycles differ: kind, ends."""
+        bars = [("normal", first, last) for first, last in self.normal]
+        return bars + [("matters" if matters else "small", first, last) for first, last, matters in self.differs]
+
+    @property
     def alt(self) -> str:
         """What is seen, for those who cannot see it."""
         parts = []
@@ -82,15 +96,13 @@ class Panel:
     def ends(self) -> tuple[float, float]:
         """Lowest and highest value of the axis: as given, or farther where a mean curve goes beyond."""
         parts = [line.values for line in self.lines if self.axis is None or line.look != "single"]
-        if self.band is not None and self.axis is None:
-            parts += [self.band.mean - 2 * self.band.sd, self.band.mean + 2 * self.band.sd]
+        parts += [end for _, *both in self.shades for end in both] if self.axis is None else []
         low, high = min(float(np.nanmin(p)) for p in parts), max(float(np.nanmax(p)) for p in parts)
         pad = 0.06 * max(high - low, 1e-6)
         if self.axis is None:
-            return (min(low - pad, 0.0) if self.normal else low - pad), high + pad
-        return (low - pad if low < self.axis[0] else self.axis[0]), (
-            high + pad if high > self.axis[1] else self.axis[1]
-        )
+            return low - pad, high + pad
+        first, last = self.axis
+        return (low - pad if low < first else first), (high + pad if high > last else last)
 
     @property
     def is_wider(self) -> bool:
@@ -123,12 +135,15 @@ def svg(panel: Panel) -> str:
         f'<svg viewBox="0 0 {panel.width} {HEIGHT}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
         f'data-low="{low:.5g}" data-high="{high:.5g}">'
     ]
-    parts += _band(panel, y)
+    for kind, below, above in panel.shades:
+        back = _points(panel, y(below)).split(" ")
+        pairs = [f"{back[i]} {back[i + 1]}" for i in range(0, len(back), 2)]
+        parts.append(f'<path class="{kind}" d="M{_points(panel, y(above))}L{" ".join(reversed(pairs))}Z"/>')
+    if panel.band is not None:
+        parts.append(f'<path class="middle" d="M{_points(panel, y(panel.band.mean))}"/>')
     parts += _axes(panel, low, high, y)
-    bars = [("normal", first, last, BOTTOM - BAR) for first, last in panel.normal]
-    bars += [("matters" if matters else "small", first, last, TOP) for first, last, matters in panel.differs]
-    for kind, first, last, at in bars:
-        x, end = _x(panel, first), _x(panel, last)
+    for kind, first, last in panel.bars:
+        x, end, at = _x(panel, first), _x(panel, last), BOTTOM - BAR if kind == "normal" else TOP
         parts.append(f'<rect class="{kind}" x="{x:.1f}" y="{at}" width="{end - x:.1f}" height="{BAR}"/>')
     for side, percent in panel.foot_off:
         at, colour = _x(panel, percent), SIDES[side].colour
@@ -158,18 +173,6 @@ def _path(panel: Panel, line: Line, y) -> str:
         f'<path class="{line.look}" data-side="{line.side}" stroke="{SIDES[line.side].colour}"{dashed} '
         f'd="M{_points(panel, y(values))}"/>'
     )
-
-
-def _band(panel: Panel, y) -> list[str]:
-    if panel.band is None:
-        return []
-    parts = []
-    for kind, many in (("band2", 2), ("band", 1)):
-        above, below = (y(panel.band.mean + sign * many * panel.band.sd) for sign in (1, -1))
-        back = _points(panel, below).split(" ")
-        pairs = [f"{back[i]} {back[i + 1]}" for i in range(0, len(back), 2)]
-        parts.append(f'<path class="{kind}" d="M{_points(panel, above)}L{" ".join(reversed(pairs))}Z"/>')
-    return [*parts, f'<path class="middle" d="M{_points(panel, y(panel.band.mean))}"/>']
 
 
 def _axes(panel: Panel, low: float, high: float, y) -> list[str]:
@@ -243,9 +246,7 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
     Beside the title the number of cycles, above the curves the peak of the mean, of channels in volts.
     """
     feet, curves = pooled.kept["side"].to_numpy(), pooled.curves
-    panels: dict[str, list[Line]] = {}
-    counts: dict[str, list[str]] = {}
-    peaks: dict[str, dict[str, float]] = {}
+    muscles: dict[str, list[tuple[Line, int, float]]] = {}  # curve in percent, its cycles, its peak [V]
     for column, channel in enumerate(pooled.channels):
         if channel.quantity != "emg" or not channel.side:
             continue
@@ -253,19 +254,28 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
         own = own[np.isfinite(own).all(axis=1)]
         if len(own) and own.mean(axis=0).max() > 0:
             mean = own.mean(axis=0)
-            peaks.setdefault(sideless(channel.name), {})[channel.side] = mean.max() if channel.unit == "V" else np.nan
-            panels.setdefault(sideless(channel.name), []).append(Line(channel.side, 100 * mean / mean.max()))
-            counts.setdefault(sideless(channel.name), []).append(f"{SHORT[channel.side]} {len(own)}")
+            line, volts = Line(channel.side, 100 * mean / mean.max()), mean.max() if channel.unit == "V" else np.nan
+            muscles.setdefault(sideless(channel.name), []).append((line, len(own), volts))
     kept = pooled.kept
     means = {side: float(kept.loc[kept["side"] == side, "stance_percent"].mean()) for side in FEET}
     offs = tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
     found = []
-    for muscle, lines in panels.items():
-        short = muscle.removeprefix("emg_")
-        note = ", ".join(sorted(counts[muscle]))
-        title = label(f"{muscle}_r").removeprefix("EMG ").rpartition(",")[0]
-        shown = (muscle, title, "% of own peak", "", "", note, tuple(lines), None, offs, NORMAL.get(short, ()))
-        found.append(Panel(*shown, axis=(-5.0, 105.0), about=_peak_words(peaks[muscle])))
+    for muscle, own in muscles.items():
+        found.append(
+            Panel(
+                name=muscle,
+                title=label(f"{muscle}_r").removeprefix("EMG ").rpartition(",")[0],
+                unit="% of own peak",
+                up="",
+                down="",
+                note=", ".join(sorted(f"{SHORT[line.side]} {count}" for line, count, _ in own)),
+                lines=tuple(line for line, _, _ in own),
+                foot_off=offs,
+                normal=NORMAL.get(muscle.removeprefix("emg_"), ()),
+                axis=(-5.0, 105.0),
+                about=_peak_words({line.side: volts for line, _, volts in own}),
+            )
+        )
     return in_rows(found)
 
 

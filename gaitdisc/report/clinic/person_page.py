@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
 
+from gaitdisc.report.clinic.laboratory import ENGLISH, TIERS, PageWords
 from gaitdisc.report.clinic.panels import (
     MOST_SINGLE,
     Panel,
@@ -20,22 +20,20 @@ from gaitdisc.report.clinic.panels import (
     sheet,
     svg,
 )
-from gaitdisc.report.clinic.values import (
-    ENGLISH,
-    MARKS,
-    TIERS,
-    PageWords,
-    change_table,
+from gaitdisc.report.clinic.sentences import (
     contrast_sentences,
-    files_table,
     laboratory_sentences,
     noted_sentences,
-    numbers_table,
     outstanding_sentences,
-    profile_svg,
-    profile_table,
     quality_sentence,
     score_sentences,
+)
+from gaitdisc.report.clinic.values import (
+    MARKS,
+    change_table,
+    numbers_table,
+    profile_svg,
+    profile_table,
     values_table,
 )
 from gaitdisc.report.figure import file_names
@@ -71,12 +69,6 @@ COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")
 HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]", "stands out", "why")
 
 
-def page_names(titles: Sequence[str]) -> list[str]:
-    """Name of the page of each, without ending; no two alike."""
-    named = file_names(titles)
-    return [named[title] for title in titles]
-
-
 def write_person_page(
     person: PersonSession,
     name: str,
@@ -89,6 +81,7 @@ def write_person_page(
     beside = folder / "people" / name
     main, *others = person.readings
     script = SCRIPT.read_text(encoding="utf-8")
+    files = {file: sha256 for reading in person.readings for file, sha256 in reading.pooled.files.items()}
     shown = {
         "say": say,
         "title": person.title,
@@ -103,7 +96,9 @@ def write_person_page(
         "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
         "contrasts": [_contrast(one, beside, say) for one in person.contrasts if one is not person.before_after],
         "method": _method(person),
-        "files": _saved(files_table(list(person.readings)), beside, "", say),
+        "files": _saved(
+            words_table("files", f"Files, n = {len(files)}.", ("file", "SHA-256"), files.items()), beside, "", say
+        ),
         "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
         "script": Markup(script),
         "script_hash": f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",
@@ -209,7 +204,30 @@ def _method(person: PersonSession) -> list[str]:
 
 def index_rows(person: PersonSession, name: str, say: PageWords = ENGLISH) -> list[dict[str, str]]:
     """Rows of the index for a person and session, with the name of the page."""
-    return [_row(reading, person, name, say) for reading in person.readings]
+    rows = []
+    for reading in person.readings:
+        pooled = reading.pooled
+        score = reading.profile.both if reading.profile else None
+        tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
+        first = [
+            f"{mark} {sentences[0].partition(';')[0]}" + (f" (+{len(sentences) - 1})" if len(sentences) > 1 else "")
+            for mark, sentences in tiers
+            if sentences
+        ]
+        rows.append(
+            {
+                "light": reading.light,
+                "subject": pooled.subject,
+                "person": person.title,
+                "condition": pooled.condition,
+                "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
+                "score": number(score.value, 1) if score else NONE,
+                "noted": "\n".join(first) or NONE if not reading.silent else NONE,
+                "why": "; ".join(reading.reasons) or NONE,
+                "page": f"people/{name}.html" if name else "",
+            }
+        )
+    return rows
 
 
 def write_index(
@@ -243,28 +261,6 @@ def write_index(
         "people": counted(len({row["subject"] for row in rows}), "person").replace("persons", "people"),
     }
     return write_whole(folder / "index.html", page_text("people", shown))
-
-
-def _row(reading: ClinicalReading, person: PersonSession, name: str, say: PageWords) -> dict[str, str]:
-    pooled = reading.pooled
-    score = reading.profile.both if reading.profile else None
-    tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
-    first = "\n".join(f"{mark} {each[0].partition(';')[0]}{_more(each)}" for mark, each in tiers if each) or NONE
-    return {
-        "light": reading.light,
-        "subject": pooled.subject,
-        "person": person.title,
-        "condition": pooled.condition,
-        "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
-        "score": number(score.value, 1) if score else NONE,
-        "noted": first if not reading.silent else NONE,
-        "why": "; ".join(reading.reasons) or NONE,
-        "page": f"people/{name}.html" if name else "",
-    }
-
-
-def _more(sentences: Sequence[str]) -> str:
-    return f" (+{len(sentences) - 1})" if len(sentences) > 1 else ""
 
 
 def _reference_words(reference: ClinicalReference | None) -> str:

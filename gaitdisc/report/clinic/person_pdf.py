@@ -13,20 +13,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.laboratory import ENGLISH, PageWords
 from gaitdisc.report.clinic.panels import SPANS, Panel, contrast_sheet, emg_sheet, sheet
 from gaitdisc.report.clinic.person_page import CONTRAST, CYCLES, EMG, MOMENT_SIGNS, band_words
-from gaitdisc.report.clinic.values import (
-    ENGLISH,
-    PageWords,
-    change_table,
+from gaitdisc.report.clinic.sentences import (
     contrast_sentences,
     laboratory_sentences,
     outstanding_sentences,
-    profile_rows,
     quality_sentence,
     score_sentences,
-    values_table,
 )
+from gaitdisc.report.clinic.values import change_table, profile_rows, values_table
 from gaitdisc.report.panels import SIDES, in_style
 from gaitdisc.results.clinical_reference import ClinicalReading, Contrast, PersonSession, Profile
 from gaitdisc.results.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
@@ -47,6 +44,7 @@ CELL, FIRST_CELL = 0.95, 1.45  # inch, of a table
 BARS = (6.3, 1.45)  # inch, where bars of the profile begin beside a table, and how wide they are
 LOOKS = {"mean": 1.2, "single": 0.35, "before": 0.8}
 DASHES = {"l": "-", "r": (0, (5.0, 1.6)), "": "-"}
+GREYS = {"band2": "#ececec", "band": "#c9c9c9", "normal": "#555555", "matters": "#111111", "small": "#9a9a9a"}
 USE = "Research use, not a medical device. No diagnosis."
 KEY = "Left red, unbroken; right blue, dashed; marks: foot off; L, R: cycles."
 HEAD, SMALL = 9.5, 6.8  # points
@@ -234,11 +232,10 @@ def _draw_profile(axes: Axes, profile: Profile, say: PageWords) -> None:
 
 def draw_panel(axes: Axes, panel: Panel) -> None:
     """Draw a panel on axes, as its SVG is drawn."""
+    for kind, below, above in panel.shades:
+        axes.fill_between(PERCENT, below, above, color=GREYS[kind], linewidth=0)
     if panel.band is not None:
-        mean, sd = panel.band.mean, panel.band.sd
-        for many, colour in ((2, "#ececec"), (1, "#c9c9c9")):
-            axes.fill_between(PERCENT, mean - many * sd, mean + many * sd, color=colour, linewidth=0)
-        axes.plot(PERCENT, mean, color="#9a9a9a", linewidth=0.6)
+        axes.plot(PERCENT, panel.band.mean, color="#9a9a9a", linewidth=0.6)
     for line in panel.lines:
         dash = DASHES[line.side] if line.look == "mean" else ":" if line.look == "before" else "-"
         faint = 0.45 if line.look == "single" else 1.0
@@ -248,11 +245,9 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
     axes.set(xlim=(0, 100), ylim=(low, high), xticks=[0, 50, 100])
     for side, percent in panel.foot_off:
         axes.plot([percent, percent], [low, low + 0.12 * (high - low)], color=SIDES[side].colour, linewidth=1.0)
-    bars = [(first, last, 0.02, "#555555") for first, last in panel.normal]
-    bars += [(first, last, 0.98, "#111111" if matters else "#9a9a9a") for first, last, matters in panel.differs]
-    for first, last, share, colour in bars:
-        at = low + share * (high - low)
-        axes.plot([first, last], [at, at], color=colour, linewidth=3.0, solid_capstyle="butt")
+    for kind, first, last in panel.bars:
+        at = low + (0.02 if kind == "normal" else 0.98) * (high - low)
+        axes.plot([first, last], [at, at], color=GREYS[kind], linewidth=3.0, solid_capstyle="butt")
     if low < 0 < high:
         axes.axhline(0.0, color="#cfcfcf", linewidth=0.5, zorder=0)
     axes.tick_params(labelsize=5.5, length=2, pad=1)

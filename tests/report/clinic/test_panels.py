@@ -7,6 +7,7 @@ from made_clinic import made_controls, made_person
 from texts import says
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.report.clinic.laboratory import PageWords
 from gaitdisc.report.clinic.panels import (
     BOTTOM,
     LEFT,
@@ -22,7 +23,6 @@ from gaitdisc.report.clinic.panels import (
     svg,
     ticks,
 )
-from gaitdisc.report.clinic.values import PageWords
 from gaitdisc.results.clinical_reference import Band
 from gaitdisc.results.leg_curves import KINEMATICS, POWERS
 

@@ -12,11 +12,11 @@ from texts import says
 
 from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.laboratory import Laboratory
+from gaitdisc.report.clinic.laboratory import Laboratory, PageWords
 from gaitdisc.report.clinic.panels import Panel, sheet
-from gaitdisc.report.clinic.person_page import index_rows, page_names, write_index, write_person_page
+from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.report.clinic.person_pdf import draw_panel, write_person_pdf
-from gaitdisc.report.clinic.values import PageWords
+from gaitdisc.report.figure import file_names
 from gaitdisc.results.clinical_reference import PersonSession
 from gaitdisc.results.leg_curves import KINEMATICS
 from gaitdisc.results.provenance import Refusal
@@ -26,7 +26,7 @@ REFERENCE = made_controls(6)
 
 def _page(tmp_path, *people, title="P01", contrasts=()):
     session = PersonSession(title, tuple(read_beside(one, REFERENCE) for one in people), contrasts)
-    return write_person_page(session, page_names([title])[0], REFERENCE, PROVENANCE, tmp_path)
+    return write_person_page(session, file_names([title])[title], REFERENCE, PROVENANCE, tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +64,8 @@ def test_the_numbers_of_every_sheet_and_table_lie_beside_it(page):
     beside = page.with_suffix("")
     names = {path.name for path in beside.iterdir()}
     assert {"kinematics.csv", "kinetics.csv", "emg.csv", "cycles.csv", "spatiotemporal.csv", "files.csv"} <= names
+    files = pd.read_csv(beside / "files.csv").to_numpy().tolist()
+    assert files == [["P01 walk, file 1", 64 * "a"], ["P01 turn, file 1", 64 * "a"]]
     for name in re.findall(r"P01/([\w-]+\.csv)", page.read_text(encoding="utf-8")):
         assert len(pd.read_csv(beside / name)) == 101
 

@@ -6,7 +6,6 @@ from gaitdisc.clinic.reading import read_beside
 from gaitdisc.report.clinic.values import (
     LEFT,
     RIGHT,
-    files_table,
     numbers_table,
     profile_svg,
     profile_table,
@@ -33,7 +32,6 @@ def test_all_that_stands_out_and_the_profile_have_their_numbers():
     profile = profile_table(reading)
     assert len(profile.rows) == 9 and len(profile.numbers) == 18
     assert profile_table(read_beside(made_person(), None)) is None
-    assert files_table([reading]).rows == (("P01 walk, file 1", 64 * "a"),)
 
 
 def test_bars_are_as_long_as_their_scores():

@@ -10,18 +10,15 @@ from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.laboratory import PageWords, english_words, read_words, write_words
 from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.report.clinic.values import (
+from gaitdisc.report.clinic.sentences import (
     MOST,
-    PageWords,
     contrast_sentences,
-    english_words,
     noted_sentences,
     outstanding_sentences,
     quality_sentence,
-    read_words,
     score_sentences,
-    write_words,
 )
 from gaitdisc.results.clinical_reference import Limits, Noted, PersonSession
 
