@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable, Iterator
 from functools import cache
 
 import numpy as np
@@ -18,6 +19,7 @@ from gaitdisc.errors import UnitError
 
 _BASES = ("kg", "m", "s", "rad", "V")
 Dimension = tuple[float, ...]
+Powers = dict[str, float]  # of the words of a unit
 
 
 def _of(factor: float, **powers: float) -> tuple[float, Dimension]:
@@ -45,8 +47,7 @@ _FACTORS = {
     "mV": _of(1e-3, V=1),
     "uV": _of(1e-6, V=1),
 }
-_PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?\Z")
-
+_PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?")
 
 _CLOSED = {  # of a recording: the unit used inside, and what is converted to it
     "deg": ("rad",),
@@ -182,28 +183,70 @@ def unit_factor(unit: str, to: str) -> float | None:
 
 @cache
 def _parsed(unit: str) -> tuple[float, Dimension] | None:
-    """Factor to the base units, and the power of each."""
-    factor, powers, sign = 1.0, [0.0] * len(_BASES), 1
-    for number, group in enumerate(re.split(r"\s*/\s*", unit.strip()[:80])):
-        sign = 1 if number == 0 else -1
-        for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
-            found = _PART.match(part)
-            if not found or found[1] not in _FACTORS:
-                return None
-            power = sign * int(found[2] or 1)
-            own, dimension = _FACTORS[found[1]]
-            factor *= own**power
-            powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
+    return _measured(_words(unit.strip()[:80]))
+
+
+def _measured(words: Iterable[tuple[str, float]]) -> tuple[float, Dimension] | None:
+    """Factor to the base units, and the power of each; none where a word is unknown."""
+    factor, powers = 1.0, [0.0] * len(_BASES)
+    for word, power in words:
+        if word not in _FACTORS:
+            return None
+        own, dimension = _FACTORS[word]
+        factor *= own**power
+        powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
     return factor, tuple(powers)
 
 
-def dimension_of(unit: str) -> Dimension | None:
+def _words(unit: str) -> Iterator[tuple[str, int]]:
+    """Words of a unit, known or not, each with its power; an empty one where something is missing."""
+    for number, group in enumerate(unit.split("/")):
+        for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
+            found = _PART.fullmatch(part)
+            word, power = (found[1], int(found[2] or 1)) if found else (part, 1)
+            yield word, power if number == 0 else -power
+
+
+def unit_powers(unit: str) -> Powers:
+    """Power of each word of a unit, known or not.
+
+    >>> unit_powers("N m s/rad")
+    {'N': 1, 'm': 1, 's': 1, 'rad': -1}
+    """
+    powers: Powers = {}
+    for word, power in _words(unit):
+        if word not in ("", "1"):
+            powers = multiplied(powers, {word: power})
+    return powers
+
+
+def multiplied(one: Powers, other: Powers, sign: int = 1) -> Powers:
+    """Powers of a product; with the sign -1 of a quotient."""
+    product = dict(one)
+    for word, power in other.items():
+        product[word] = product.get(word, 0) + sign * power
+    return {word: power for word, power in product.items() if power}
+
+
+def unit_of_powers(powers: Powers) -> str:
+    """Unit as a person writes it.
+
+    >>> unit_of_powers({"N": 1, "m": 1, "s": 2, "rad": -1}), unit_of_powers({})
+    ('N m s^2/rad', '1')
+    """
+    words = {word: word if abs(power) == 1 else f"{word}^{abs(power):g}" for word, power in powers.items()}
+    above, below = ([words[word] for word in powers if sign * powers[word] > 0] for sign in (1, -1))
+    under = below[0] if len(below) == 1 else f"({' '.join(below)})"
+    return (" ".join(above) or "1") + (f"/{under}" if below else "")
+
+
+def dimension_of(unit: str | Powers) -> Dimension | None:
     """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
 
-    >>> dimension_of("N m s/rad") == dimension_of("kg m^2/s")
+    >>> dimension_of("N m s/rad") == dimension_of({"kg": 1, "m": 2, "s": -1})
     True
     """
-    found = _parsed(unit)
+    found = _parsed(unit) if isinstance(unit, str) else _measured(unit.items())
     return (
         None if found is None else tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
     )
