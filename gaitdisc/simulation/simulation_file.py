@@ -20,18 +20,18 @@ from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
-MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
+MOSTTABLES = 1000  # the library that parses takes a time that grows with their square
 ERRORS = ("gain", "sd", "wander")  # of an input
-_TABLES = {
+TABLES = {
     "states": ("unit", "meaning", "initial"),
     "inputs": ("unit", "meaning", *ERRORS),
     "parameters": ("value", "unit", "low", "high", "meaning"),
     "ports": ("unit", "meaning"),
 }
 _EXPRESSIONS = ("definitions", "equations", "observations")
-_SECTIONS = ("title", "model", *_TABLES, *_EXPRESSIONS, "effects")
+_SECTIONS = ("title", "model", *TABLES, *_EXPRESSIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
-_OBSERVATION = ("expression", "unit", "sd", "lowpass")
+SENSOR = ("unit", "sd", "lowpass")
 _FOLDER = Path(__file__).parent / "systems"
 
 
@@ -88,8 +88,8 @@ def read_simulation(path: Path | str) -> Simulation:
 
 def simulation_of(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
     """Simulation of the text of a TOML file."""
-    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
-        raise _not_toml(file, f"more than {MOST_TABLES} tables")
+    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOSTTABLES:
+        raise _not_toml(file, f"more than {MOSTTABLES} tables")
     try:
         table = parsed_toml(text.replace("\r\n", "\n"))
     except ValueError as error:
@@ -112,8 +112,8 @@ def _not_toml(file: str, found: str) -> ReadError:
 
 def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
     _check_keys(table, _SECTIONS, ())
-    parts = {section: _table(table.get(section, {}), (section,)) for section in (*_TABLES, *_EXPRESSIONS)}
-    for section, keys in _TABLES.items():
+    parts = {section: _table(table.get(section, {}), (section,)) for section in (*TABLES, *_EXPRESSIONS)}
+    for section, keys in TABLES.items():
         for name, entry in parts[section].items():
             _check_keys(_table(entry, (section, name)), keys, (section, name))
     effects = table.get("effects", [])
@@ -177,7 +177,7 @@ def _parameter(name: str, entry: Mapping[str, Any]) -> Parameter:
 
 def _sensor(name: str, entry: Mapping[str, Any]) -> Sensor:
     place = ("observations", name)
-    _check_keys(entry, _OBSERVATION, place)
+    _check_keys(entry, ("expression", *SENSOR), place)
     if "expression" not in entry:
         raise SimulationError("an observation needs an expression", "it has none", 'Write expression = "...".', place)
     sd, lowpass = _number(entry, "sd", place), _number(entry, "lowpass", place)

@@ -91,8 +91,9 @@ def powers_in(
 def _alike(tree: Operation, parts: list[Powers | None], report: Report | None) -> Powers | None:
     """Unit of a sum or of the largest of several: of the first that has one, if the others have no other."""
     there = [(part, argument) for part, argument in zip(parts, tree.arguments, strict=True) if part is not None]
-    for part, argument in there[1:] if report else ():
-        if dimension_of(part) != dimension_of(there[0][0]):
+    unlike = (one for one in there[1:] if dimension_of(one[0]) != dimension_of(there[0][0]))
+    if report is not None:
+        for _, argument in unlike:
             word = "compared" if tree.symbol in ("max", "min") else "added"
             report(f"{_short(there[0][1])} and {_short(argument)} are {word} but differ in unit")
             return None
