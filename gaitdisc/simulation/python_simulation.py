@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gaitdisc.simulation.parts import Input, Parameter, Port, State
 from gaitdisc.simulation.refusal import SimulationError
@@ -51,14 +51,14 @@ class PythonSimulation:
 
     @cached_property
     def feeds(self) -> Simulation:
-        """What the function is fed with, as observations: ports, what is added to each equation, inputs."""
+        """What the function is fed with, as observations: ports, what is added to each equation, inputs, the time."""
         sums = {port.name: port.name for port in self.ports}
         for state in self.states:
             own = [f"({each.term})" for each in self.effects if (each.kind, each.place) == ("equation", state.name)]
             sums[f"d/dt {state.name}"] = " + ".join(own) or "0"
         given = dict(self.replaced)
         sums |= {f"input {each.name}": given.get(each.name, each.name) for each in self.inputs}
-        return replace(self.parts, observations=tuple(sums.items()), sensors=())
+        return replace(self.parts, observations=(*sums.items(), ("time", "t")), sensors=())
 
     def with_input(self, name: str, expression: str) -> PythonSimulation:
         """Simulation in which an input is replaced by an expression of itself."""
@@ -96,21 +96,16 @@ def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | P
 
 
 def called(
-    simulation: PythonSimulation,
-    t: ArrayLike,
-    x: NDArray[np.float64],
-    fed: NDArray[np.float64],
-    values: NDArray[np.float64],
+    simulation: PythonSimulation, x: NDArray[np.float64], fed: NDArray[np.float64], values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Derivatives by the function, with what was added to the equations.
 
-    t (row,): time [s]
     x (row, state): states
-    fed (row, feed): ports, sums of the equations' effects, inputs: the observations of `PythonSimulation.feeds`
+    fed (row, feed): ports, sums of the equations' effects, inputs, time: the observations of `PythonSimulation.feeds`
     values (row, parameter): parameters
     """
     ports, states = len(simulation.ports), len(simulation.states)
-    own = np.asarray(simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports]))
+    own = np.asarray(simulation.rates(fed[:, -1], x, fed[:, ports + states : -1], values, fed[:, :ports]))
     if own.shape != x.shape or own.dtype.kind not in "fiu":
         raise SimulationError(
             f"the right-hand side of {simulation.title!r} must return one number per row and state, shape {x.shape}",
