@@ -183,7 +183,7 @@ def unit_factor(unit: str, to: str) -> float | None:
 
 @cache
 def _parsed(unit: str) -> tuple[float, Dimension] | None:
-    return _measured(_words(unit.strip()[:80]))
+    return _measured(unit_words(unit.strip()[:80]))
 
 
 def _measured(words: Iterable[tuple[str, float]]) -> tuple[float, Dimension] | None:
@@ -198,46 +198,17 @@ def _measured(words: Iterable[tuple[str, float]]) -> tuple[float, Dimension] | N
     return factor, tuple(powers)
 
 
-def _words(unit: str) -> Iterator[tuple[str, int]]:
-    """Words of a unit, known or not, each with its power; an empty one where something is missing."""
+def unit_words(unit: str) -> Iterator[tuple[str, int]]:
+    """Words of a unit, known or not, each with its power; an empty one where something is missing.
+
+    >>> [*unit_words("N m s/rad^2")]
+    [('N', 1), ('m', 1), ('s', 1), ('rad', -2)]
+    """
     for number, group in enumerate(unit.split("/")):
         for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
             found = _PART.fullmatch(part)
             word, power = (found[1], int(found[2] or 1)) if found else (part, 1)
             yield word, power if number == 0 else -power
-
-
-def unit_powers(unit: str) -> Powers:
-    """Power of each word of a unit, known or not.
-
-    >>> unit_powers("N m s/rad")
-    {'N': 1, 'm': 1, 's': 1, 'rad': -1}
-    """
-    powers: Powers = {}
-    for word, power in _words(unit):
-        if word not in ("", "1"):
-            powers = multiplied(powers, {word: power})
-    return powers
-
-
-def multiplied(one: Powers, other: Powers, sign: int = 1) -> Powers:
-    """Powers of a product; with the sign -1 of a quotient."""
-    product = dict(one)
-    for word, power in other.items():
-        product[word] = product.get(word, 0) + sign * power
-    return {word: power for word, power in product.items() if power}
-
-
-def unit_of_powers(powers: Powers) -> str:
-    """Unit as a person writes it.
-
-    >>> unit_of_powers({"N": 1, "m": 1, "s": 2, "rad": -1}), unit_of_powers({})
-    ('N m s^2/rad', '1')
-    """
-    words = {word: word if abs(power) == 1 else f"{word}^{abs(power):g}" for word, power in powers.items()}
-    above, below = ([words[word] for word in powers if sign * powers[word] > 0] for sign in (1, -1))
-    under = below[0] if len(below) == 1 else f"({' '.join(below)})"
-    return (" ".join(above) or "1") + (f"/{under}" if below else "")
 
 
 def dimension_of(unit: str | Powers) -> Dimension | None:

@@ -8,8 +8,7 @@ from collections.abc import Mapping
 
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.unit_check import factor_of, powers_in
-from gaitdisc.units import multiplied, unit_of_powers, unit_powers
+from gaitdisc.simulation.unit_check import factor_of, multiplied, powers_in, unit_of_powers, unit_powers
 
 _ANGLE = re.compile(r"^rad(?=$|/s)")
 IN_DEGREES = 1e-3  # off 180/pi, as people round it

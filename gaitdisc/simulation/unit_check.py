@@ -10,7 +10,7 @@ from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.units import Powers, dimension_of, multiplied, unit_factor, unit_powers
+from gaitdisc.units import Powers, dimension_of, unit_factor, unit_words
 
 _SAME = frozenset(["+", "-", "max", "min"])
 _CHOSEN = {"neg": 0, "abs": 0, "delay": 0, "where": 1}  # which argument's unit it has
@@ -98,6 +98,35 @@ def _alike(tree: Operation, parts: list[Powers | None], report: Report | None) -
             report(f"{_short(there[0][1])} and {_short(argument)} are {word} but differ in unit")
             return None
     return there[0][0] if there else None
+
+
+def unit_powers(unit: str) -> Powers:
+    """Power of each word of a unit, known or not."""
+    powers: Powers = {}
+    for word, power in unit_words(unit):
+        if word not in ("", "1"):
+            powers = multiplied(powers, {word: power})
+    return powers
+
+
+def multiplied(one: Powers, other: Powers, sign: int = 1) -> Powers:
+    """Powers of a product; with the sign -1 of a quotient."""
+    product = dict(one)
+    for word, power in other.items():
+        product[word] = product.get(word, 0) + sign * power
+    return {word: power for word, power in product.items() if power}
+
+
+def unit_of_powers(powers: Powers) -> str:
+    """Unit as a person writes it.
+
+    >>> unit_of_powers({"N": 1, "m": 1, "s": 2, "rad": -1}), unit_of_powers({})
+    ('N m s^2/rad', '1')
+    """
+    words = {word: word if abs(power) == 1 else f"{word}^{abs(power):g}" for word, power in powers.items()}
+    above, below = ([words[word] for word in powers if sign * powers[word] > 0] for sign in (1, -1))
+    under = below[0] if len(below) == 1 else f"({' '.join(below)})"
+    return (" ".join(above) or "1") + (f"/{under}" if below else "")
 
 
 def factor_of(tree: Tree) -> tuple[float, Tree]:

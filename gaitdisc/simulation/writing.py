@@ -49,6 +49,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Examples
     --------
     >>> import tempfile
+    >>> from gaitdisc.simulation.parts import Term
     >>> decay = simulation_of('[states.x]  # metres\n[equations]\nx = "-x"\n')
     >>> more = decay.with_effect(Term("x", "equation", "constant_load", "0.5"))
     >>> print(write_simulation(more, Path(tempfile.mkdtemp()) / "decay.toml").read_text(), end="")
