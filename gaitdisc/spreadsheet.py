@@ -17,9 +17,8 @@ from gaitdisc.whole_file import whole_file
 if TYPE_CHECKING:
     import pandas as pd
 
-_FORMULA = re.compile(
-    r"'*[=+\-@\t\r\n＝＋－＠]"
-)  # apostrophes in front are counted, so that one can be taken off again
+# apostrophes in front are counted, so that one can be taken off again
+_FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _NUMBERS = "biufcmM"  # kinds of a numpy column that hold no text
 _OTHER_SEPARATORS = re.compile(r"[;\t\r]")  # of cells in another language, of rows on another system

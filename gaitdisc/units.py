@@ -136,9 +136,6 @@ def inner_unit(unit: str) -> str:
 def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floating]:
     """Same quantity in another unit.
 
-    values , any shape [unit]: numbers to convert
-    returns , same shape [to]
-
     >>> float(convert(np.array(250.0), "mm", "m"))
     0.25
     """
@@ -218,6 +215,6 @@ def dimension_of(unit: str | Powers) -> Dimension | None:
     True
     """
     found = _parsed(unit) if isinstance(unit, str) else _measured(unit.items())
-    return (
-        None if found is None else tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
-    )
+    if found is None:
+        return None
+    return tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
