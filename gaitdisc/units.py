@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -172,15 +171,10 @@ def unit_factor(unit: str, to: str) -> float | None:
     >>> unit_factor("N m", "W s")
     1.0
     """
-    one, other = _parsed(unit), _parsed(to)
+    one, other = _measured(unit_words(unit)), _measured(unit_words(to))
     if one is None or other is None:
         return None
     return one[0] / other[0] if one[1] == other[1] else math.nan
-
-
-@cache
-def _parsed(unit: str) -> tuple[float, Dimension] | None:
-    return _measured(unit_words(unit.strip()[:80]))
 
 
 def _measured(words: Iterable[tuple[str, float]]) -> tuple[float, Dimension] | None:
@@ -201,7 +195,7 @@ def unit_words(unit: str) -> Iterator[tuple[str, int]]:
     >>> [*unit_words("N m s/rad^2")]
     [('N', 1), ('m', 1), ('s', 1), ('rad', -2)]
     """
-    for number, group in enumerate(unit.split("/")):
+    for number, group in enumerate(unit.strip()[:80].split("/")):
         for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
             found = _PART.fullmatch(part)
             word, power = (found[1], int(found[2] or 1)) if found else (part, 1)
@@ -214,7 +208,7 @@ def dimension_of(unit: str | Powers) -> Dimension | None:
     >>> dimension_of("N m s/rad") == dimension_of({"kg": 1, "m": 2, "s": -1})
     True
     """
-    found = _parsed(unit) if isinstance(unit, str) else _measured(unit.items())
+    found = _measured(unit_words(unit) if isinstance(unit, str) else unit.items())
     if found is None:
         return None
     return tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
+from inspect import signature
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -80,12 +82,15 @@ def _taken(path: Path, says: Path) -> Any:
     """Lock that the system keeps on the file; None where the disk has no locks."""
     from filelock import FileLock, SoftFileLock, Timeout
 
-    lock = FileLock(path)
+    hard: dict[str, Any] = {"fallback_to_soft": False} if "fallback_to_soft" in signature(FileLock).parameters else {}
+    lock = FileLock(path, **hard)
     try:
         lock.acquire(timeout=PATIENCE_S, poll_interval=PATIENCE_S / 10)
     except Timeout:
         _refuse(says, f"Another process (pid {_holder(says).get('pid', 'unknown')})")
-    except NotImplementedError:  # filelock before 3.24, where the disk has no locks
+    except (NotImplementedError, OSError) as error:  # by the version of filelock, where the disk has no locks
+        if getattr(error, "errno", errno.ENOSYS) != errno.ENOSYS:
+            raise
         return None
     if isinstance(lock, SoftFileLock):  # a mere file in place of the lock would outlive a killed run
         lock.release()
