@@ -21,9 +21,7 @@ _KINDS = (
 
 
 def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
-    """Size of a file that may be opened: a regular one, or a link to one, that is not too large.
-
-    returns: length of the file [bytes]
+    """Size [bytes] of a file that may be opened: a regular one, or a link to one, that is not too large.
 
     >>> check_regular(Path("/"))
     Traceback (most recent call last):

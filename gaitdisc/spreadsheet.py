@@ -10,16 +10,15 @@ import csv
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from gaitdisc.whole_file import whole_file
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_FORMULA = re.compile(
-    r"'*[=+\-@\t\r\n＝＋－＠]"
-)  # apostrophes in front are counted, so that one can be taken off again
+# apostrophes in front are counted, so that one can be taken off again
+_FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _NUMBERS = "biufcmM"  # kinds of a numpy column that hold no text
 _OTHER_SEPARATORS = re.compile(r"[;\t\r]")  # of cells in another language, of rows on another system
@@ -52,7 +51,8 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
     safe = table.rename(columns=lambda name: quoted(str(name)))
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            safe.isetitem(place, table.iloc[:, place].map(_safe).to_numpy(object))
+            cells = table.iloc[:, place].map(lambda cell: quoted(cell) if isinstance(cell, str) else cell)
+            safe.isetitem(place, cells.to_numpy(object))
     words = [*map(str, safe.columns), *(cell for cell in safe.to_numpy(object).flat if isinstance(cell, str))]
     quoting = csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
     with whole_file(path) as part:
@@ -72,13 +72,6 @@ def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.Dat
     table = pd.read_csv(path, dtype=kinds, **read)
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            table.isetitem(place, table.iloc[:, place].map(_plain).to_numpy())
+            plain = table.iloc[:, place].map(lambda cell: unquoted(cell) if isinstance(cell, str) else cell)
+            table.isetitem(place, plain.to_numpy())
     return table.rename(columns=unquoted)
-
-
-def _safe(cell: Any) -> Any:
-    return quoted(cell) if isinstance(cell, str) else cell
-
-
-def _plain(cell: Any) -> Any:
-    return unquoted(cell) if isinstance(cell, str) else cell

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from functools import cache
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from gaitdisc.errors import UnitError
 
 _BASES = ("kg", "m", "s", "rad", "V")
 Dimension = tuple[float, ...]
+Powers = dict[str, float]  # of the words of a unit
 
 
 def _of(factor: float, **powers: float) -> tuple[float, Dimension]:
@@ -45,8 +46,7 @@ _FACTORS = {
     "mV": _of(1e-3, V=1),
     "uV": _of(1e-6, V=1),
 }
-_PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?\Z")
-
+_PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?")
 
 _CLOSED = {  # of a recording: the unit used inside, and what is converted to it
     "deg": ("rad",),
@@ -135,9 +135,6 @@ def inner_unit(unit: str) -> str:
 def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floating]:
     """Same quantity in another unit.
 
-    values , any shape [unit]: numbers to convert
-    returns , same shape [to]
-
     >>> float(convert(np.array(250.0), "mm", "m"))
     0.25
     """
@@ -174,36 +171,44 @@ def unit_factor(unit: str, to: str) -> float | None:
     >>> unit_factor("N m", "W s")
     1.0
     """
-    one, other = _parsed(unit), _parsed(to)
+    one, other = _measured(unit_words(unit)), _measured(unit_words(to))
     if one is None or other is None:
         return None
     return one[0] / other[0] if one[1] == other[1] else math.nan
 
 
-@cache
-def _parsed(unit: str) -> tuple[float, Dimension] | None:
-    """Factor to the base units, and the power of each."""
-    factor, powers, sign = 1.0, [0.0] * len(_BASES), 1
-    for number, group in enumerate(re.split(r"\s*/\s*", unit.strip()[:80])):
-        sign = 1 if number == 0 else -1
-        for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
-            found = _PART.match(part)
-            if not found or found[1] not in _FACTORS:
-                return None
-            power = sign * int(found[2] or 1)
-            own, dimension = _FACTORS[found[1]]
-            factor *= own**power
-            powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
+def _measured(words: Iterable[tuple[str, float]]) -> tuple[float, Dimension] | None:
+    """Factor to the base units, and the power of each; none where a word is unknown."""
+    factor, powers = 1.0, [0.0] * len(_BASES)
+    for word, power in words:
+        if word not in _FACTORS:
+            return None
+        own, dimension = _FACTORS[word]
+        factor *= own**power
+        powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
     return factor, tuple(powers)
 
 
-def dimension_of(unit: str) -> Dimension | None:
+def unit_words(unit: str) -> Iterator[tuple[str, int]]:
+    """Words of a unit, known or not, each with its power; an empty one where something is missing.
+
+    >>> [*unit_words("N m s/rad^2")]
+    [('N', 1), ('m', 1), ('s', 1), ('rad', -2)]
+    """
+    for number, group in enumerate(unit.strip()[:80].split("/")):
+        for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
+            found = _PART.fullmatch(part)
+            word, power = (found[1], int(found[2] or 1)) if found else (part, 1)
+            yield word, power if number == 0 else -power
+
+
+def dimension_of(unit: str | Powers) -> Dimension | None:
     """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
 
-    >>> dimension_of("N m s/rad") == dimension_of("kg m^2/s")
+    >>> dimension_of("N m s/rad") == dimension_of({"kg": 1, "m": 2, "s": -1})
     True
     """
-    found = _parsed(unit)
-    return (
-        None if found is None else tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
-    )
+    found = _measured(unit_words(unit) if isinstance(unit, str) else unit.items())
+    if found is None:
+        return None
+    return tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")

@@ -85,9 +85,7 @@ def written_so_far(path: Path) -> Path:
 
 
 def write_whole(path: Path | str, content: bytes | str) -> Path:
-    """Write a file of known content, whole or not at all.
-
-    content: everything that the file shall hold; text is written as UTF-8
+    """Write a file of known content, text as UTF-8, whole or not at all.
 
     >>> import tempfile
     >>> write_whole(Path(tempfile.mkdtemp()) / "note.txt", "done").read_text()

@@ -6,14 +6,12 @@ import math
 import re
 from collections.abc import Mapping
 
-from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed
+from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_check import factor_of, multiplied, powers_in, unit_of_powers, unit_powers
 
-Powers = dict[str, float]
-_SAME = frozenset(["+", "-", "max", "min", "neg", "abs", "delay"])
 _ANGLE = re.compile(r"^rad(?=$|/s)")
 IN_DEGREES = 1e-3  # off 180/pi, as people round it
-_WORD = re.compile(r"(.*?)\^?(-?\d+)?")
 
 
 def places_unit(simulation: Simulation, kind: str, place: str) -> str:
@@ -34,7 +32,7 @@ def divided(unit: str, by: str) -> str:
     >>> divided("N m", "rad/s"), divided("1", "s"), divided("N", "N")
     ('N m s/rad', '1/s', '1')
     """
-    return _written(_product(_powers(unit), _powers(by), -1))
+    return unit_of_powers(multiplied(unit_powers(unit), unit_powers(by), -1))
 
 
 def unit_of(expression: str, units: Mapping[str, str]) -> str:
@@ -45,7 +43,9 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
     >>> unit_of("v*abs(v)", {"v": "rad/s"}), unit_of("max(0, x - x0)", {"x": "m"})
     ('rad^2/s^2', 'm')
     """
-    return _written(_of(parsed(expression), {name: _powers(unit) for name, unit in units.items()}) or {})
+    return unit_of_powers(
+        powers_in(parsed(expression), {name: unit_powers(unit) for name, unit in units.items()}, {}) or {}
+    )
 
 
 def unit_of_state(simulation: Simulation, rate: str) -> str:
@@ -66,10 +66,10 @@ def channel_unit(expression: str, units: Mapping[str, str]) -> str:
     >>> [channel_unit(text, of) for text in ("theta", "57.2958*theta", "-1*theta", "1000*x", "x + 0.1")]
     ['rad', 'deg', 'rad', '1', 'm']
     """
-    unit, factor = unit_of(expression, units), _factor(parsed(expression))
-    if abs(abs(factor) - 1) < 1e-9:
+    unit, scale = unit_of(expression, units), abs(factor_of(parsed(expression))[0])
+    if abs(scale - 1) < 1e-9:
         return unit
-    if _ANGLE.match(unit) and abs(abs(factor) * math.pi / 180 - 1) < IN_DEGREES:
+    if _ANGLE.match(unit) and abs(scale * math.pi / 180 - 1) < IN_DEGREES:
         return _ANGLE.sub("deg", unit)
     return "1"
 
@@ -84,61 +84,3 @@ def unit_of_channel(simulation: Simulation, channel: str) -> str:
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs, *simulation.parameters)}
     expression = dict(simulation.observations).get(channel, channel)
     return simulation.sensor(channel).unit or channel_unit(expression, units | {"t": "s"})
-
-
-def _factor(tree: Tree) -> float:
-    """Return the bare number by which an expression is multiplied; of a sum, that of its first signal."""
-    if isinstance(tree, Number):
-        return tree.value
-    if isinstance(tree, Name):
-        return 1.0
-    if tree.symbol in ("*", "/"):
-        first, second = (_factor(argument) for argument in tree.arguments)
-        return first * second if tree.symbol == "*" else first / (second or 1.0)
-    if tree.symbol in _SAME:
-        signals = [argument for argument in tree.arguments if not isinstance(argument, Number)]
-        return _factor(signals[0]) if signals else 1.0
-    return 1.0
-
-
-def _of(tree: Tree, units: Mapping[str, Powers]) -> Powers | None:
-    """Powers of an expression's unit; None of a bare number, which may have any."""
-    if not isinstance(tree, Operation):
-        return units.get(tree.name) if isinstance(tree, Name) else None
-    parts = [_of(argument, units) for argument in tree.arguments]
-    if tree.symbol in _SAME:
-        return next((part for part in parts if part is not None), None)
-    if tree.symbol in ("*", "/"):
-        return _product(parts[0] or {}, parts[1] or {}, 1 if tree.symbol == "*" else -1)
-    exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[-1]
-    if tree.symbol not in ("sqrt", "**") or not isinstance(exponent, Number):
-        return {}
-    return {name: power * exponent.value for name, power in (parts[0] or {}).items()}
-
-
-def _product(one: Powers, other: Powers, sign: int) -> Powers:
-    product = dict(one)
-    for name, power in other.items():
-        product[name] = product.get(name, 0.0) + sign * power
-    return {name: power for name, power in product.items() if power}
-
-
-def _powers(unit: str) -> Powers:
-    powers: Powers = {}
-    for number, group in enumerate(unit.split("/")):
-        for word in re.split(r"[ .*·]+", group.strip("() ")):
-            found = _WORD.fullmatch(word)
-            if found and found[1] and word != "1":
-                powers = _product(powers, {found[1]: float(found[2] or 1)}, -1 if number else 1)
-    return powers
-
-
-def _written(powers: Powers) -> str:
-    above = [_word(name, power) for name, power in powers.items() if power > 0]
-    below = [_word(name, -power) for name, power in powers.items() if power < 0]
-    under = below[0] if len(below) == 1 else f"({' '.join(below)})"
-    return (" ".join(above) or "1") + (f"/{under}" if below else "")
-
-
-def _word(name: str, power: float) -> str:
-    return name if power == 1 else f"{name}^{power:g}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,19 +42,26 @@ class Compiled:
             beyond 1e6, or not a number)
         returns ok (row,): false where a row diverged
         """
-        from gaitdisc.simulation.machine import BLOCK, integrate
-
         place, starts, values = self._rows(drive, rows)
         seconds = self._seconds(self.right_hand_side, values)
         found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
         found[:, 0] = starts
         ok = np.asarray(np.isfinite(starts).all(axis=1))
-        program = self._instructions(BLOCK)
+        lanes, integrate = self._integrator(values)
+        program = self._instructions(lanes)
         wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
         driven = (drive.rate, drive.time0, drive.inputs, drive.samples, wraps)
         before = read_only(np.empty((0, 0, 0)) if past is None else np.ascontiguousarray(self._of_all(past), float))
-        integrate(program, driven, (place, starts, values, seconds), (steps, substeps), before, (found, ok))
+        plan = (steps, substeps, lanes)
+        with np.errstate(all="ignore"):  # a row that leaves every bound is reported, not warned of
+            integrate(program, driven, (place, starts, values, seconds), plan, before, (found, ok))
         return found, ok
+
+    def _integrator(self, values: NDArray[np.float64]) -> tuple[int, Callable[..., None]]:  # noqa: ARG002
+        """Rows that a block has room for, and what integrates them; values (row, parameter): parameters."""
+        from gaitdisc.simulation.machine import BLOCK, integrate
+
+        return BLOCK, integrate
 
     def rates(
         self,

@@ -112,11 +112,7 @@ def names(tree: Tree) -> Iterator[str]:
     >>> sorted(set(names(parsed("-k*max(0, x - x0) + k"))))
     ['k', 'x', 'x0']
     """
-    if isinstance(tree, Name):
-        yield tree.name
-    elif isinstance(tree, Operation):
-        for argument in tree.arguments:
-            yield from names(argument)
+    return (each.name for each in _each_part(tree) if isinstance(each, Name))
 
 
 def delays(tree: Tree) -> Iterator[Operation]:
@@ -125,11 +121,13 @@ def delays(tree: Tree) -> Iterator[Operation]:
     >>> [each.arguments[0].name for each in delays(parsed("1 - 2*delay(v, 0.1)"))]
     ['v']
     """
-    if isinstance(tree, Operation):
-        if tree.symbol == "delay":
-            yield tree
-        for argument in tree.arguments:
-            yield from delays(argument)
+    return (each for each in _each_part(tree) if isinstance(each, Operation) and each.symbol == "delay")
+
+
+def _each_part(tree: Tree) -> Iterator[Tree]:
+    yield tree
+    for argument in tree.arguments if isinstance(tree, Operation) else ():
+        yield from _each_part(argument)
 
 
 def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationError:

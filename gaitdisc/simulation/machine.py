@@ -2,7 +2,8 @@
 
 A simulation is data to it, so nothing is compiled for a new one. Each operation works on all rows of a block before the
 next is looked up, and a block's registers stay in the cache. Runge-Kutta of order 4 with a fixed step; inputs are
-linear between their samples; a delayed state is linear between the steps of its own row.
+linear between their samples; a delayed state is linear between the steps of its own row. A Python object's right-hand
+side is integrated by the same lines, run by Python, with its function as `derive`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ import numpy as np
 
 from gaitdisc.simulation.operations import BLOCK, compiled, execute
 from gaitdisc.simulation.program import BOUND
+
+derive = execute  # what a block's derivatives are computed by
 
 
 @compiled
@@ -51,7 +54,7 @@ def integrate(program, drive, rows, plan, past, into):
     """
     place, starts, values, seconds = rows
     found, ok = into
-    blocks = -(-starts.shape[0] // BLOCK)
+    blocks = -(-starts.shape[0] // plan[2])
     for block in range(blocks):
         first, end = block * starts.shape[0] // blocks, (block + 1) * starts.shape[0] // blocks
         own = (place[first:end], starts[first:end], values[first:end], seconds[first:end])
@@ -60,25 +63,26 @@ def integrate(program, drive, rows, plan, past, into):
 
 @compiled
 def integrate_block(program, drive, rows, plan, past, into):
-    """Integrate up to `BLOCK` rows; what lies beyond a trial's end or a divergence stays as it was in `into`.
+    """Integrate a block of rows; what lies beyond a trial's end or a divergence stays as it was in `into`.
 
     program: code, operations of its setup, constants, delays (delay, 2) as input or state and column, registers
     drive: rate [Hz], first times (trial,), inputs (trial, sample, input), samples (trial,), which inputs wrap (input,)
     rows: place (row, 2) as trial and first sample, starts (row, state), values (row, parameter), seconds (row, delay)
+    plan: samples, steps for each, rows that a block has room for
     past (trial, sample, state): measured states before the rows begin; of no trials where there are none
     into: states (row, sample, state), whether each row stayed finite (row,)
     """
     code, setup, _, delays, _ = program
     rate, _, inputs, samples, wraps = drive
     place, starts, _, _ = rows
-    steps, substeps = plan
+    steps, substeps, lanes = plan
     found, ok = into
     width, n = starts.shape
-    registers, rates = _filled(program, rows, n + wraps.size), np.zeros((n, BLOCK))
-    flat, out, lanes = registers.reshape(-1), rates.reshape(-1), np.uint64(width)
-    execute(code[:setup], flat, out, lanes)
+    registers, rates = _filled(program, rows, n + wraps.size, lanes), np.zeros((n, lanes))
+    flat, out, there = registers.reshape(-1), rates.reshape(-1), np.uint64(width)
+    execute(code[:setup], flat, out, there)
     main, timed = code[setup:], np.any(code[:, 2:] == 0)  # time is the first register
-    x, total, ends = np.zeros((n, BLOCK)), np.zeros((n, BLOCK)), np.zeros((2, wraps.size, BLOCK))
+    x, total, ends = np.zeros((n, lanes)), np.zeros((n, lanes)), np.zeros((2, wraps.size, lanes))
     x[:, :width] = starts.T
     registers[1 : 1 + n] = x
     history = np.empty((n, steps * substeps + 1 if np.any(delays[:, 0] == 1) else 1, width))
@@ -100,7 +104,7 @@ def integrate_block(program, drive, rows, plan, past, into):
                         _set_times(registers, drive, place, now[0])
                     if delays.shape[0]:
                         _set_delayed(registers, now, program, drive, rows, past, history)
-                execute(main, flat, out, lanes)
+                derive(main, flat, out, there)
                 _advance(x, registers, rates, total, (part, 1.0 / (rate * substeps)), width)
             if history.shape[1] > 1:
                 history[:, sample * substeps + sub + 1, :] = x[:, :width]
@@ -110,11 +114,11 @@ def integrate_block(program, drive, rows, plan, past, into):
 
 
 @compiled
-def _filled(program, rows, signals):
+def _filled(program, rows, signals, lanes):
     """Registers with parameters and constants in their places."""
     _, _, constants, delays, count = program
     values = rows[2]
-    registers = np.zeros((count, BLOCK))
+    registers = np.zeros((count, lanes))
     for p in range(values.shape[1]):
         registers[1 + signals + p, : values.shape[0]] = values[:, p]
     first = 1 + signals + values.shape[1] + delays.shape[0]

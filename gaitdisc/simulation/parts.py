@@ -19,9 +19,9 @@ class State:
 class Input:
     """A measured signal that drives the simulation."""
 
-    name: str  # as in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1
-    unit: str = "1"  # as in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1
-    meaning: str = ""  # as in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1
+    name: str  # one called `phase` of unit `1` is the share of the stride and wraps at 1
+    unit: str = "1"
+    meaning: str = ""
     # whether an engine computed it along the record (gaitdisc/engines): then it is part of the equations, and no
     # explanation of a gap changes it
     computed: bool = False

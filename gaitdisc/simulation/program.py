@@ -247,35 +247,15 @@ def at_points(
             "they are missing",
             "Run the simulation, or give `late`.",
         )
-    table = PointTable(program, int(np.size(columns[0])) if points is None else points)
-    table.fill(0, [*columns, *(np.asarray(late).T if program.delays else ())])
-    return table.outputs()
+    from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
 
-
-class PointTable:
-    """Values of a program's leaves at a number of points, to be filled in part and evaluated again and again."""
-
-    def __init__(self, program: Program, points: int) -> None:
-        from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
-
-        self._code, self._evaluated = program.placed(BLOCK), evaluate_blocks
-        self._used = tuple(program.used())
-        self._program, self._points = program, points
-        self._spread = np.full(program.registers, 2, np.int64)
-        self._table = np.zeros((len(self._used), points))
-
-    def fill(self, first: int, columns: Sequence[NDArray[np.float64]]) -> None:
-        """Put values in place of those of some leaves; what the program does not read is passed over.
-
-        columns each (point,) or (): their values; one number serves all points
-        """
-        for leaf, column in enumerate(columns, first):
-            if self._used[leaf]:
-                self._spread[leaf] = int(np.ndim(column) > 0)
-                self._table[leaf, : self._points if np.ndim(column) else 1] = column
-
-    def outputs(self) -> NDArray[np.float64]:
-        """Outputs of the program, (output, point)."""
-        into = np.empty((self._program.outputs, self._points))
-        self._evaluated(self._code, self._program.constants, self._table, self._spread, into)
-        return into
+    count = int(np.size(columns[0])) if points is None else points
+    used = program.used()
+    spread, table = np.full(program.registers, 2, np.int64), np.zeros((len(used), count))
+    for leaf, column in enumerate([*columns, *(np.asarray(late).T if program.delays else ())]):
+        if used[leaf]:
+            spread[leaf] = int(np.ndim(column) > 0)
+            table[leaf, : count if np.ndim(column) else 1] = column
+    into = np.empty((program.outputs, count))
+    evaluate_blocks(program.placed(BLOCK), program.constants, table, spread, into)
+    return into

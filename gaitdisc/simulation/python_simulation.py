@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Port, State
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Lines, Simulation
 
@@ -23,6 +23,7 @@ class PythonSimulation:
 
     It goes wherever a `Simulation` goes: `compile_simulation` gives what runs it, rows side by side in NumPy.
 
+    >>> from gaitdisc.simulation.parts import Term
     >>> def falling(t, x, u, values, ports):
     ...     return -values[:, :1] + ports
     >>> ball = python_simulation("ball", falling, [State("v")], parameters=[Parameter("g", 9.81)], ports=[Port("drag")])
@@ -39,126 +40,25 @@ class PythonSimulation:
     # how the function is called and why so, for a person; nothing where there is nothing to say
     manner: str = field(default="", compare=False)
 
-    @property
-    def title(self) -> str:
-        """One line for a person."""
-        return self.parts.title
-
-    @property
-    def states(self) -> tuple[State, ...]:
-        """In the order of the state vector."""
-        return self.parts.states
-
-    @property
-    def inputs(self) -> tuple[Input, ...]:
-        """Measured signals that drive it."""
-        return self.parts.inputs
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """Numbers of the model."""
-        return self.parts.parameters
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        """Places where a missing effect may enter."""
-        return self.parts.ports
-
-    @property
-    def definitions(self) -> Lines:
-        """None: they are inside the function."""
-        return ()
-
-    @property
-    def equations(self) -> Lines:
-        """Which names the derivatives may depend on; what they are, the function knows."""
-        return self.parts.equations
-
-    @property
-    def observations(self) -> Lines:
-        """Measured column and expression."""
-        return self.parts.observations
-
-    @property
-    def sensors(self) -> tuple[Sensor, ...]:
-        """How observed channels were recorded."""
-        return self.parts.sensors
-
-    def sensor(self, channel: str) -> Sensor:
-        """How an observed channel was recorded."""
-        return self.parts.sensor(channel)
-
-    def with_sensor(self, sensor: Sensor) -> PythonSimulation:
-        """Simulation in which an observed channel was recorded in another way."""
-        return replace(self, parts=self.parts.with_sensor(sensor))
-
-    @property
-    def driving(self) -> tuple[Input, ...]:
-        """The inputs that were measured."""
-        return self.parts.driving
-
-    @property
-    def effects(self) -> tuple[Term, ...]:
-        """What was added, and where."""
-        return self.parts.effects
-
-    @property
-    def source(self) -> Path | None:
-        """None: it was read from no file."""
-        return None
-
-    @property
-    def inexact(self) -> float:
-        """Share of a channel's spread by which runs may err without anything being missing."""
-        return self.parts.inexact
-
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """Names of the states and inputs."""
-        return self.parts.signals
+    def __getattr__(self, name: str) -> Any:
+        """What a `Simulation` has: a part of it, or what gives another of this function with other parts."""
+        if name.startswith("__"):  # Python asks for them before there are parts
+            raise AttributeError(name)
+        own = getattr(self.parts, name)
+        if not name.startswith(("with", "observing")):
+            return own
+        return lambda *given, **named: replace(self, parts=own(*given, **named))
 
     @cached_property
     def feeds(self) -> Simulation:
-        """What the function is fed with, as observations: ports, what is added to each equation, inputs."""
+        """What the function is fed with, as observations: ports, what is added to each equation, inputs, the time."""
         sums = {port.name: port.name for port in self.ports}
         for state in self.states:
             own = [f"({each.term})" for each in self.effects if (each.kind, each.place) == ("equation", state.name)]
             sums[f"d/dt {state.name}"] = " + ".join(own) or "0"
         given = dict(self.replaced)
         sums |= {f"input {each.name}": given.get(each.name, each.name) for each in self.inputs}
-        return replace(self.parts, observations=tuple(sums.items()), sensors=())
-
-    def values(self) -> dict[str, float]:
-        """Parameters by name."""
-        return self.parts.values()
-
-    def with_effect(self, term: Term) -> PythonSimulation:
-        """Simulation with one effect more."""
-        return replace(self, parts=self.parts.with_effect(term))
-
-    def without_effects(self) -> PythonSimulation:
-        """Simulation without anything added."""
-        return replace(self, parts=self.parts.without_effects())
-
-    def with_values(self, values: Mapping[str, float]) -> PythonSimulation:
-        """Simulation with other values of some parameters."""
-        return replace(self, parts=self.parts.with_values(values))
-
-    def with_starts(self, starts: Mapping[str, float]) -> PythonSimulation:
-        """Simulation of which some states have another `initial`."""
-        return replace(self, parts=self.parts.with_starts(starts))
-
-    def with_parameter(self, parameter: Parameter) -> PythonSimulation:
-        """Simulation with a further parameter, for effects to use."""
-        return replace(self, parts=self.parts.with_parameter(parameter))
-
-    def with_observation(self, name: str, expression: str) -> PythonSimulation:
-        """Simulation with a further observed channel, or another expression for one that it has."""
-        return replace(self, parts=self.parts.with_observation(name, expression))
-
-    def observing(self, names: Sequence[str]) -> PythonSimulation:
-        """Simulation with some of its observations only."""
-        return replace(self, parts=self.parts.observing(names))
+        return replace(self.parts, observations=(*sums.items(), ("time", "t")), sensors=())
 
     def with_input(self, name: str, expression: str) -> PythonSimulation:
         """Simulation in which an input is replaced by an expression of itself."""
@@ -196,21 +96,16 @@ def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | P
 
 
 def called(
-    simulation: PythonSimulation,
-    t: ArrayLike,
-    x: NDArray[np.float64],
-    fed: NDArray[np.float64],
-    values: NDArray[np.float64],
+    simulation: PythonSimulation, x: NDArray[np.float64], fed: NDArray[np.float64], values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Derivatives by the function, with what was added to the equations.
 
-    t (row,): time [s]
     x (row, state): states
-    fed (row, feed): ports, sums of the equations' effects, inputs: the observations of `PythonSimulation.feeds`
+    fed (row, feed): ports, sums of the equations' effects, inputs, time: the observations of `PythonSimulation.feeds`
     values (row, parameter): parameters
     """
     ports, states = len(simulation.ports), len(simulation.states)
-    own = np.asarray(simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports]))
+    own = np.asarray(simulation.rates(fed[:, -1], x, fed[:, ports + states : -1], values, fed[:, :ports]))
     if own.shape != x.shape or own.dtype.kind not in "fiu":
         raise SimulationError(
             f"the right-hand side of {simulation.title!r} must return one number per row and state, shape {x.shape}",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -168,14 +168,7 @@ class Simulation:
         SimulationError
             If there is no parameter of that name, or a value is not finite.
         """
-        known = tuple(parameter.name for parameter in self.parameters)
-        for name in values:
-            if name not in known:
-                raise SimulationError(
-                    "the name must be a parameter",
-                    f"there is no {name!r}",
-                    f"Known: {', '.join(known) or 'none'}.",
-                )
+        _refuse_unknown(values, "a parameter", [each.name for each in self.parameters])
         changed = (replace(each, value=float(values.get(each.name, each.value))) for each in self.parameters)
         return replace(self, parameters=tuple(changed))
 
@@ -192,12 +185,7 @@ class Simulation:
         SimulationError
             If there is no state of that name, or a start is not finite.
         """
-        known = tuple(state.name for state in self.states)
-        for name in starts:
-            if name not in known:
-                raise SimulationError(
-                    "the name must be a state", f"there is no {name!r}", f"Known: {', '.join(known)}."
-                )
+        _refuse_unknown(starts, "a state", [state.name for state in self.states])
         changed = (
             replace(state, initial=float(starts[state.name])) if state.name in starts else state
             for state in self.states
@@ -270,11 +258,7 @@ class Simulation:
             If there is no observation of a name.
         """
         has = dict(self.observations)
-        for name in names:
-            if name not in has:
-                raise SimulationError(
-                    "the name must be an observation", f"there is no {name!r}", f"Known: {', '.join(has)}."
-                )
+        _refuse_unknown(names, "an observation", has)
         sensors = tuple(one for one in self.sensors if one.channel in names)
         return replace(self, observations=tuple((name, has[name]) for name in names), sensors=sensors)
 
@@ -293,9 +277,7 @@ class Simulation:
         SimulationError
             If there is no such input, or the expression uses unknown names.
         """
-        if all(each.name != name for each in self.inputs):
-            known = ", ".join(each.name for each in self.inputs) or "none"
-            raise SimulationError("the name must be an input", f"there is no {name!r}", f"Known: {known}.")
+        _refuse_unknown([name], "an input", [each.name for each in self.inputs])
         by = {name: parsed(expression)}
 
         def changed(text: str) -> str:
@@ -315,3 +297,10 @@ class Simulation:
 def _lines(given: Mapping[str, Any] | Sequence[tuple[str, Any]]) -> Lines:
     pairs = given.items() if isinstance(given, Mapping) else given
     return tuple((str(name), str(text)) for name, text in pairs)
+
+
+def _refuse_unknown(names: Iterable[str], kind: str, known: Collection[str]) -> None:
+    for name in names:
+        if name not in known:
+            listed = ", ".join(known) or "none"
+            raise SimulationError(f"the name must be {kind}", f"there is no {name!r}", f"Known: {listed}.")

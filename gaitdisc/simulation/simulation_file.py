@@ -20,18 +20,19 @@ from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
-MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
+MOSTTABLES = 1000  # the library that parses takes a time that grows with their square
 ERRORS = ("gain", "sd", "wander")  # of an input
-_TABLES = {
+TABLES = {
     "states": ("unit", "meaning", "initial"),
     "inputs": ("unit", "meaning", *ERRORS),
     "parameters": ("value", "unit", "low", "high", "meaning"),
     "ports": ("unit", "meaning"),
 }
+_PARTS = {"states": State, "inputs": Input, "parameters": Parameter, "ports": Port}
 _EXPRESSIONS = ("definitions", "equations", "observations")
-_SECTIONS = ("title", "model", *_TABLES, *_EXPRESSIONS, "effects")
+_SECTIONS = ("title", "model", *TABLES, *_EXPRESSIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
-_OBSERVATION = ("expression", "unit", "sd", "lowpass")
+SENSOR = ("unit", "sd", "lowpass")
 _FOLDER = Path(__file__).parent / "systems"
 
 
@@ -88,8 +89,8 @@ def read_simulation(path: Path | str) -> Simulation:
 
 def simulation_of(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
     """Simulation of the text of a TOML file."""
-    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
-        raise _not_toml(file, f"more than {MOST_TABLES} tables")
+    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOSTTABLES:
+        raise _not_toml(file, f"more than {MOSTTABLES} tables")
     try:
         table = parsed_toml(text.replace("\r\n", "\n"))
     except ValueError as error:
@@ -112,35 +113,17 @@ def _not_toml(file: str, found: str) -> ReadError:
 
 def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
     _check_keys(table, _SECTIONS, ())
-    parts = {section: _table(table.get(section, {}), (section,)) for section in (*_TABLES, *_EXPRESSIONS)}
-    for section, keys in _TABLES.items():
-        for name, entry in parts[section].items():
-            _check_keys(_table(entry, (section, name)), keys, (section, name))
+    said = {section: _table(table.get(section, {}), (section,)) for section in (*TABLES, *_EXPRESSIONS)}
+    parts = {section: tuple(_part(section, *one) for one in said[section].items()) for section in TABLES}
     effects = table.get("effects", [])
     if not isinstance(effects, list):
         raise SimulationError("effects must be tables", "they have another form", "Write [[effects]].", ("effects",))
-    sensors = tuple(_sensor(name, e) for name, e in parts["observations"].items() if isinstance(e, dict))
-    parts["observations"] = {n: e["expression"] if isinstance(e, dict) else e for n, e in parts["observations"].items()}
+    observed = {n: (e, _sensor(n, e)) if isinstance(e, dict) else (e, None) for n, e in said["observations"].items()}
+    said["observations"] = {n: e["expression"] if sensor else e for n, (e, sensor) in observed.items()}
     lines = {
-        section: tuple((name, _expression(value, (section, name))) for name, value in parts[section].items())
+        section: tuple((name, _expression(value, (section, name))) for name, value in said[section].items())
         for section in _EXPRESSIONS
     }
-    states = tuple(
-        State(n, _unit(e, ("states", n)), _text(e, "meaning", ("states", n)), _number(e, "initial", ("states", n)))
-        for n, e in parts["states"].items()
-    )
-    inputs = tuple(
-        Input(
-            n,
-            _unit(e, ("inputs", n)),
-            _text(e, "meaning", ("inputs", n)),
-            False,
-            *(_number(e, key, ("inputs", n)) for key in ERRORS),
-        )
-        for n, e in parts["inputs"].items()
-    )
-    parameters = tuple(_parameter(n, e) for n, e in parts["parameters"].items())
-    ports = tuple(Port(n, _unit(e, ("ports", n)), _text(e, "meaning", ("ports", n))) for n, e in parts["ports"].items())
     model = _text(table, "model", ())
     if model and lines["equations"]:
         raise SimulationError(
@@ -149,39 +132,44 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
             "Remove one of them.",
             ("equations",),
         )
+    if model:
+        lines["equations"] = any_equations(parts["states"], (*parts["inputs"], *parts["parameters"], *parts["ports"]))
     return Simulation(
         _text(table, "title", ()),
-        states,
-        inputs,
-        parameters,
-        ports,
-        lines["definitions"],
-        any_equations(states, (*inputs, *parameters, *ports)) if model else lines["equations"],
-        lines["observations"],
-        tuple(_effect(entry, number) for number, entry in enumerate(effects)),
-        sensors,
-        source,
-        text,
-        model,
+        states=parts["states"],
+        inputs=parts["inputs"],
+        parameters=parts["parameters"],
+        ports=parts["ports"],
+        definitions=lines["definitions"],
+        equations=lines["equations"],
+        observations=lines["observations"],
+        effects=tuple(_effect(entry, number) for number, entry in enumerate(effects)),
+        sensors=tuple(sensor for _, sensor in observed.values() if sensor),
+        source=source,
+        layout=text,
+        model=model,
     )
 
 
-def _parameter(name: str, entry: Mapping[str, Any]) -> Parameter:
-    place = ("parameters", name)
-    value = _number(entry, "value", place)
-    if value is None:
+def _part(section: str, name: str, entry: Any) -> Any:
+    """State, input, parameter or port: its keys are the fields of its class."""
+    place = (section, name)
+    _check_keys(_table(entry, place), TABLES[section], place)
+    if section == "parameters" and "value" not in entry:
         raise SimulationError("a parameter must have a value", "it has none", "Write value = ...", place)
-    low, high = _number(entry, "low", place), _number(entry, "high", place)
-    return Parameter(name, value, _unit(entry, place), low, high, _text(entry, "meaning", place))
+    return _PARTS[section](name, **_fields(entry, place))
 
 
 def _sensor(name: str, entry: Mapping[str, Any]) -> Sensor:
     place = ("observations", name)
-    _check_keys(entry, _OBSERVATION, place)
+    _check_keys(entry, ("expression", *SENSOR), place)
     if "expression" not in entry:
         raise SimulationError("an observation needs an expression", "it has none", 'Write expression = "...".', place)
-    sd, lowpass = _number(entry, "sd", place), _number(entry, "lowpass", place)
-    return Sensor(name, _text(entry, "unit", place), sd, lowpass)
+    return Sensor(name, **_fields({key: entry[key] for key in SENSOR if key in entry}, place))
+
+
+def _fields(entry: Mapping[str, Any], place: tuple[str, ...]) -> dict[str, Any]:
+    return {key: (_text if key in ("unit", "meaning") else _number)(entry, key, place) for key in entry}
 
 
 def _effect(entry: Any, number: int) -> Term:
@@ -228,13 +216,7 @@ def _text(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> str:
     return value
 
 
-def _unit(table: Mapping[str, Any], place: tuple[str, ...]) -> str:
-    return _text(table, "unit", place) if "unit" in table else "1"
-
-
-def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float | None:
-    if key not in table:
-        return None
+def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float:
     value = table[key]
     if type(value) not in (int, float) or abs(value) > 1e300 or not math.isfinite(value):
         found = f"found {str(value)[:60]}" if type(value) is not int else "the number exceeds 1e300"

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed, written
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.units import Dimension, dimension_of, unit_factor
+from gaitdisc.units import Powers, dimension_of, unit_factor, unit_words
 
 _SAME = frozenset(["+", "-", "max", "min"])
+_CHOSEN = {"neg": 0, "abs": 0, "delay": 0, "where": 1}  # which argument's unit it has
+_SUMMED = _SAME | {"abs", "delay"}
 _OF_PURE = frozenset({"sin", "cos", "tan", "atan", "tanh", "exp", "log"})
 _PURE = _OF_PURE | {"sign", "step"}
 ROUNDED = 2e-3  # of a factor between units, as people write it: 57.3
+Report = Callable[[str], None]
 
 
 def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
@@ -31,99 +35,119 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     parts = (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports)
     if all(part.unit == "1" for part in parts):
         return ()
-    check = _Check(simulation)
-    for name, text in simulation.definitions:
-        check.known[name] = check.unit(parsed(text), f"[definitions] {name}")
-    for name, text in simulation.equations:
-        check.expect(text, check.rate(name), f"[equations] {name}", f"{_unit_of(simulation, name)}/s")
-    ports = {port.name: port.unit for port in simulation.ports}
-    for number, term in enumerate(simulation.effects, 1):
-        where = f"[effects] {number}"
-        if term.kind == "port":
-            check.expect(term.term, check.known[term.place], where, ports[term.place])
-        else:
-            check.expect(term.term, check.rate(term.place), where, f"{_unit_of(simulation, term.place)}/s")
-    return tuple(check.findings)
+    file = simulation.source.name if simulation.source else simulation.title
+    findings = [
+        Finding("note", "unit", file, f"{part.unit!r} is not a known unit", "the check of units in sums", part.name)
+        for part in parts
+        if dimension_of(part.unit) is None and not getattr(part, "computed", False)
+    ]
+
+    def report(what: str) -> None:
+        findings.append(Finding("warning", "unit", file, what, "the numbers there, if the units are right"))
+
+    known = _known(simulation, report)
+    units = {part.name: part.unit for part in parts}
+    places = [(f"[equations] {name}", "equation", name, text) for name, text in simulation.equations]
+    places += [(f"[effects] {n}", one.kind, one.place, one.term) for n, one in enumerate(simulation.effects, 1)]
+    for where, kind, place, text in places:
+        wanted, unit = known[place], units[place]
+        if kind == "equation":
+            wanted, unit = None if wanted is None else multiplied(wanted, {"s": 1}, -1), f"{unit}/s"
+        tree = parsed(text)
+        found = powers_in(tree, known, None, _at(where, report))
+        if found is not None and wanted is not None and dimension_of(found) != dimension_of(wanted):
+            report(f"{where}: {_short(tree)} must have the unit {unit}")
+    return tuple(findings)
 
 
-def dimension_in(simulation: Simulation, text: str) -> Dimension | None:
-    """Dimension of an expression in a simulation's names; None where it may be any."""
-    check = _Check(simulation)
-    for name, definition in simulation.definitions:
-        check.known[name] = check.unit(parsed(definition), name)
-    return check.unit(parsed(text), text)
+def powers_in(
+    tree: Tree, units: Mapping[str, Powers | None], bare: Powers | None, report: Report | None = None
+) -> Powers | None:
+    """Powers of an expression's unit; None where it may have any.
+
+    units: of the names; None of one whose unit nobody knows
+    bare: what a number without a name counts as where it multiplies; None where the product may then have any unit
+    report: told what does not fit
+    """
+    if not isinstance(tree, Operation):
+        return units.get(tree.name) if isinstance(tree, Name) else None
+    parts = [powers_in(argument, units, bare, report) for argument in tree.arguments]
+    if tree.symbol in _SAME:
+        return _alike(tree, parts, report)
+    if tree.symbol in _PURE:
+        if report and tree.symbol in _OF_PURE and parts[0] is not None and any(dimension_of(parts[0]) or ()):
+            report(f"the argument of {_short(tree)} must be a pure number or an angle")
+        return {}
+    if tree.symbol in _CHOSEN:
+        return parts[_CHOSEN[tree.symbol]]
+    first, second = (bare if part is None else part for part in (parts[0], parts[-1]))
+    if tree.symbol in ("sqrt", "**"):
+        exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[1]
+        raised = exponent.value if isinstance(exponent, Number) else None
+        return bare if first is None or raised is None else {word: raised * power for word, power in first.items()}
+    return None if first is None or second is None else multiplied(first, second, 1 if tree.symbol == "*" else -1)
 
 
-def _unit_of(simulation: Simulation, state: str) -> str:
-    return next(each.unit for each in simulation.states if each.name == state)
-
-
-class _Check:
-    def __init__(self, simulation: Simulation) -> None:
-        self.findings: list[Finding] = []
-        self._file = simulation.source.name if simulation.source else simulation.title
-        self.known: dict[str, Dimension | None] = {"t": dimension_of("s")}
-        self.known |= {part.name: None for part in simulation.inputs if part.computed}  # of any unit that fits
-        for part in (*simulation.states, *simulation.driving, *simulation.parameters, *simulation.ports):
-            self.known[part.name] = dimension_of(part.unit)
-            if self.known[part.name] is None:
-                what = f"{part.unit!r} is not a known unit"
-                self.findings.append(Finding("note", "unit", self._file, what, "the check of units in sums", part.name))
-
-    def rate(self, state: str) -> Dimension | None:
-        """Dimension of a state's derivative."""
-        own, second = self.known[state], dimension_of("s")
-        return None if own is None or second is None else tuple(a - b for a, b in zip(own, second, strict=True))
-
-    def expect(self, text: str, wanted: Dimension | None, where: str, unit: str) -> None:
-        """Report where an expression has another dimension than its place."""
-        found = self.unit(parsed(text), where)
-        if found is not None and wanted is not None and found != wanted:
-            self._report(f"{where}: {_short(parsed(text))} must have the unit {unit}")
-
-    def unit(self, tree: Tree, where: str) -> Dimension | None:
-        """Dimension of an expression; None where it may be any."""
-        if not isinstance(tree, Operation):
-            return self.known.get(tree.name) if isinstance(tree, Name) else None
-        parts = [self.unit(argument, where) for argument in tree.arguments]
-        if tree.symbol in _SAME:
-            return self._alike(tree, parts, where)
-        if tree.symbol in _PURE:
-            if tree.symbol in _OF_PURE and parts[0] is not None and any(parts[0]):
-                self._report(f"{where}: the argument of {_short(tree)} must be a pure number or an angle")
-            return dimension_of("1")
-        if tree.symbol == "where":
-            return parts[1]
-        return parts[0] if tree.symbol in ("neg", "abs", "delay") else self._product(tree, parts)
-
-    def _product(self, tree: Operation, parts: list[Dimension | None]) -> Dimension | None:
-        one, other = parts[0], parts[-1]
-        if tree.symbol in ("sqrt", "**"):
-            exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[1]
-            if one is None or not isinstance(exponent, Number):
-                return None
-            return tuple(exponent.value * power for power in one)
-        if one is None or other is None:
+def _alike(tree: Operation, parts: list[Powers | None], report: Report | None) -> Powers | None:
+    """Unit of a sum or of the largest of several: of the first that has one, if the others have no other."""
+    there = [(part, argument) for part, argument in zip(parts, tree.arguments, strict=True) if part is not None]
+    unlike = (one for one in there[1:] if dimension_of(one[0]) != dimension_of(there[0][0]))
+    if report is not None:
+        for _, argument in unlike:
+            word = "compared" if tree.symbol in ("max", "min") else "added"
+            report(f"{_short(there[0][1])} and {_short(argument)} are {word} but differ in unit")
             return None
-        sign = 1 if tree.symbol == "*" else -1
-        return tuple(a + sign * b for a, b in zip(one, other, strict=True))
-
-    def _alike(self, tree: Operation, parts: list[Dimension | None], where: str) -> Dimension | None:
-        there = [(part, argument) for part, argument in zip(parts, tree.arguments, strict=True) if part is not None]
-        for part, argument in there[1:]:
-            if part != there[0][0]:
-                word = "compared" if tree.symbol in ("max", "min") else "added"
-                self._report(f"{where}: {_short(there[0][1])} and {_short(argument)} are {word} but differ in unit")
-                return None
-        return there[0][0] if there else None
-
-    def _report(self, what: str) -> None:
-        self.findings.append(Finding("warning", "unit", self._file, what, "the numbers there, if the units are right"))
+    return there[0][0] if there else None
 
 
-def _short(tree: Tree) -> str:
-    text = written(tree)
-    return repr(text if len(text) <= 40 else text[:37] + "...")
+def unit_powers(unit: str) -> Powers:
+    """Power of each word of a unit, known or not."""
+    powers: Powers = {}
+    for word, power in unit_words(unit):
+        if word not in ("", "1"):
+            powers = multiplied(powers, {word: power})
+    return powers
+
+
+def multiplied(one: Powers, other: Powers, sign: int = 1) -> Powers:
+    """Powers of a product; with the sign -1 of a quotient."""
+    product = dict(one)
+    for word, power in other.items():
+        product[word] = product.get(word, 0) + sign * power
+    return {word: power for word, power in product.items() if power}
+
+
+def unit_of_powers(powers: Powers) -> str:
+    """Unit as a person writes it.
+
+    >>> unit_of_powers({"N": 1, "m": 1, "s": 2, "rad": -1}), unit_of_powers({})
+    ('N m s^2/rad', '1')
+    """
+    words = {word: word if abs(power) == 1 else f"{word}^{abs(power):g}" for word, power in powers.items()}
+    above, below = ([words[word] for word in powers if sign * powers[word] > 0] for sign in (1, -1))
+    under = below[0] if len(below) == 1 else f"({' '.join(below)})"
+    return (" ".join(above) or "1") + (f"/{under}" if below else "")
+
+
+def factor_of(tree: Tree) -> tuple[float, Tree]:
+    """Number by which an expression is multiplied, of a sum that of its first signal; and what it multiplies.
+
+    >>> factor_of(parsed("-2*x")), factor_of(parsed("3*x + 1"))[0]
+    ((-2.0, Name(name='x')), 3.0)
+    """
+    if not isinstance(tree, Operation):
+        return (tree.value if isinstance(tree, Number) else 1.0), tree
+    if tree.symbol == "neg":
+        number, rest = factor_of(tree.arguments[0])
+        return -number, rest
+    if tree.symbol in ("*", "/"):
+        (one, left), (other, right) = map(factor_of, tree.arguments)
+        number = one * other if tree.symbol == "*" else one / (other or 1.0)
+        if isinstance(right, Number):
+            return number, left
+        return number, right if isinstance(left, Number) and tree.symbol == "*" else tree
+    signals = [one for one in tree.arguments if not isinstance(one, Number)] if tree.symbol in _SUMMED else []
+    return (factor_of(signals[0])[0] if signals else 1.0), tree
 
 
 def refuse_units(simulation: Simulation) -> None:
@@ -142,8 +166,8 @@ def refuse_units(simulation: Simulation) -> None:
         if wanted is None:
             continue
         tree = parsed(text)
-        found = dimension_in(simulation, text)
-        if found is not None and found != wanted:
+        found = powers_in(tree, _known(simulation), None)
+        if found is not None and dimension_of(found) != wanted:
             raise _unlike(sensor, f"{text!r} has another kind of unit", "Correct the unit or expression.")
         _refuse_factor(simulation, sensor, tree)
 
@@ -151,29 +175,16 @@ def refuse_units(simulation: Simulation) -> None:
 def _refuse_factor(simulation: Simulation, sensor: Sensor, tree: Tree) -> None:
     """Refuse a state or input, bare or times a number, that is not what the unit makes of it."""
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
-    number, name = _scaled(tree)
-    factor = unit_factor(units[name], sensor.unit) if name in units else None
-    if factor is None:
+    number, name = factor_of(tree)
+    unit = units.get(name.name) if isinstance(name, Name) else None
+    factor = None if unit is None else unit_factor(unit, sensor.unit)
+    if factor is None or unit is None:
         return
+    text = written(name)
     if math.isnan(factor):
-        raise _unlike(sensor, f"{name!r} has another kind of unit, {units[name]}", "Correct the unit or expression.")
-    if abs(abs(number) / factor - 1) > ROUNDED and (abs(number) == 1.0 or _is_of_units(abs(number), units[name])):
-        raise _unlike(sensor, f"{name!r} is in {units[name]}", f"Write {math.copysign(factor, number):.6g}*{name}.")
-
-
-def _scaled(tree: Tree) -> tuple[float, str]:
-    """Number and name of a name, bare or times a number; no name where it is something else."""
-    if isinstance(tree, Name):
-        return 1.0, tree.name
-    if isinstance(tree, Operation) and tree.symbol == "neg":
-        number, name = _scaled(tree.arguments[0])
-        return -number, name
-    if isinstance(tree, Operation) and tree.symbol == "*":
-        one, other = tree.arguments
-        one, other = (other, one) if isinstance(other, Number) else (one, other)
-        if isinstance(one, Number) and isinstance(other, Name):
-            return one.value, other.name
-    return 1.0, ""
+        raise _unlike(sensor, f"{text!r} has another kind of unit, {unit}", "Correct the unit or expression.")
+    if abs(abs(number) / factor - 1) > ROUNDED and (abs(number) == 1.0 or _is_of_units(abs(number), unit)):
+        raise _unlike(sensor, f"{text!r} is in {unit}", f"Write {math.copysign(factor, number):.6g}*{text}.")
 
 
 def _is_of_units(number: float, unit: str) -> bool:
@@ -186,3 +197,23 @@ def _is_of_units(number: float, unit: str) -> bool:
 def _unlike(sensor: Sensor, found: str, remedy: str) -> SimulationError:
     needed = f"an observation must have the unit of its column, {sensor.unit!r}"
     return SimulationError(needed, found, remedy, ("observations", sensor.channel))
+
+
+def _known(simulation: Simulation, report: Report | None = None) -> dict[str, Powers | None]:
+    """Units of all names; None of what may have any: unknown units, and what an engine computes."""
+    known: dict[str, Powers | None] = {"t": {"s": 1}}
+    for part in (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports):
+        any_unit = dimension_of(part.unit) is None or getattr(part, "computed", False)
+        known[part.name] = None if any_unit else unit_powers(part.unit)
+    for name, text in simulation.definitions:
+        known[name] = powers_in(parsed(text), known, None, report and _at(f"[definitions] {name}", report))
+    return known
+
+
+def _at(where: str, report: Report) -> Report:
+    return lambda what: report(f"{where}: {what}")
+
+
+def _short(tree: Tree) -> str:
+    text = written(tree)
+    return repr(text if len(text) <= 40 else text[:37] + "...")
