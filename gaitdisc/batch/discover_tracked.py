@@ -145,9 +145,9 @@ def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
         before, after = (float(np.sqrt(np.mean(each**2))) for each in (one.joint.left, one.joint.left - effect))
         sizes[f"net_{one.joint.port}"] = (before, after, one.joint.floor)
     spreads = np.array([max(float(np.std(one.joint.demanded)), 1e-9) for one in joints])
-    whole = np.sqrt(np.mean((np.array(list(sizes.values())).T / spreads) ** 2, axis=1)).tolist()
+    before, after, floor = np.sqrt(np.mean((np.array(list(sizes.values())).T / spreads) ** 2, axis=1)).tolist()
     first = min((one.named.test for one in joints if one.named), key=lambda test: test.p, default=None)
-    return GapSize(*whole, first.p if first else float("nan"), sizes, first.pieces if first else 0)
+    return GapSize(before, after, floor, first.p if first else float("nan"), sizes, first.pieces if first else 0)
 
 
 def _runs(joints: list[JointFinding]) -> Runs:

@@ -155,9 +155,9 @@ def _proven(joint: ResidualMoment, noise: Noise, one: Named) -> Named:
         values = _numbers(joint, noise, one.part.candidate, learned)
         if values is not None:
             predicted[held] = _explained(joint, one.part.candidate, values)[held]
-    errors = joint.left, joint.left - predicted
-    test = paired_test(*(each[None, :, None] for each in errors), np.array([joint.floor or 1.0]))
-    before, after = (float((_white(noise, each) ** 2).sum()) for each in errors)
+    after = joint.left - predicted
+    test = paired_test(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
+    before, after = (float((_white(noise, each) ** 2).sum()) for each in (joint.left, after))
     return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
 
 
