@@ -85,6 +85,7 @@ def discover_engine(
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
     states = smoothed_states(mapping, engine, data)
+    refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
     fit = EngineFit(mapping, engine, data, states)
@@ -301,10 +302,7 @@ def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> NDAr
     data, plain = without_spikes(data), replace(mapping, model="")
     period = rhythm_of(data.observed, data.rate).period
     rate_of = {one.name: one.speed for one in engine.coordinates}
-    found = guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
-    largest = np.nanmax(np.abs(found), axis=(0, 1))
-    refuse_other_units(mapping, engine, {one.name: float(largest[k]) for k, one in enumerate(engine.coordinates)})
-    return found
+    return guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
 
 
 def _known(engine: Engine, states: NDArray[np.float64], data: Measured) -> tuple[Finding, ...]:
@@ -318,6 +316,13 @@ def _known(engine: Engine, states: NDArray[np.float64], data: Measured) -> tuple
                 f"{one.called} is at its limit ({one.low:.3g} to {one.high:.3g} {one.unit}) in {share:.2g} % of samples"
             )
             found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
+    driven = data.drive.inputs[inside]
+    for number, (low, high) in getattr(engine, "control_ranges", {}).items():
+        share = 100 * np.mean((driven[:, number] < low) | (driven[:, number] > high))
+        if share:
+            name = engine.controls[number].name
+            what = f"{name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            found.append(Finding("note", "saturated", "model", f"{what}: the engine clips it there", ""))
     touched = getattr(engine, "contacts", 0)
     if touched:
         what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"

@@ -15,11 +15,10 @@ from gaitdisc.discovery.estimates import named_estimates
 from gaitdisc.discovery.paired_test import sum_error
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.mapping import REPLACED, with_input_changed
+from gaitdisc.engines.mapping import replaced_inputs, with_input_changed
 from gaitdisc.engines.own_runs import Driven, OwnRuns, Start, left_by
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.results.discovery import Discovery
-from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -64,18 +63,16 @@ class EngineFit:
         kept = tuple(one for one in whole.effects if not own & set(names(parsed(one.term))))
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
         controls, lags, called = data.drive.inputs.copy(), {}, [one.name for one in self.engine.controls]
-        plain = replace(augmented, model="", effects=(), definitions=())
-        for name, expression in augmented.definitions:
-            column = called.index(name.removeprefix(REPLACED))
-            for trial, samples in enumerate(data.samples):
-                u, x = data.drive.inputs[trial, :samples], np.zeros((samples, len(plain.states)))
-                points = Points(data.time(trial)[:samples], x, u, rate=data.rate)
-                controls[trial, :samples, column] = evaluate(plain, expression, points)
+        for trial, samples in enumerate(data.samples):
+            time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
+            controls[trial, :samples] = replaced_inputs(augmented, time, u, data.rate)
         for part in parts:
             if part.candidate.name == "input_lag":
                 column = called.index(part.candidate.place)
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
                 controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
+                lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
+                written = replace(written, notes=(*written.notes, f"{lag}it stands in discovery.json alone"))
         return augmented, written, Driven(written.engine, augmented, controls, lags)
 
     def left(

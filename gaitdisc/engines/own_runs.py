@@ -132,8 +132,9 @@ def left_by(
             for hidden, (control, seconds) in zip(starts.T[2 * n :], lags.items(), strict=False):
                 driven[:, :, control] += hidden[:, None] * np.exp(-np.arange(samples) / (measured.rate * seconds))
             known = engine.near(recorded[trial].at(np.full(len(starts), first)), starts[:, :n], starts[:, n : 2 * n])
-            run = engine.run(replace(known, own=starts[:, 2 * n + len(lags) :]), driven, measured.rate)
             time, seen = measured.time(trial)[some], measured.observed[trial, some]
+            begun = replace(known, own=starts[:, 2 * n + len(lags) :], t=np.full(len(starts), time[0]))
+            run = engine.run(begun, driven, measured.rate)
             points = [Points(time, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
             return (seen - np.stack([observed(model.mapping, measured.channels, one) for one in points])) / size
 
