@@ -11,31 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.batch.discover_files import discovered, sealed
-from gaitdisc.batch.fit_by_engine import EngineFit
-from gaitdisc.discovery.answer import left_out
+from gaitdisc.batch.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
 from gaitdisc.discovery.catalogue import ALL, Request
-from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.grids import rhythm_of
-from gaitdisc.discovery.noise import sensor_noise
-from gaitdisc.discovery.paired_test import paired_test
 from gaitdisc.discovery.spiked_samples import without_spikes
-from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import expanded
 from gaitdisc.engines.mapping import other_values, read_mapping
-from gaitdisc.engines.own_runs import (
-    FEWER,
-    MERE_NOISE,
-    MOST_RUNS,
-    Driven,
-    OwnRuns,
-    left_by,
-    root_mean_square,
-    stretches_of,
-    trial_called,
-)
+from gaitdisc.engines.own_runs import OwnRuns, trial_called
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
@@ -52,7 +37,6 @@ _NONE, _NO_SIZE = np.empty((0, 0)), GapSize(0.0, 0.0, 0.0)
 _NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
 _NOTHING = Discovery("no_gap", "", (), (), (), _NO_SIZE, _NO_SIZE, (), (), _NO_RUNS)
 NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
-DRAWN = 4  # runs of a picture
 SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
 MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
 
@@ -85,9 +69,10 @@ def discover_engine(
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
     states = smoothed_states(mapping, engine, data)
+    refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
-    fit = EngineFit(mapping, engine, data, states)
+    fit = EngineFit(mapping, engine, data, states, progress=progress)
     progress(f"running {engine.path.name} by {engine.called} along every trial")
     as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
     answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
@@ -138,7 +123,7 @@ def searched(
     if found.effects and found.verdict != "wrong_initial_condition":
         if not engine.fibres:  # their runs take too long
             found = fit.fitted(found, linear, runs.among(~held_out(found, runs, data)))
-        runs = with_floor(replace(runs, after=fit.left(found, fit.parts, runs)), hidden)
+        runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         both = zip(found.effects, fit.parts, strict=True)
         sure = tuple(part for one, part in both if request.effects or not one.small)
         kept = sure if borne_out(runs, runs.before) else ()
@@ -148,7 +133,7 @@ def searched(
                 kept = tuple(one for one in kept if one is not part)
         if not kept:
             runs = replace(runs, after=runs.before)
-            if not at_noise(runs):
+            if not runs.before_at_noise:
                 found = unconfirmed(with_own_runs(found, runs, fit, linear), runs)
                 return EngineAnswer(found, mapping, base.written, runs, engine)
             found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
@@ -160,77 +145,10 @@ def searched(
             runs = replace(runs, after=fit.left(found, kept, runs))
         if kept:
             augmented, written, _ = fit.written(found, fit.parts)
-    if not found.effects and at_noise(runs):  # the expansion errs, through a contact say
+    if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
         found = replace(found, verdict="no_gap", rivals=(), explanations=())
-    runs = with_floor(runs, hidden)
+    runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
-
-
-def at_noise(runs: OwnRuns) -> bool:
-    """Whether the engine's runs of the model as read leave no more than the noise in any channel."""
-    return bool((root_mean_square(runs.before) < np.sqrt(MERE_NOISE) * runs.floor).all())
-
-
-def with_floor(runs: OwnRuns, hidden: list[float]) -> OwnRuns:
-    """Return runs with the noise that a search saw (channel,), where these do not leave less."""
-    return replace(runs, floor=np.fmax(runs.floor, np.fmin(hidden, root_mean_square(runs.after))))
-
-
-def borne_out(runs: OwnRuns, without: NDArray[np.float64]) -> bool:
-    """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
-    test = paired_test(without, runs.after, runs.floor)
-    return test.bears_out and test.fall > CRITERIA.margin
-
-
-def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
-    """Run a model as read along every trial."""
-    mapping, data = fit.mapping, fit.measured
-    at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, FEWER if engine.fibres else MOST_RUNS)
-    left = left_by(Driven(engine, mapping, data.drive.inputs), data, at, fit.states)
-    sensors = {name: mapping.sensor(name) for name in data.channels}
-    given = np.array([one.sd or np.nan for one in sensors.values()], float)
-    floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
-    units = {name: one.unit for name, one in sensors.items()}
-    return OwnRuns(left, left, at, engine.called, units, floor, fit.states.shape[2])
-
-
-def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:
-    """Which of the engine's runs (run,) the search held out."""
-    drawn = zip(found.runs.trial, found.runs.time[:, 0], strict=True) if found.runs.time.size else ()
-    begun = {trial_called(data, found.runs.names[k]): time for k, time in reversed([*drawn])}
-    times = zip(runs.at.trial, data.drive.time0[runs.at.trial] + (runs.at.first + 1) / data.rate, strict=True)
-    return np.array([time > begun.get(trial, np.inf) for trial, time in times])
-
-
-def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulation) -> Discovery:
-    """Return the answer with errors and shares of the engine's own runs, held out as the search did."""
-    at, data, sizes = runs.at, fit.measured, []
-    spread, times = np.nanstd(data.observed, axis=(0, 1)), data.drive.time0[at.trial] + at.first / data.rate
-    held = held_out(found, runs, data)
-    for some, size in ((~held, found.train), (held, found.held_out)):
-        which = some if some.any() else ~some
-        rows = np.array([*(root_mean_square(one[which]) for one in (runs.before, runs.after)), runs.floor])
-        whole = np.sqrt(np.mean((rows / spread) ** 2, axis=1)).tolist()
-        channels = dict(zip(data.channels, map(tuple, rows.T.tolist()), strict=True))
-        sizes.append(replace(size, before=whole[0], after=whole[1], noise_floor=whole[2], channels=channels))
-    effects = tuple(replace(one, held_out=1 - sizes[1].unexplained) for one in found.effects)
-    named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
-    shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
-    seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
-    time, numbers = times[shown, None] + np.arange(at.length) / data.rate, (str(k + 1) for k in range(len(data.trials)))
-    again = (at.trial[shown][1:] == at.trial[shown][:-1])[:, None] & (time[1:] <= time[:-1, -1:])
-    seen[1:][again] = np.nan  # where two runs overlap, the first is drawn
-    simulated, augmented = seen - runs.before[shown], seen - runs.after[shown]
-    found = replace(
-        found,
-        train=sizes[0],
-        held_out=sizes[1],
-        effects=effects,
-        explanations=(*named, *found.explanations[len(named) :]),
-        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, tuple(numbers)),
-    )
-    said = sentence_of(found, base, fit.parts if effects else ())
-    return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))
 
 
 def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
@@ -301,10 +219,7 @@ def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> NDAr
     data, plain = without_spikes(data), replace(mapping, model="")
     period = rhythm_of(data.observed, data.rate).period
     rate_of = {one.name: one.speed for one in engine.coordinates}
-    found = guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
-    largest = np.nanmax(np.abs(found), axis=(0, 1))
-    refuse_other_units(mapping, engine, {one.name: float(largest[k]) for k, one in enumerate(engine.coordinates)})
-    return found
+    return guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
 
 
 def _known(engine: Engine, states: NDArray[np.float64], data: Measured) -> tuple[Finding, ...]:
@@ -318,6 +233,13 @@ def _known(engine: Engine, states: NDArray[np.float64], data: Measured) -> tuple
                 f"{one.called} is at its limit ({one.low:.3g} to {one.high:.3g} {one.unit}) in {share:.2g} % of samples"
             )
             found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
+    driven = data.drive.inputs[inside]
+    for number, (low, high) in getattr(engine, "control_ranges", {}).items():
+        share = 100 * np.mean((driven[:, number] < low) | (driven[:, number] > high))
+        if share:
+            name = engine.controls[number].name
+            what = f"{name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            found.append(Finding("note", "saturated", "model", f"{what}: the engine clips it there", ""))
     touched = getattr(engine, "contacts", 0)
     if touched:
         what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"

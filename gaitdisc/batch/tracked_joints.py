@@ -50,9 +50,7 @@ def joints_of(
 
 def _simulation(walk: Pass) -> Simulation:
     """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
-    plain = drafted(walk.engine)
-    inputs = tuple(Input(name, "N m", "of the forces' file") for name in walk.groups)
-    numbers = []
+    plain, numbers = drafted(walk.engine), []
     for name in walk.groups:
         numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the file's forces"))
         numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="by which they act later than in the file"))
@@ -62,14 +60,13 @@ def _simulation(walk: Pass) -> Simulation:
         terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in walk.groups_at(k)]
         seen.append((f"net_{one.port}", " + ".join([*terms, one.port])))
         sensors.append(Sensor(f"net_{one.port}", one.force_unit))
-    shown = tuple(seen) or plain.observations
     return replace(
         plain,
         title=f"tracked walk of {walk.engine.path.name}",
         model="",
-        inputs=inputs,
+        inputs=tuple(Input(name, "N m", "of the forces' file") for name in walk.groups),
         parameters=tuple(numbers),
-        observations=shown,
+        observations=tuple(seen) or plain.observations,
         sensors=tuple(sensors),
     )
 
@@ -80,39 +77,35 @@ def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> dict[i
     places = [Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints.values()]
     every = candidates_of(base, tuple(places), (*known_shapes(), *more))
     effects = {*EFFECTS, *(shape.name for shape in more)}
+    possible = [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]
     found = {}
     for k, one in joints.items():
         mine = {one.port, *(f"{name}_{word}" for name in walk.groups_at(k) for word in ("strength", "delay"))}
-        found[k] = tuple(
-            each
-            for each in every
-            if each.place in mine and (each.kind == "parameter" or (each.name in effects and not each.states))
-        )
+        found[k] = tuple(each for each in possible if each.place in mine)
     return found
 
 
 def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> ResidualMoment:
     motion, one = walk.motion, walk.engine.coordinates[number]
-    states, inputs = np.hstack([motion.q, motion.v]), np.zeros((len(motion.time), len(base.inputs)))
-    points = Points(motion.time, states, inputs)
+    points = Points(motion.time, np.hstack([motion.q, motion.v]), np.zeros((len(motion.time), len(base.inputs))))
     known: dict[object, Values] = {}
 
     def columns(candidate: Candidate, constants: Mapping[str, float]) -> Values:
         key = (candidate.identity, *constants.values())
         if key not in known:
-            known[key] = computed(candidate, constants)
+            known[key] = walk.dense(acting(candidate, constants))
         return known[key]
 
-    def computed(candidate: Candidate, constants: Mapping[str, float]) -> Values:
+    def acting(candidate: Candidate, constants: Mapping[str, float]) -> Values:
         if candidate.verdict == "wrong_parameter":
             group, _, word = candidate.place.rpartition("_")
             own = walk.groups[group]
             if word == "delay":
                 own = np.interp(motion.time - constants["value"], motion.time, own) - own
-            return walk.dense(own[:, None])
+            return own[:, None]
         extras = replace(points, extras={f"_{name}": value for name, value in constants.items()})
         pieces = [np.broadcast_to(evaluate(base, piece, extras), len(motion.time)) for piece in candidate.pieces]
-        return walk.dense(np.column_stack(pieces))
+        return np.column_stack(pieces)
 
     return ResidualMoment(
         one.port,

@@ -48,10 +48,12 @@ class Pass:
     @property
     def joints(self) -> tuple[int, ...]:
         """Coordinates on which some actuator of the file acts, those with the ground apart."""
-        moved = (
-            np.abs(self.pulls).max(axis=(0, 1)) > 0 if self.pulls.shape[1] else np.zeros(self.demanded.shape[1], bool)
-        )
-        return tuple(k for k in range(self.demanded.shape[1]) if moved[k] and k not in self.engine.base)
+        return tuple(k for k, most in enumerate(self.strongest) if most > 0 and k not in self.engine.base)
+
+    @property
+    def strongest(self) -> Values:
+        """Largest pull of an actuator on each coordinate (coordinate,)."""
+        return np.abs(self.pulls).max(axis=(0, 1), initial=0.0)
 
     @cached_property
     def weight_n(self) -> float:
@@ -162,12 +164,10 @@ def balance(walk: Pass) -> list[Finding]:
 
 def refuse_other_motion(walk: Pass) -> None:
     """Refuse forces whose residuals do not balance this motion: they were computed for another one, or failed."""
-    engine, weight = walk.engine, walk.weight_n
-    given = np.abs(walk.pulls).max(axis=(0, 1)) if walk.pulls.shape[1] else np.zeros(len(engine.coordinates))
-    for k in engine.base:
-        one = engine.coordinates[k]
-        size = walk.size(walk.left[:, k])
-        if one.unit == "m" and given[k] > 0 and weight and size > OTHER_MOTION * weight:
+    weight = walk.weight_n
+    for k in walk.engine.base:
+        one, size = walk.engine.coordinates[k], walk.size(walk.left[:, k])
+        if one.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
                 f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
                 f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
@@ -177,11 +177,8 @@ def refuse_other_motion(walk: Pass) -> None:
 
 def only_residuals(walk: Pass) -> str:
     """Return what can be said where no file gives the forces of muscles."""
-    sizes = [
-        f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}"
-        for k, one in enumerate(walk.engine.coordinates)
-        if k in walk.engine.base
-    ]
+    base = [(k, walk.engine.coordinates[k]) for k in sorted(walk.engine.base)]
+    sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}" for k, one in base]
     return (
         "Nothing can be named at a joint: no file gives the muscles' forces, and whatever acts between two segments is "
         f"taken for muscles. Ground and body alone leave {', '.join(sizes)} (root mean square)."

@@ -86,7 +86,7 @@ class JointFinding:
         """Smallest factor of a column (sample,) that would be named here."""
         samples = len(self.joint.time)
         wanted = (CRITERIA.margin + _price(1, samples, self.open_ones)) * SAMPLES_A_NUMBER / samples
-        size = float(np.linalg.norm(_white(self.noise, column[:, None])))
+        size = float(np.linalg.norm(_white(self.noise, column)))
         return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
 
 
@@ -133,21 +133,19 @@ def borne_out(joint: ResidualMoment, one: Named) -> bool:
 
 def _fitted(joint: ResidualMoment, noise: Noise, candidate: Candidate, open_ones: int, refined: bool) -> Named | None:
     """Numbers of a candidate on all of the record, None where it is nowhere in it."""
-    every = np.arange(len(joint.time))
-    values = _numbers(joint, noise, candidate, every, refined)
+    samples, count = len(joint.time), len(candidate.slots)
+    values = _numbers(joint, noise, candidate, np.arange(samples), refined)
     if values is None:
         return None
     explained = _explained(joint, candidate, values)
-    before = _white(noise, joint.left[:, None])
     slopes = np.column_stack([_slope(joint, candidate, values, slot) for slot in candidate.slots])
-    after, jacobian = _white(noise, (joint.left - explained)[:, None]), _white(noise, slopes)
-    count = len(candidate.slots)
-    variance = max(float((after**2).sum()) / max(len(every) - count, 1), 1.0)
+    jacobian = _white(noise, slopes)
+    before, after = (float((_white(noise, each) ** 2).sum()) for each in (joint.left, joint.left - explained))
+    variance = max(after / max(samples - count, 1), 1.0)
     covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
-    price = _price(count, len(every), open_ones)
-    gained = _fall(float((before**2).sum()), float((after**2).sum()), len(every)) - price
+    gained = _fall(before, after, samples) - _price(count, samples, open_ones)
     part = Part(candidate, values)
-    return Named(part, covariance, explained, np.zeros(len(every)), gained, 0.0, PairedTest(1.0, 0, 0.0))
+    return Named(part, covariance, explained, np.zeros(samples), gained, 0.0, PairedTest(1.0, 0, 0.0))
 
 
 def _proven(joint: ResidualMoment, noise: Noise, one: Named) -> Named:
@@ -157,9 +155,9 @@ def _proven(joint: ResidualMoment, noise: Noise, one: Named) -> Named:
         values = _numbers(joint, noise, one.part.candidate, learned)
         if values is not None:
             predicted[held] = _explained(joint, one.part.candidate, values)[held]
-    errors = [each[None, :, None] for each in (joint.left, joint.left - predicted)]
-    test = paired_test(errors[0], errors[1], np.array([joint.floor or 1.0]))
-    before, after = (float((_white(noise, each[0]) ** 2).sum()) for each in errors)
+    after = joint.left - predicted
+    test = paired_test(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
+    before, after = (float((_white(noise, each) ** 2).sum()) for each in (joint.left, after))
     return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
 
 
@@ -170,12 +168,12 @@ def _numbers(
     from scipy.optimize import minimize
 
     known = np.isin(np.arange(len(joint.time)), some)
-    y = _white(noise, joint.left[:, None], known)[:, 0]
+    y, late = _white(noise, joint.left, known), candidate.place.endswith("_delay")
 
     def fit(constants: Mapping[str, float]) -> tuple[float, Values]:
         columns = joint.columns(candidate, constants)
         white = _white(noise, columns, known)
-        if candidate.place.endswith("_delay"):
+        if late:
             return float(((y - white[:, 0]) ** 2).sum()), np.empty(0)
         if np.linalg.norm(columns[some], axis=0).min() < FLAT * max(len(some), 1):
             return np.inf, np.zeros(columns.shape[1])
@@ -185,7 +183,7 @@ def _numbers(
     span = float(joint.time[-1] - joint.time[0])
     rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
     starts = cells(dict(candidate.constants or {}), joint.along, rhythm)
-    if candidate.place.endswith("_delay"):
+    if late:
         starts = [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
     scores = [fit(one)[0] for one in starts]
     best = starts[int(np.argmin(scores))]
@@ -208,18 +206,17 @@ def _numbers(
             best = dict(zip(names, map(float, found.x), strict=True))
     factors = fit(best)[1]
     if candidate.verdict == "wrong_parameter":
-        return best if candidate.place.endswith("_delay") else {"value": 1.0 + float(factors[0])}
+        return best if late else {"value": 1.0 + float(factors[0])}
     return dict(zip(candidate.slots, [*map(float, factors), *best.values()], strict=True))
 
 
 def _explained(joint: ResidualMoment, candidate: Candidate, values: Mapping[str, float]) -> Values:
-    if candidate.verdict == "wrong_parameter":
-        if candidate.place.endswith("_delay"):
-            return joint.columns(candidate, values)[:, 0]
-        return (values["value"] - 1.0) * joint.columns(candidate, {})[:, 0]
     constants = {slot: values[slot] for slot in candidate.constants or {}}
-    factors = np.array([values[slot] for slot in candidate.slots[: len(candidate.pieces)]])
-    return joint.columns(candidate, constants) @ factors
+    factors = [values[slot] for slot in candidate.slots[: len(candidate.pieces)]]
+    if candidate.verdict == "wrong_parameter":
+        late = candidate.place.endswith("_delay")
+        constants, factors = (values, [1.0]) if late else ({}, [values["value"] - 1.0])
+    return joint.columns(candidate, constants) @ np.array(factors)
 
 
 def _fall(before: float, after: float, count: int) -> float:
@@ -239,6 +236,6 @@ def _slope(joint: ResidualMoment, candidate: Candidate, values: Mapping[str, flo
 
 
 def _white(noise: Noise, columns: Values, known: NDArray[np.bool_] | None = None) -> Values:
-    """Whitened columns (sample, column); 0 at samples that are not to be known, after which all begins afresh."""
+    """Whitened values (sample,) or columns (sample, column); 0 at samples that are not to be known, then afresh."""
     where = None if known is None else known[None, :, None]
-    return noise.whitened(columns[None, :, None, :], where)[0, :, 0, :]
+    return noise.whitened(columns.reshape(1, len(columns), 1, -1), where).reshape(columns.shape)

@@ -49,17 +49,23 @@ CONVENTIONS = {
 }  # fmt: skip
 
 
-def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, float]) -> None:
-    """Refuse angles that can be no radians: degrees that nobody said are degrees.
+def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: NDArray[np.float64]) -> None:
+    """Refuse angles that can be no radians: degrees that nobody said are degrees; a wheel may turn as often as it does.
 
-    largest: largest size of each coordinate in the record [rad, m]
+    states (trial, sample, state): smoothed: coordinates, then speeds
     """
-    for one in engine.coordinates:
-        limit = _limit(one)
-        if one.unit == "rad" and largest[one.name] > limit:
+    largest, degrees = np.nanmax(np.abs(states), axis=(0, 1)), np.ones(len(engine.coordinates))
+    for k, one in enumerate(engine.coordinates):
+        if one.unit == "rad" and largest[k] > _limit(one):
+            degrees[k] = np.pi / 180
+    misfit = _Misfit(mapping, engine, measured, states)
+    for k in np.flatnonzero(degrees < 1.0):
+        one = engine.coordinates[k]
+        limited = np.isfinite(one.high)
+        if limited or misfit.with_factors(degrees) < misfit.with_factors(np.ones(len(degrees))):
             raise SchemaError(
-                f"coordinate {one.called!r} stays within {limit:.3g} rad",
-                f"column {_column(mapping, one)!r} makes it {largest[one.name]:.4g} rad: these may be degrees",
+                f"coordinate {one.called!r} stays within {_limit(one):.3g} rad",
+                f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad: these may be degrees",
                 f"Say so in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
                 f"{engine.path.name} --degrees.",
             )

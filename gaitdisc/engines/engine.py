@@ -58,6 +58,7 @@ class Motion:
     u: NDArray[np.float64]  # (point, control), what acts through each: its activation where it has one, else itself
     z: NDArray[np.float64] | None = None  # (point, fibre) [m], lengths of fibres; in equilibrium where absent
     own: NDArray[np.float64] | None = None  # (point, state), of pushes; 0 where absent
+    t: NDArray[np.float64] | None = None  # (point,) [s], time of pushes; 0 where absent
 
     def at(self, points: NDArray[np.intp]) -> Motion:
         """Return some of its points."""
@@ -77,9 +78,11 @@ class Pushes:
     machine: Compiled  # of the coordinates, the speeds, whose rates are the forces, and the states of the pushes
     count: int  # coordinates
 
-    def at(self, x: NDArray[np.float64], u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Forces (point, coordinate) and rates of their states at all states (point, state) and controls."""
-        rates = self.machine.rates(np.zeros(len(x)), x, u)
+    def at(
+        self, t: NDArray[np.float64], x: NDArray[np.float64], u: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Forces (point, coordinate) and rates of their states at times, all states (point, state) and controls."""
+        rates = self.machine.rates(t, x, u)
         return rates[:, self.count : 2 * self.count], rates[:, 2 * self.count :]
 
     def begun(self, start: Motion) -> NDArray[np.float64]:

@@ -8,11 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import Engine, is_model, read_model, refuse_unknown
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
+from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Port, Sensor, State
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
@@ -137,3 +139,15 @@ def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
     """Mapping in which a control is replaced by an expression of the recorded one."""
     return replace(mapping, definitions=(*mapping.definitions, (f"{REPLACED}{name}", expression)))
+
+
+def replaced_inputs(
+    mapping: Simulation, time: NDArray[np.float64], u: NDArray[np.float64], rate: float
+) -> NDArray[np.float64]:
+    """Controls of one trial (sample, control) with those that the mapping replaces by an expression of the recorded."""
+    plain = replace(mapping, model="", effects=(), definitions=())
+    points = Points(time, np.zeros((len(time), len(plain.states))), u, rate=rate)
+    changed, called = u.copy(), [one.name for one in mapping.inputs]
+    for name, expression in mapping.definitions:
+        changed[:, called.index(name.removeprefix(REPLACED))] = evaluate(plain, expression, points)
+    return changed

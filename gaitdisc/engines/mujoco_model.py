@@ -94,6 +94,8 @@ class MujocoModel:
             for name, (array, index, unit, _) in self._places.items()
         )
         self.offered = tuple(one.name for one in self.parameters if one.value and "gear" not in one.name)
+        ranges = np.where(model.actuator_ctrllimited[:, None], model.actuator_ctrlrange, (-np.inf, np.inf)).tolist()
+        self.control_ranges = {k: (low, high) for k, (low, high) in enumerate(ranges) if np.isfinite(high)}
         self._stateful = self._model.actuator_actadr >= 0
         self.contacts = 0  # most that any evaluated point had
 
@@ -179,13 +181,15 @@ class MujocoModel:
             data.act[model.actuator_actadr[own]] = start.u[run, own]
             found[run, 0] = *start.q[run], *start.v[run]
             pushed = None if self.pushes is None else self.pushes.begun(start)[[run]]
+            begins = 0.0 if start.t is None else start.t[run]
             for sample in range(len(driven) - 1):
                 change = (driven[sample + 1] - driven[sample]) / steps
                 for step in range(steps):
                     data.ctrl[:] = driven[sample] + step * change
                     if self.pushes is not None and pushed is not None:
                         pushed[0, : 2 * model.nv] = *data.qpos, *data.qvel
-                        data.qfrc_applied[:], rates = self.pushes.at(pushed, data.ctrl[None])
+                        now = np.array([begins + data.time])
+                        data.qfrc_applied[:], rates = self.pushes.at(now, pushed, data.ctrl[None])
                         pushed[:, 2 * model.nv :] += model.opt.timestep * rates
                     self._mujoco.mj_step(model, data)
                 found[run, sample + 1] = *data.qpos, *data.qvel

@@ -114,19 +114,21 @@ class OpensimModel:
         if self.pushes is None:
             return self._query("run", start.q, start.v, start.u, start.z, controls, rate)
         pushes, n, h = self.pushes, len(self.coordinates), 1 / rate
+        t = np.zeros(len(start.q)) if start.t is None else start.t
 
-        def rates(x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
-            forces, own = pushes.at(x, u)
+        def rates(t: NDArray[np.float64], x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+            forces, own = pushes.at(t, x, u)
             at = Motion(x[:, :n], x[:, n : 2 * n], u)
             return np.hstack([at.v, self.accelerations(at, {}, forces), own])
 
         found = [pushes.begun(start)]
         for before, after in pairwise(np.swapaxes(controls, 0, 1)):
             x, between = found[-1], (before + after) / 2
-            one = rates(x, before)
-            two = rates(x + h / 2 * one, between)
-            three = rates(x + h / 2 * two, between)
-            found.append(x + h / 6 * (one + 2 * two + 2 * three + rates(x + h * three, after)))
+            one = rates(t, x, before)
+            two = rates(t + h / 2, x + h / 2 * one, between)
+            three = rates(t + h / 2, x + h / 2 * two, between)
+            t = t + h
+            found.append(x + h / 6 * (one + 2 * two + 2 * three + rates(t, x + h * three, after)))
         return np.stack(found, axis=1)[:, :, : 2 * n]
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:

@@ -17,13 +17,13 @@ from gaitdisc.engines.opensim_worker import (
     add_ports,
     answer_questions,
     couplers,
+    place_coupled,
     switch_off_controllers,
 )
 from gaitdisc.errors import SchemaError
 
 Values = NDArray[np.float64]
 TRANSLATIONAL = 2
-STEP = 1e-5  # of a coordinate, for the slope of a coupler
 
 
 class OpensimTracked(OpensimModel):
@@ -89,12 +89,7 @@ class _Tracked:
         model.finalizeConnections()
         every = model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
-        led = ((name, *one) for name, one in couplers(model, osim).items())  # by one other, or by several
-        self.coupled = {
-            name: (leading[0], lambda x, law=law, by=by: by * law.calcValue(osim.Vector(1, float(x))))
-            for name, leading, law, by in led
-            if len(leading) == 1
-        }
+        self.coupled = couplers(model, osim)
         self.names = [name for name in names if not every.get(name).getDefaultLocked() and name not in self.coupled]
         self.actuators = [one.getName() for one in model.getActuators()]
         add_ports(model, osim, self.names)
@@ -148,31 +143,25 @@ class _Tracked:
             "mass_kg": model.getTotalMass(self.state),
         }
 
-    def placed(self, q: Any, v: Any) -> dict[str, float]:
-        """Put a posture in; slopes of the coupled coordinates."""
-        slopes: dict[str, float] = {}
+    def placed(self, q: Any, v: Any) -> dict[str, dict[str, float]]:
+        """Put a posture in; how far each coupled coordinate goes with each that leads it."""
         for name, position, speed in zip(self.names, q, v, strict=True):
             self.free[name].setValue(self.state, float(position), False)
             self.free[name].setSpeedValue(self.state, float(speed))
-        for name, (leading, law) in self.coupled.items():
-            at, rate = self.free[leading].getValue(self.state), self.free[leading].getSpeedValue(self.state)
-            slopes[name] = (law(at + STEP) - law(at - STEP)) / (2 * STEP)
-            self.free[name].setValue(self.state, law(at), False)
-            self.free[name].setSpeedValue(self.state, slopes[name] * rate)
-        return slopes
+        return place_coupled(self.osim, self.model, self.state, self.coupled)
 
-    def _solved(self, a: Mapping[str, float], slopes: Mapping[str, float] | None = None) -> Any:
-        """Inverse dynamics of the free coordinates; what a coupled one needs comes through its leading one."""
+    def _solved(self, a: Mapping[str, float], slopes: Mapping[str, Mapping[str, float]]) -> Any:
+        """Inverse dynamics of the free coordinates; what a coupled one needs comes through those that lead it."""
         wanted = self.osim.Vector(self.state.getNU(), 0.0)
-        slopes = slopes or dict.fromkeys(self.coupled, 0.0)
         for name, value in a.items():
             wanted.set(self.place[name], float(value))
-        for name, slope in slopes.items():
-            wanted.set(self.place[name], slope * float(a.get(self.coupled[name][0], 0.0)))
+        for name, own in slopes.items():
+            wanted.set(self.place[name], sum(slope * float(a.get(other, 0.0)) for other, slope in own.items()))
         whole = self.solver.solve(self.state, wanted).to_numpy()
         found = np.array([whole[self.place[name]] for name in self.names])
-        for name, slope in slopes.items():
-            found[self.names.index(self.coupled[name][0])] += slope * whole[self.place[name]]
+        for name, own in slopes.items():
+            for other, slope in own.items():
+                found[self.names.index(other)] += slope * whole[self.place[name]]
         return found
 
     def demanded(self, time: Any, q: Any, v: Any, a: Any, loaded: bool) -> Any:
@@ -204,7 +193,7 @@ class _Tracked:
             self.state.setTime(float(t))
             slopes = self.placed(q[k], still)
             for column, name in enumerate(self.names):
-                with_it = {other: slopes[other] for other, (leading, _) in self.coupled.items() if leading == name}
+                with_it = {other: own[name] for other, own in slopes.items() if name in own}
                 self._speeds({name: 1.0, **with_it})
                 self.model.realizeVelocity(self.state)
                 for number, path in paths:

@@ -92,16 +92,7 @@ class _Ready:
         for one, position, speed in zip(self.free, q, v, strict=True):
             one.setValue(self.state, float(position), False)
             one.setSpeedValue(self.state, float(speed))
-        every = self.model.getCoordinateSet()
-        for name, (others, function, scale) in self.couplers.items():
-            leading = [every.get(other) for other in others]
-            where = self.osim.Vector(len(others), 0.0)
-            for k, one in enumerate(leading):
-                where.set(k, one.getValue(self.state))
-            speeds = [one.getSpeedValue(self.state) for one in leading]
-            slopes = [_slope(function, where, k) for k in range(len(others))]
-            every.get(name).setValue(self.state, scale * function.calcValue(where), False)
-            every.get(name).setSpeedValue(self.state, scale * float(np.dot(slopes, speeds)))
+        place_coupled(self.osim, self.model, self.state, self.couplers)
 
     def tensed(self, u: Any, z: Any = None) -> None:
         """Put activations in, and lengths of fibres: without them those of the equilibrium."""
@@ -156,6 +147,22 @@ def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
                 float(one.getPropertyByName("scale_factor").toString()),
             )
     return found
+
+
+def place_coupled(osim: Any, model: Any, state: Any, coupled: dict[str, tuple[list[str], Any, float]]) -> Any:
+    """Put coordinates where those that lead them have them; how far each goes with each of these: follower, leader."""
+    every, slopes = model.getCoordinateSet(), {}
+    for name, (others, function, scale) in coupled.items():
+        leading = [every.get(other) for other in others]
+        where = osim.Vector(len(others), 0.0)
+        for k, one in enumerate(leading):
+            where.set(k, one.getValue(state))
+        own = [scale * _slope(function, where, k) for k in range(len(others))]
+        every.get(name).setValue(state, scale * function.calcValue(where), False)
+        speeds = [one.getSpeedValue(state) for one in leading]
+        every.get(name).setSpeedValue(state, float(np.dot(own, speeds)))
+        slopes[name] = dict(zip(others, own, strict=True))
+    return slopes
 
 
 def _slope(function: Any, where: Any, number: int, step: float = 1e-5) -> float:

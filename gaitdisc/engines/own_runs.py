@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -18,6 +19,7 @@ MOST_RUNS, FEWER = 24, 6  # fewer where muscles have fibres
 PERIODS = 2.0  # of a run: over 4 s with limits or contacts 2 of 4 perfect models had a start that is not the best
 SHARES = (0.125, 0.35, 1.0)  # of a run, to which its start is fitted one after the other
 TURNS = 6
+SILENT_S = 10.0  # after which a person is told how many runs are done
 NUDGE = 1e-4
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 WINDOWS = 10  # in a period: what is missing bends a run more slowly
@@ -83,6 +85,15 @@ class OwnRuns:
         return bool(within < MERE_NOISE and variance_ratio.sf(between / within, free, inner) > CHANCE)
 
     @property
+    def before_at_noise(self) -> bool:
+        """Whether runs of the model as read leave no more than the noise in any channel."""
+        return bool((root_mean_square(self.before) < np.sqrt(MERE_NOISE) * self.floor).all())
+
+    def with_floor(self, hidden: list[float]) -> OwnRuns:
+        """Return runs with the noise that a search saw (channel,), where these do not leave less."""
+        return replace(self, floor=np.fmax(self.floor, np.fmin(hidden, root_mean_square(self.after))))
+
+    @property
     def said(self) -> str:
         """One sentence."""
         sizes = zip(self.units.items(), *map(root_mean_square, (self.before, self.after)), strict=True)
@@ -113,7 +124,12 @@ def trial_called(measured: Measured, name: str) -> int:
 
 
 def left_by(
-    model: Driven, measured: Measured, at: Stretches, states: NDArray[np.float64], near: dict[int, Start] | None = None
+    model: Driven,
+    measured: Measured,
+    at: Stretches,
+    states: NDArray[np.float64],
+    near: dict[int, Start] | None = None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> NDArray[np.float64]:
     """Measured minus run (run, sample, channel), starts and hidden states found by Gauss-Newton.
 
@@ -124,7 +140,11 @@ def left_by(
     recorded = recorded_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
     size = np.nanstd(measured.observed, axis=(0, 1))
     found = np.full((len(at.trial), at.length, len(size)), np.nan)
+    said = time.monotonic()
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
+        if time.monotonic() - said > SILENT_S:
+            progress(f"{row} of {len(at.trial)} runs by {engine.called} are done")
+            said = time.monotonic()
 
         def left_from(starts: NDArray[np.float64], samples: int, trial: int = trial, first: int = first):
             some = slice(first, first + samples)
@@ -132,9 +152,10 @@ def left_by(
             for hidden, (control, seconds) in zip(starts.T[2 * n :], lags.items(), strict=False):
                 driven[:, :, control] += hidden[:, None] * np.exp(-np.arange(samples) / (measured.rate * seconds))
             known = engine.near(recorded[trial].at(np.full(len(starts), first)), starts[:, :n], starts[:, n : 2 * n])
-            run = engine.run(replace(known, own=starts[:, 2 * n + len(lags) :]), driven, measured.rate)
-            time, seen = measured.time(trial)[some], measured.observed[trial, some]
-            points = [Points(time, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
+            t, seen = measured.time(trial)[some], measured.observed[trial, some]
+            begun = replace(known, own=starts[:, 2 * n + len(lags) :], t=np.full(len(starts), t[0]))
+            run = engine.run(begun, driven, measured.rate)
+            points = [Points(t, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
             return (seen - np.stack([observed(model.mapping, measured.channels, one) for one in points])) / size
 
         own = len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0

@@ -67,9 +67,9 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
                 said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
             used = {name for one in more_forces for name in names(parsed(one.term))}
             notes.append(f"{what} {said}: it stands in {'discovery.json' if used & own else 'augmented.toml'} alone")
-            if more_forces and not engine.fibres and "t" not in used and "delay(" not in more_forces[0].term:
+            if more_forces and not engine.fibres and "delay(" not in more_forces[0].term:
                 by_hand = (*by_hand, *more_forces)
-            else:  # a force at each step of a run knows neither the time nor what was before
+            else:  # a force at each step of a run does not know what was before
                 absent.append(what)
             continue
         text, current, forces, values = tried, read, *wanted[1:]
@@ -78,6 +78,8 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
     for name, expression in augmented.definitions:
         control = name.removeprefix(REPLACED)
         notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
+    if text == engine.path.read_text(encoding="utf-8"):
+        notes.append(f"the written model is the same as {engine.path.name}")
     if by_hand:
         n, current = len(engine.coordinates), copy(engine) if current is engine else current
         acting = [
@@ -94,7 +96,8 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     """Mapping of a model, and the engine of the model with all that the mapping says: other numbers, and effects."""
     mapping, engine = read_mapping(path)
     written = written_model(engine, mapping)
-    absent = (*written.absent, *(f"{name} = {text}" for name, text in mapping.definitions))
+    others = (f"{name} = {text}" for name, text in mapping.definitions if not name.startswith(REPLACED))
+    absent = (*written.absent, *others)
     if absent:
         raise SchemaError(
             f"{engine.called} runs what stands in the model's own file",
@@ -121,7 +124,7 @@ def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str]
 def _by_hand(augmented: Simulation, term: Term, x: NDArray[np.float64]) -> NDArray[np.float64]:
     """Force of a term at states (point,); infinite where it depends on more than states."""
     plain = replace(augmented, model="", effects=(), definitions=())
-    if "delay(" in term.term:
+    if "delay(" in term.term or "t" in names(parsed(term.term)):
         return np.full(len(x), np.inf)
     u = np.zeros((len(x), len(augmented.inputs)))
     return np.broadcast_to(evaluate(plain, term.term, Points(np.zeros(len(x)), x, u)), len(x))

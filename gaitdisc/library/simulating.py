@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel, side_of
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.mapping import names_engine
+from gaitdisc.engines.mapping import names_engine, replaced_inputs
 from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
@@ -145,8 +146,9 @@ def _run_by(
     """States (time, state) by an engine's own integrator, and observed channels (time,)."""
     count, rate = len(engine.coordinates), _rate(time)
     q, v = start[None, :count], start[None, count:]
+    driven = replaced_inputs(simulation, time, driven, rate)
     held = engine.along(np.repeat(q, 2, axis=0), np.zeros((2, count)), driven[:2], rate).at(np.zeros(1, np.intp))
-    states = engine.run(engine.near(held, q, v), driven[None], rate)[0]
+    states = engine.run(replace(engine.near(held, q, v), t=time[:1]), driven[None], rate)[0]
     lost = np.flatnonzero(~np.isfinite(states).all(axis=1))
     if lost.size:
         raise SimulationError(

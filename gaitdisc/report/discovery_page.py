@@ -139,10 +139,11 @@ def where_table(discovery: Discovery) -> Table:
         begin, end = one.phase or (math.nan, math.nan)
         records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
     caption = "Where the gap arises. Share: of the mean squared gap that an effect at this place removes."
+    headings = ("place", "share of the gap", "stride", "region")
+    if not any(one.phase for one in discovery.where):  # a machine has no stride
+        headings, rows = (*headings[:2], headings[3]), [(*row[:2], row[3]) for row in rows]
     columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
-    return Table(
-        "where", caption, ("place", "share of the gap", "stride", "region"), tuple(rows), _frame(records, columns)
-    )
+    return Table("where", caption, headings, tuple(rows), _frame(records, columns))
 
 
 def corrections_table(discovery: Discovery) -> Table:
@@ -196,13 +197,13 @@ def data_findings(discovery: Discovery) -> Table:
 
 
 def closed_share(before: float, after: float, floor: float) -> float:
-    """Return which share of the squared gap above the noise is closed; NaN where there is none.
+    """Return which share of the squared gap above the noise is closed, at most all of it; NaN where there is none.
 
-    >>> closed_share(2.0, 1.0, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
+    >>> closed_share(2.0, 0.9, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
     (1.0, 0.84)
     """
     there = before**2 - floor**2
-    return (before**2 - after**2) / there if there > 0.02 * floor**2 else math.nan
+    return min((before**2 - after**2) / there, 1.0) if there > 0.02 * floor**2 else math.nan
 
 
 def _degrees(one: Estimate) -> str:

@@ -30,6 +30,7 @@ VERDICTS = (
     "unexplained",
 )
 
+SIZES = ("before", "after", "noise_floor")  # of a gap, as its file calls them
 # What an answer follows, as its provenance has it
 SIMULATION = "discovery of missing physics"
 ENGINE = "discovery of missing physics in a model of an engine"
@@ -257,20 +258,14 @@ class Discovery(Saved, file="discovery.json"):
         return html_of(self.sentence, rows)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the content of `discovery.json`."""
-        return {
+        """Return the content of `discovery.json`; a number that is not finite is null."""
+        found = {
             "verdict": self.verdict,
-            "where": [_where(one) for one in self.where],
+            "where": [_placed(one) for one in self.where],
             "effects": [_effect(one) | ({"small": True} if one.small else {}) for one in self.effects],
             "corrections": [
-                {
-                    "parameter": one.parameter,
-                    "from": _number(one.given),
-                    "to": _number(one.found.value),
-                    "low": _number(one.found.low),
-                    "high": _number(one.found.high),
-                    "unit": one.found.unit,
-                }
+                {"parameter": one.parameter, "from": one.given, "to": one.found.value}
+                | {"low": one.found.low, "high": one.found.high, "unit": one.found.unit}
                 for one in self.corrections
             ],
             "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
@@ -279,55 +274,55 @@ class Discovery(Saved, file="discovery.json"):
                 {
                     "effects": [_effect(each) | {"tied": each.tied} for each in one.effects],
                     "held_out": _gap(one.held_out) if one.held_out else None,
-                    "left": {"time": [*map(_number, one.time)], "measured_minus_run": [*map(_number, one.left)]},
+                    "left": {"time": one.time, "measured_minus_run": one.left},
                 }
                 for one in self.explanations
             ],
             **({"given": self.given} if self.given else {}),
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
-            **({"beside": {name: _number(one) for name, one in self.beside.items()}} if self.beside else {}),
+            **({"beside": self.beside} if self.beside else {}),
+        }
+        return _finite(found) | {
             "findings": [asdict(one) for one in self.findings],
             "provenance": asdict(self.provenance) if self.provenance else None,
         }
 
 
-def _place(one: Whereabouts | FoundEffect) -> dict[str, str]:
-    return {one.kind: one.place}
-
-
-def _where(one: Whereabouts) -> dict[str, Any]:
-    phase = [_number(share) for share in one.phase]
-    return _place(one) | {"share_of_gap": _number(one.share_of_gap), "phase": phase, "region": one.region}
+def _placed(one: Whereabouts | FoundEffect) -> dict[str, Any]:
+    """Fields of what has a place; its kind is the first key."""
+    values = asdict(one)
+    return {values.pop("kind"): values.pop("place")} | values
 
 
 def _effect(one: FoundEffect) -> dict[str, Any]:
-    estimates = {
-        name: {"value": _number(each.value), "low": _number(each.low), "high": _number(each.high), "unit": each.unit}
-        for name, each in one.estimates.items()
-    }
-    evidence = {"held_out": _number(one.held_out), "bic": _number(one.bic)}
-    some: dict[str, Any] = {"bounds": [_number(bound) for bound in one.bounds]} if one.bounds else {}
-    some |= {"states": dict(one.states)} if one.states else {}
+    values = _placed(one)
+    place = {key: values[key] for key in (one.kind, "name", "term", "estimates")}
+    evidence = {"evidence": {"held_out": one.held_out, "bic": one.bic}}
+    some = {key: values[key] for key in ("bounds", "states") if values[key]}
     if one.reads_as:
         some["reads_as"] = {"expression": one.reads_as, "effect": one.reads_as_effect or None}
-    return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence} | some
+    return place | evidence | some
 
 
 def _gap(one: GapSize) -> dict[str, Any]:
-    def named(sizes: tuple[float, float, float]) -> dict[str, float | None]:
-        return dict(zip(("before", "after", "noise_floor"), map(_number, sizes), strict=True))
-
     return {
-        **named((one.before, one.after, one.noise_floor)),
-        "unexplained": _number(one.unexplained),
-        "p": _number(one.p),
+        **dict(zip(SIZES, (one.before, one.after, one.noise_floor), strict=True)),
+        "unexplained": one.unexplained,
+        "p": one.p,
         "pieces": one.pieces,
         "alpha": one.alpha,
         **({"of": one.of} if one.of else {}),
-        "channels": {name: named(sizes) for name, sizes in one.channels.items()},
+        "channels": {name: dict(zip(SIZES, sizes, strict=True)) for name, sizes in one.channels.items()},
     }
 
 
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def _finite(value: Any) -> Any:
+    """Return what JSON knows: lists, and null in the place of a number that is not finite."""
+    if isinstance(value, Mapping):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(one) for one in value]
+    if isinstance(value, float):
+        return float(value) if np.isfinite(value) else None
+    return value

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaitdisc.results.discovery import (
-    ALPHA,
+    SIZES,
     Correction,
     Discovery,
     Estimate,
@@ -68,12 +68,10 @@ def load_discovery(folder: Path) -> Discovery:
             runs=_runs(table, channels),
             findings=tuple(map(stored_finding, data["findings"])),
             provenance=Provenance(**made) if made else None,
-            corrections=tuple(
-                Correction(one["parameter"], _number(one["from"]), _estimate(one, "to")) for one in data["corrections"]
-            ),
+            corrections=tuple(map(_correction, data["corrections"])),
             explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
-            beside={name: _number(one) for name, one in data.get("beside", {}).items()},
+            beside=_known(data.get("beside", {})),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own
@@ -81,56 +79,53 @@ def load_discovery(folder: Path) -> Discovery:
         raise damaged(folder / NAME, f"not in the expected form ({type(error).__name__}: {error})") from error
 
 
-def _number(value: float | None, absent: float = float("nan")) -> float:
-    return absent if value is None else float(value)
-
-
-def _estimate(row: Mapping[str, Any], value: str = "value") -> Estimate:
-    return Estimate(_number(row[value]), _number(row["low"]), _number(row["high"]), row["unit"])
+def _known(value: Any) -> Any:
+    """Return what JSON held as results hold it: tuples, and NaN where a number was not finite."""
+    if isinstance(value, Mapping):
+        return {key: _known(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return tuple(_known(one) for one in value)
+    return float("nan") if value is None else value
 
 
 def _where(row: Mapping[str, Any]) -> Whereabouts:
-    kind, place = next(iter(row.items()))  # they stand first
-    phase = tuple(_number(share) for share in row["phase"])
-    return Whereabouts(kind, place, _number(row["share_of_gap"]), phase, row["region"])
+    (kind, place), *others = row.items()
+    return Whereabouts(kind, place, **_known(dict(others)))
 
 
 def _effect(row: Mapping[str, Any]) -> FoundEffect:
-    bounds = tuple(_number(bound, edge) for bound, edge in zip(row.get("bounds", ()), (-np.inf, np.inf), strict=False))
-    kind, place = next(iter(row.items()))
+    kind, place = next(iter(row.items()))  # they stand first
+    bounds = zip(row.get("bounds", ()), (-np.inf, np.inf), strict=False)
     reading = row.get("reads_as", {"expression": "", "effect": None})
     return FoundEffect(
-        kind=kind,
-        place=place,
-        name=row["name"],
-        term=row["term"],
-        estimates={name: _estimate(each) for name, each in row["estimates"].items()},
-        held_out=_number(row["evidence"]["held_out"]),
-        bic=_number(row["evidence"]["bic"]),
-        tied=row.get("tied", False),
-        small=row.get("small", False),
-        bounds=bounds,
-        states=row.get("states", {}),
+        kind,
+        place,
+        row["name"],
+        row["term"],
+        {name: Estimate(**_known(each)) for name, each in row["estimates"].items()},
+        **_known(row["evidence"]),
+        bounds=tuple(edge if bound is None else bound for bound, edge in bounds),
         reads_as=reading["expression"],
         reads_as_effect=reading["effect"] or "",
+        **{name: row[name] for name in ("tied", "small", "states") if name in row},
     )
+
+
+def _correction(row: Mapping[str, Any]) -> Correction:
+    given, value, low, high = (_known(row[name]) for name in ("from", "to", "low", "high"))
+    return Correction(row["parameter"], given, Estimate(value, low, high, row["unit"]))
 
 
 def _explanation(row: Mapping[str, Any]) -> Explanation:
-    time, left = (tuple(map(_number, row["left"][name])) for name in ("time", "measured_minus_run"))
-    return Explanation(
-        tuple(map(_effect, row["effects"])), _gap(row["held_out"]) if row["held_out"] else None, time, left
-    )
+    time, left = (_known(row["left"][name]) for name in ("time", "measured_minus_run"))
+    held_out = _gap(row["held_out"]) if row["held_out"] else None
+    return Explanation(tuple(map(_effect, row["effects"])), held_out, time, left)
 
 
 def _gap(row: Mapping[str, Any]) -> GapSize:
-    channels = {name: _sizes(size) for name, size in row["channels"].items()}
-    p, alpha = _number(row["p"]), row.get("alpha", ALPHA)
-    return GapSize(*_sizes(row), p=p, channels=channels, pieces=row["pieces"], of=row.get("of", ""), alpha=alpha)
-
-
-def _sizes(row: Mapping[str, Any]) -> tuple[float, float, float]:
-    return _number(row["before"]), _number(row["after"]), _number(row["noise_floor"])
+    size = _known({key: one for key, one in row.items() if key != "unexplained"})
+    channels = {name: tuple(one[key] for key in SIZES) for name, one in size["channels"].items()}
+    return GapSize(**(size | {"channels": channels}))
 
 
 def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gaitdisc.batch.discover_engine import _NOTHING, base_runs
-from gaitdisc.batch.fit_by_engine import EngineFit
+from gaitdisc.batch.discover_engine import _NOTHING
+from gaitdisc.batch.fit_by_engine import EngineFit, base_runs
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.simulation.drive import Drive

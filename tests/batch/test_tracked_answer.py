@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.batch.tracked_answer import discovery_of
+from gaitdisc.batch.discover_tracked import discovery_of
 from gaitdisc.batch.tracked_joints import joints_of
 
 

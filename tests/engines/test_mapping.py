@@ -193,6 +193,17 @@ def test_a_missing_spring_is_no_other_convention(mapping, spring):
 
 
 def test_degrees_that_can_be_no_radians_are_refused(mapping):
-    refuse_other_units(mapping, Legs(), {"hip": 0.3, "knee": 1.2})
-    with pytest.raises(SchemaError, match=r"'knee'.*45 rad.*--degrees"):
-        refuse_other_units(mapping, Legs(), {"hip": 0.3, "knee": 45.0})
+    refuse_other_units(mapping, Legs(), *recorded(np.ones(2)))
+    measured, states = recorded(np.array([1, 180 / np.pi]))
+    largest = np.abs(states[..., 1]).max()
+    with pytest.raises(SchemaError, match=rf"'knee'.*{largest:.4g} rad.*--degrees"):
+        refuse_other_units(mapping, Legs(), measured, states)
+
+
+def test_a_wheel_turns_as_often_as_it_does(mapping, monkeypatch):
+    """The engine follows 90 rad as radians: as degrees its accelerations would be far too large."""
+    measured, states = recorded(np.ones(2))
+    time = np.arange(states.shape[1]) / RATE_HZ
+    wheel = np.column_stack([states[0, :, 0], 10 * time**2, states[0, :, 2], 20 * time])[None]
+    monkeypatch.setattr(Legs, "accelerations", lambda *_: np.gradient(wheel[0, :, 2:], 1 / RATE_HZ, axis=0))
+    refuse_other_units(mapping, Legs(), measured, wheel)

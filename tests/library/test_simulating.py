@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import write_mapping
+from gaitdisc.engines.mapping import with_input_changed, write_mapping
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.library.simulating import model_of
 from gaitdisc.simulation.python_simulation import PythonSimulation
@@ -114,7 +114,13 @@ def test_an_engine_runs_its_model_and_what_the_mapping_adds(engine_pendulum):
     )
     stiff = gd.simulate(engine_pendulum, time, {"drive": drive}, start)
     np.testing.assert_allclose(stiff["pivot"], swing(6.0, time, drive), atol=0.05)
-    write_simulation(mapping.with_effect(gd.Term("pivot_moment", "port", "push", "-6*sin(t)")), engine_pendulum)
+    pushed = mapping.with_effect(gd.Term("pivot_moment", "port", "push", "2*sin(3*t)"))
+    write_simulation(with_input_changed(pushed, "drive", "0.5*drive"), engine_pendulum)
+    late = gd.simulate(engine_pendulum, time + 1.0, {"drive": drive}, start)  # a push of the model's own time
+    np.testing.assert_allclose(late["pivot"], swing(0.0, time, 0.5 * drive + 0.4 * np.sin(3 * time + 3)), atol=0.05)
+    write_simulation(
+        mapping.with_effect(gd.Term("pivot_moment", "port", "push", "-delay(pivot, 0.1)")), engine_pendulum
+    )
     with pytest.raises(SchemaError, match=r"pendulum.toml.*pivot_moment.*write it into"):
         gd.simulate(engine_pendulum, time, {"drive": drive}, start)
 

@@ -48,7 +48,7 @@ def test_the_gap_is_given_for_both_parts_of_the_data():
     assert table.numbers["before"].iloc[0] == 0.054
 
 
-@pytest.mark.parametrize(("sizes", "closed"), [((2.0, 1.0, 1.0), 1.0), ((2.0, 2.0, 1.0), 0.0)])
+@pytest.mark.parametrize(("sizes", "closed"), [((2.0, 1.0, 1.0), 1.0), ((2.0, 2.0, 1.0), 0.0), ((2.0, 0.8, 1.0), 1.0)])
 def test_closed_is_of_the_squared_gap_above_the_noise(sizes, closed):
     assert closed_share(*sizes) == closed
 
@@ -58,7 +58,10 @@ def test_where_nothing_stands_above_the_noise_nothing_is_closed():
 
 
 def test_where_has_share_stride_and_region():
-    assert where_table(manufactured()).rows == (("at the ankle_moment port", "97 %", "12 to 55 %", "theta > 0.035"),)
+    found = manufactured()
+    assert where_table(found).rows == (("at the ankle_moment port", "97 %", "12 to 55 %", "theta > 0.035"),)
+    machine = where_table(replace(found, where=(replace(found.where[0], phase=()),)))
+    assert machine.columns == ("place", "share of the gap", "region") and machine.rows[0][2] == "theta > 0.035"
 
 
 def test_a_rival_is_listed_with_what_would_distinguish_it():
