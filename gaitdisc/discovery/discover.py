@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from gaitdisc.discovery.answer import answer, augmented_of
-from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
@@ -80,11 +79,7 @@ def discover(
 def weigh_explanations(
     case: Case, as_read: ScoredModel, measured: Measured, begun: Callable[[Measured], Case]
 ) -> tuple[Case, ScoredModel, Verdict]:
-    """Search and decide; again without a trial that goes with no other, or with other data held out where need be.
-
-    measured: what the case was set up with
-    begun: sets a case up with other data
-    """
+    """Search and decide; again without a trial that goes with no other, or with other data held out where need be."""
     progress = case.search.progress
     progress(f"weighing {len(case.search.candidates)} explanations")
     verdict = decide(case, as_read)
@@ -93,7 +88,7 @@ def weigh_explanations(
         case = replace(case, substeps=2 * case.substeps)
         as_read = case.as_read()
         verdict = decide(case, as_read)
-    if not leaves_noise(case, verdict.found):
+    if not case.leaves_noise(verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
             progress("one trial goes with no explanation of the others: it is left out")

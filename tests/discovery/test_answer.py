@@ -5,7 +5,7 @@ import pytest
 from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
+from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
@@ -64,6 +64,7 @@ def test_what_was_named_is_not_its_own_rival(answered):
     discovery, _ = answered
     assert ("cubic_stiffness", "load") not in [(one.name, one.place) for one in discovery.rivals]
     assert discovery.rivals
+    assert discovery.units == ("m",)
     assert not any(one.tied for one in discovery.rivals if one.name == "linear_stiffness")
 
 
@@ -85,10 +86,6 @@ def test_numbers_are_written_one_explanation_after_the_other():
 )
 def test_a_region_is_said_where_an_effect_has_one(candidate, values, region):
     assert region_of(Part(candidate, values)) == region
-
-
-def test_units_are_those_of_what_is_observed(case):
-    assert units_of(case) == ("m",)
 
 
 @pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])

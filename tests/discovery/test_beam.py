@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.beam import Beam, errs_more
-from gaitdisc.discovery.by_gap_share import near_runs, scale_of
+from gaitdisc.discovery.beam import Beam, near_runs
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.gap_share import CrossValidated
+from gaitdisc.discovery.gap_share import CrossValidated, errs_more
 from gaitdisc.discovery.score import Score
 
 
@@ -16,7 +15,7 @@ def beam():
     """Return a beam over what explains a stiffening spring and a loss between viscous and quadratic."""
     hidden = with_load("-16*x**3 - 0.6*v*abs(v)**0.5")
     case = set_up_case(mass(), record(hidden, 5, Experiment(noise=0.001)))
-    scale = scale_of(case)
+    scale = case.scale
     return Beam(case.search, scale, near_runs(case, scale))
 
 

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.beam import closing_most
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover import discover
@@ -13,25 +13,25 @@ CLEAN = Experiment(seconds=8.0, noise=0.001)
 
 
 def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(case, as_read, named):
-    scale = scale_of(case)
-    assert leaves_noise(case, named[0])
-    assert not leaves_noise(case, as_read)
+    scale = case.scale
+    assert case.leaves_noise(named[0])
+    assert not case.leaves_noise(as_read)
     assert not scale.agrees(as_read.model.fit)
 
 
 def test_a_simulation_that_errs_leaves_noise_where_that_is_a_small_share_of_the_spread(case, as_read, monkeypatch):
     base = replace(case.search.base, inexact=0.02)
     errs = replace(case, search=replace(case.search, base=base))
-    assert not leaves_noise(errs, as_read)
-    loose = replace(CRITERIA, inexact=2 * scale_of(errs).relative(as_read.model.fit))
-    monkeypatch.setattr("gaitdisc.discovery.by_gap_share.CRITERIA", loose)
-    assert leaves_noise(errs, as_read)
-    assert not leaves_noise(case, as_read)
+    assert not errs.leaves_noise(as_read)
+    loose = replace(CRITERIA, inexact=2 * errs.scale.relative(as_read.model.fit))
+    monkeypatch.setattr("gaitdisc.discovery.case.CRITERIA", loose)
+    assert errs.leaves_noise(as_read)
+    assert not case.leaves_noise(as_read)
 
 
 def test_where_nothing_is_missing_nothing_is_weighed():
     case = set_up_case(mass(), record(mass(), 3, CLEAN))
-    scale = scale_of(case)
+    scale = case.scale
     assert scale.agrees(case.as_read().model.fit)
     assert closing_most(case, scale, ()) is None
 
@@ -67,6 +67,6 @@ def test_what_is_left_is_told_as_a_share(answered):
 def test_a_number_ten_times_too_large_is_found_where_no_slope_at_the_files_leads_to_it():
     stiff = simulation_of(MASS.replace("value = 24.0", "value = 240.0"), "mass.toml")
     case = set_up_case(stiff, record(with_load("-0.6*v*abs(v)**0.5"), 5, CLEAN))
-    found = closing_most(case, scale_of(case), ())
+    found = closing_most(case, case.scale, ())
     (k,) = (part for part in found.now.model.parts if part.candidate.label == "wrong_parameter@k")
     assert k.values["value"] == pytest.approx(24.0, rel=0.05)

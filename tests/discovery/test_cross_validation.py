@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.fitted import Fitted, Prior
 from gaitdisc.discovery.gap_share import FOLDS, left_out_errors
-from gaitdisc.discovery.prior import Prior
 
 RUNS, ROWS, STATES, FREE = 7, 40, 2, 3
 

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
@@ -9,7 +8,7 @@ from gaitdisc.discovery.gap_share import GapScale, cross_validated
 
 @pytest.fixture(scope="module")
 def scale(case):
-    return scale_of(case)
+    return case.scale
 
 
 def test_the_scale_is_noise_and_a_hundredth_of_the_spread():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import mass
 
-from gaitdisc.discovery.observation_map import ObservationMap
+from gaitdisc.discovery.first_states import ObservationMap
 from gaitdisc.simulation.running import compile_simulation
 
 RATE = 50.0

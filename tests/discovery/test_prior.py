@@ -7,8 +7,8 @@ from hidden_in_a_mass import MASS, record, with_load
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.fitted import prior_of
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.discovery.prior import prior_of
 from gaitdisc.simulation.simulation_file import simulation_of
 
 NOISE = 0.013

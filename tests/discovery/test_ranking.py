@@ -3,8 +3,7 @@ from dataclasses import replace
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.ranking import ranked
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import ScoredModel, ranked
 
 SPRING = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"

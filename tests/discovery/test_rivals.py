@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from gaitdisc.discovery.answer import bic_gain, rivals_of
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.rivals import bic_gain, rivals_of
 from gaitdisc.discovery.scored_model import scored
 
 

@@ -1,7 +1,7 @@
 from hidden_in_a_mass import mass, two_rods
 
+from gaitdisc.discovery.candidate import unnamed_terms
 from gaitdisc.discovery.places import places_of
-from gaitdisc.discovery.unnamed_terms import unnamed_terms
 from gaitdisc.simulation.running import compile_simulation
 
 

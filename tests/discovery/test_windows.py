@@ -1,14 +1,14 @@
 import numpy as np
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_gap_share import as_read_on, near_runs, on_longer_runs, scale_of
+from gaitdisc.discovery.beam import as_read_on, near_runs, on_longer_runs
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 
 
 def begun(hidden):
     case = set_up_case(mass(), record(hidden, 3, Experiment(noise=0.002)))
-    return case, scale_of(case)
+    return case, case.scale
 
 
 def test_a_simulation_that_agrees_is_fitted_to_whole_trials():

@@ -7,8 +7,7 @@ import numpy as np
 from hidden_in_a_mass import mass, record
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.wrong_start import begun_at, wrong_starts
-from gaitdisc.results.discovery import Estimate
+from gaitdisc.discovery.estimates import wrong_starts
 
 
 def begun(x: float, v: float):
@@ -30,11 +29,6 @@ def test_states_without_a_start_in_the_file_are_left_alone():
     found, augmented = discover(mass(), record(mass(), 7))
     assert found.verdict == "no_gap"
     assert augmented == mass()
-
-
-def test_other_starts_are_written_into_the_states():
-    moved = begun_at(begun(3.0, 0.0), {"x": Estimate(0.25, 0.2, 0.3, "m")})
-    assert [state.initial for state in moved.states] == [0.25, 0.0]
 
 
 def test_trials_that_begin_at_unlike_places_show_no_start_that_all_have():
