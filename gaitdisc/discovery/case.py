@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, candidates_of
-from gaitdisc.discovery.candidate_model import fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import record_filter_of
@@ -157,6 +157,11 @@ class Case:
         """Whether runs were cut at a whole period, and not earlier, as chaos demands."""
         return now.shooting.segments.span >= WHOLE_PERIOD * self.rhythm.samples
 
+    def fitted_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
+        """Fit a model to other runs, which begin along its own."""
+        starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
+        return fit_model(shooting, self.search.base, now.model.parts, starts, like=now.model)
+
     def lengthened(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
 
@@ -165,13 +170,8 @@ class Case:
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (CRITERIA.follows**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
-            guess = self.guess.with_run(now.shooting.segments, now.model.fit.states)
-            samples = min(LENGTHENED * now.shooting.segments.span, longest)
-            shooting = self.learned_runs(samples)
-            starts = guess.starts(shooting.segments)
-            longer = fit_model(
-                shooting.with_noise(now.noise), self.search.base, now.model.parts, starts, like=now.model
-            )
+            shooting = self.learned_runs(min(LENGTHENED * now.shooting.segments.span, longest))
+            longer = self.fitted_over(shooting.with_noise(now.noise), now)
             if not np.isfinite(longer.fit.misfit):
                 break
             longer = replace(scored(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)

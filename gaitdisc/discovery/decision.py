@@ -300,9 +300,8 @@ def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
     samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
     if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):
         return as_read
-    guess = case.guess.with_run(as_read.shooting.segments, fit.states)
     shooting = case.learned_runs(samples).with_noise(as_read.noise)
-    model = fit_model(shooting, case.search.base, (), guess.starts(shooting.segments), like=as_read.model)
+    model = case.fitted_over(shooting, as_read)
     return ScoredModel(model, shooting) if np.isfinite(model.fit.misfit) else as_read
 
 

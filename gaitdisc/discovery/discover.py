@@ -104,8 +104,8 @@ def weigh_explanations(
         progress("what is held out never goes where it would act: other data are held out")
         case, as_read = noted(case, other), other.as_read()
         verdict = decide(case, as_read)
-    verdict = prefer_delay(case, as_read, prefer_relatives(case, as_read, verdict))
-    verdict = read_instead(case, as_read, read_shape(case, as_read, verdict))
+    for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
+        verdict = step(case, as_read, verdict)
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)
     case, verdict = weigh_input_errors(case, verdict)
     return case, as_read, without_small(case, as_read, verdict)

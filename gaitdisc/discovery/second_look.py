@@ -129,9 +129,7 @@ def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
     All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
     """
     shooting = case.learned_runs(case.longest).with_noise(case.scale.error_of(now.model.fit))
-    guess = case.guess.with_run(now.shooting.segments, now.model.fit.states)
-    starts = guess.starts(shooting.segments)
-    model = fit_model(shooting, case.search.base, now.model.parts, starts, like=now.model)
+    model = case.fitted_over(shooting, now)
     return ScoredModel(model, shooting.with_past(model.fit.states)) if case.search.sensible(model) else now
 
 

@@ -158,8 +158,7 @@ def cut_short(case: Case, now: ScoredModel) -> ScoredModel:
     if now.shooting.segments.span <= samples:
         return now
     shooting = case.learned_runs(samples).with_noise(now.noise)
-    starts = case.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-    model = fit_model(shooting, case.search.base, now.model.parts, starts, like=now.model)
+    model = case.fitted_over(shooting, now)
     return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
