@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -27,10 +27,9 @@ from gaitdisc.discovery.held_out import (
 )
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
-from gaitdisc.discovery.rivals import Rival, bic_gain, rivals_of
 from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.search import TURNS, Search
 from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.discovery.wrong_start import begun_at
 from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import amount, spoken, with_unit
@@ -38,8 +37,23 @@ from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 MOST_EXPLANATIONS = 5
+MOST_RIVALS = 6
 DRAWN = 200  # samples of a run
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another explanation of the same data."""
+
+    scored: ScoredModel
+    gained: float  # fall of the information criterion from the simulation as read
+    tied: bool  # whether these data cannot distinguish it from the answer
+
+    @property
+    def part(self) -> Part:
+        """The rival's explanation."""
+        return self.scored.model.parts[-1]
 
 
 def answer(
@@ -51,7 +65,6 @@ def answer(
     """Write down what was found.
 
     refitted: fits the numbers once more; the runs that are shown stay those of the search
-    returns augmented: the simulation with what was found, its numbers written in
     """
     now, base = verdict.found, case.search.base
     channels = tuple(name for name, _ in base.observations)
@@ -77,19 +90,24 @@ def answer(
         effects,
         (
             *(reported_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
-            *small_ones(verdict.small),
+            *(
+                FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
+                for one in verdict.small  # that close too little of the gap to be named
+            ),
         ),
         train,
         held_out,
         channels,
-        units_of(case),
+        tuple(unit_of_channel(base, name) for name in channels),
         drawn_runs(case, held.before, held.after),
         (*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
         explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
-    augmented = begun_at(augmented_of(corrected(base, moved), parts), verdict.starts)
+    augmented = augmented_of(corrected(base, moved), parts).with_starts(
+        {name: float(f"{start.value:.6g}") for name, start in verdict.starts.items()}
+    )
     said = sentence_of(discovery, base, parts)
     return replace(said, sentence=" ".join([said.sentence, *left_out(case.measured.findings)])), augmented
 
@@ -162,13 +180,53 @@ def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     )
 
 
+def bic_gain(search: Search, now: ScoredModel) -> float:
+    """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
+    return _fitted(search, now, ()).bic - now.bic if now.model.parts else 0.0
+
+
+def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
+    """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
+
+    now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
+        with
+    returns: best first; none of them is of the same effects at the same places as the answer
+    """
+    own = sorted(now.labels)
+    others: dict[tuple[str, ...], ScoredModel] = {}
+    for one in found:
+        if one.model.parts and sorted(one.labels) != own:
+            others.setdefault(tuple(sorted(one.labels)), one)
+    listed = list(others.values())[:MOST_RIVALS]
+    if not own:
+        return tuple(Rival(one, one.gained, False) for one in listed)
+    fitted: dict[tuple[str, ...], ScoredModel] = {}
+    for one in listed:
+        best = _fitted(search, now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
+        fitted.setdefault(tuple(sorted(best.labels)), best)
+    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
+    return tuple(sorted(rivals, key=lambda one: -one.gained))
+
+
+def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
+    """Return the best model with another's last explanation in it: alone, as it was, or beside the answer's but one."""
+    part, parts = other.model.parts[-1], now.model.parts
+    sets = [(part,), *([other.model.parts] if len(other.model.parts) > 1 else [])]
+    if len(parts) > 1:
+        sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
+    return min((_fitted(search, now, one) for one in sets), key=lambda one: one.bic)
+
+
+def _fitted(search: Search, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
+    """Return the simulation with explanations in it, fitted to an answer's runs under its noise."""
+    model = fit_model(now.shooting, search.base, parts, now.model.fit.starts, TURNS, like=now.model)
+    return ScoredModel(model, now.shooting)
+
+
 def list_explanations(
     case: Case, verdict: Verdict, held: Proof, size: GapSize, rivals: tuple[Rival, ...]
 ) -> list[Explanation]:
-    """List what else was weighed by what it leaves of the held-out data, the least first.
-
-    held, size: held-out runs of the simulation as read and of what was found, and their gap
-    """
+    """List what else was weighed by what it leaves of the held-out data, the least first."""
     found: list[tuple[float, Explanation]] = []
     floor = np.array([floor for _, _, floor in size.channels.values()])
     for one in rivals:
@@ -186,14 +244,6 @@ def first_run(case: Case, after: Trial, size: GapSize) -> tuple[tuple[float, ...
     left = after.fit.residual[0, :DRAWN, [*size.channels].index(size.ranked[0])]
     time = after.segments.samples[0, after.segments.compared][:DRAWN] / case.measured.rate
     return tuple(time.tolist()), tuple(left.tolist())
-
-
-def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
-    """List explanations that close too little of the gap to be named."""
-    return tuple(
-        FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, part.term, small=True)
-        for part in parts
-    )
 
 
 def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
@@ -278,12 +328,6 @@ def region_of(part: Part) -> str:
     if candidate.name == "dead_zone_spring":
         return f"abs({candidate.role}) > {part.values['d']:.4g}"
     return ""
-
-
-def units_of(case: Case) -> tuple[str, ...]:
-    """Return the units of the observed channels."""
-    base = case.search.base
-    return tuple(unit_of_channel(base, name) for name, _ in base.observations)
 
 
 def corrections_of(model: CandidateModel, base: Simulation) -> tuple[Correction, ...]:

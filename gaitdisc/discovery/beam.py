@@ -1,4 +1,6 @@
-"""A beam search over sets of explanations, by the share of the gap that each closes and the penalty for its complexity.
+"""Where no explanation leaves mere noise: the plainest set that closes most of the gap, by a beam search over sets.
+
+Sets are weighed by the share of the gap that each closes on runs left out of the fit, and a penalty for its complexity.
 
 Forward selection with exchange, several sets side by side.
 Source: Miller 2002, Subset Selection in Regression (forward selection with replacement).
@@ -8,17 +10,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Identity
-from gaitdisc.discovery.candidate_model import Explanations, Part
+from gaitdisc.discovery.candidate import Identity, unnamed_terms
+from gaitdisc.discovery.candidate_model import Explanations, Part, fit_model
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
-from gaitdisc.discovery.paired_test import errors_rise_p
+from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapScale, cross_validated, errs_more
+from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.paired_test import PairedTest
 from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.score import Score
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import Search
 from gaitdisc.results.discovery import ALPHA
 
@@ -26,6 +31,11 @@ WIDTH = 5  # sets that are extended side by side
 MOST = 4  # explanations
 FIRST, NEXT = 12, 6  # that are fitted beside nothing, and beside each set
 EXCHANGES = 2
+LISTED = 6  # sets beside the answer
+TIED = 0.02  # of the gap, by which another set may cost more
+WORTH_HALVING = 0.7  # of the error, which shorter runs must leave at most
+HALF_PERIOD = 0.5
+FEWEST = 12  # samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,8 +188,99 @@ class Beam:
         return sorted((one for one in others if self.cost(one) <= self.cost(now) + within), key=self.cost)
 
 
-def errs_more(one: CrossValidated, other: CrossValidated) -> float:
-    """Chance of so much greater left-out errors of one set if it were no worse than another (Wilcoxon, one-sided)."""
-    if not np.isfinite(one.errors).all() or len(one.errors) != len(other.errors):
-        return 0.0
-    return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A set of explanations, and what was weighed beside it."""
+
+    as_read: ScoredModel  # the simulation as read and with the set, on the same runs
+    now: ScoredModel  # the simulation as read and with the set, on the same runs
+    closed: float  # share of the gap that goes, on runs left out of the fit
+    # of the errors left out of the fit, with and without the set; its p times the number of explanations that were open
+    # (Bonferroni), for the same runs chose among these
+    test: PairedTest
+    small: tuple[Part, ...]  # explanations that close too little to be named, or not beyond chance
+    near: tuple[ScoredModel, ...]  # sets that cost hardly more
+    others: tuple[ScoredModel, ...]  # the cheapest sets of all, whatever they cost
+
+
+def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
+    """Search the plainest set of explanations that closes most of the gap; None where none closes enough.
+
+    First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
+    small in a short run.
+
+    also: sets that another search found, weighed beside those that are found here
+    """
+    search = case.search
+    search = replace(search, candidates=(*search.candidates, *unnamed_terms(search.base, search.places)))
+    as_read = near_runs(case, scale)
+    if scale.agrees(as_read.model.fit) or not as_read.gap:
+        return None
+    beam = Beam(search, scale, as_read)
+    beam.fit(also)
+    best = beam.select_forward(as_read)
+    longer = on_longer_runs(case, scale, best) if best.model.explanations else None
+    if longer:
+        beam = Beam(search, scale, as_read_on(case, scale, as_read, longer))
+        if not beam.as_read.gap:
+            return None
+        best = beam.select_forward(longer)
+    now, small = beam.material(best)
+    now = beam.plainest(now)
+    if not now.model.explanations:
+        return None
+    near, others = (tuple(one.scored for one in beam.near(now, within)) for within in (TIED, np.inf))
+    closed = 1 - now.gap / beam.as_read.gap
+    p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
+    test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), case.alpha)
+    return Outcome(beam.as_read.scored, now.scored, closed, test, tuple(small), near, others[:LISTED])
+
+
+def near_runs(case: Case, scale: GapScale) -> CrossValidated:
+    """Fit the simulation as read to runs that are halved until it stays near the data.
+
+    Of runs on which it never does, the longest are taken that halving makes hardly better.
+    """
+    period = min(case.rhythm.period, case.rhythm.duration / 2) * case.rhythm.rate
+    samples, tried = case.longest, []
+    while True:
+        shooting = case.learned_runs(samples)
+        plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
+        enough, starts = CONVERGED * shooting.seen.size, case.guess.starts(shooting.segments)
+        begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
+        now = cross_validated(scale, shooting, case.search.base, (), begun)
+        tried.append((scale.relative(now.model.fit), now))
+        if tried[-1][0] < CRITERIA.near or samples / 2 < max(FEWEST, HALF_PERIOD * period):
+            break
+        samples //= 2
+    least = min(error for error, _ in tried)
+    return next(now for error, now in tried if error * WORTH_HALVING <= least)
+
+
+def on_longer_runs(case: Case, scale: GapScale, now: CrossValidated) -> CrossValidated | None:
+    """Fit what was found to runs ever twice as long, while it stays near the data; None if none is longer."""
+    longest, guess, found = case.longest, case.guess, None
+    samples = now.shooting.segments.span
+    while samples < longest:
+        before, samples = found or now, min(2 * samples, longest)
+        guess = guess.with_run(before.shooting.segments, before.model.fit.states)
+        shooting = replace(case.learned_runs(samples), past=guess.states)
+        shooting = shooting.with_noise(scale.error_of(before.model.fit))
+        starts = guess.starts(shooting.segments)
+        begun = fit_model(shooting, case.search.base, before.model.parts, starts, TURNS, like=before.model)
+        longer = cross_validated(scale, shooting, case.search.base, begun.parts, begun)
+        if not scale.relative(longer.model.fit) < CRITERIA.near:
+            break
+        found = longer
+    return found
+
+
+def as_read_on(case: Case, scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
+    """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread."""
+    shooting = longer.shooting.with_noise(scale.error_of(as_read.model.fit))
+    starts = longer.model.fit.starts
+    model = fit_model(shooting, case.search.base, (), starts, TURNS, like=as_read.model)
+    most = CRITERIA.lost * (scale.spread / scale.size) ** 2
+    square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
+    mean = float(square[shooting.known].mean())
+    return CrossValidated(model, shooting, np.full(len(longer.errors), mean), scale.gap_above(mean))

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from gaitdisc.discovery.catalogue import Shape, with_names
 from gaitdisc.discovery.effect_units import unit_of_state
-from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.expression import Tree, parsed, substituted, written
 from gaitdisc.simulation.parts import Parameter, State, Term
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 # verdict -> the kind of place it names
@@ -31,6 +32,9 @@ SIGNAL_ERRORS = {
     "sensor_drift": ("rate", 0.0, "({s}) + {rate}*t"),
     "sensor_lag": ("seconds", 0.0, "{s}"),
 }
+
+UNNAMED = "unnamed"
+UNNAMED_MEANS = "an effect that is not in the catalogue"
 
 Identity = tuple[str, tuple[str, ...]]
 
@@ -121,26 +125,17 @@ class Candidate:
         return max(low - value, value - high)
 
     def pieces_at(self, constants: Mapping[str, str]) -> tuple[str, ...]:
-        """Return the pieces of a missing term with its constants written in.
-
-        constants: for each constant, a number or the name of a parameter, as text
-        """
+        """Return the pieces of a missing term with its constants written in."""
         marked = {f"_{slot}": text for slot, text in constants.items()}
         return Shape(self.name, self.pieces).written(marked)
 
     def states_at(self, numbers: Mapping[str, str]) -> dict[str, str]:
-        """Return the states that it brings along, and the time derivative of each.
-
-        numbers: for each slot, a number or the name of a parameter, as text
-        """
+        """Return the states that it brings along, and the time derivative of each."""
         marked = {f"_{slot}": text for slot, text in numbers.items()}
         return {name: with_names(rate, marked) for name, rate in self.states.items()}
 
     def term(self, numbers: Mapping[str, str]) -> str:
-        """Return the missing term as an expression.
-
-        numbers: for each slot, a number or the name of a parameter, as text
-        """
+        """Return the missing term as an expression."""
         pieces = self.pieces_at({slot: numbers[slot] for slot in self.constants or {}})
         return " + ".join(
             numbers[slot] if piece == "1" else f"{numbers[slot]}*({piece})"
@@ -287,3 +282,33 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
 
 def _occurs(name: str, text: str) -> bool:
     return re.search(rf"\b{re.escape(name)}\b", text) is not None
+
+
+def unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
+    """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
+    rate_of = kinematic_rates(simulation, compile_simulation(simulation))
+    inputs = [one.name for one in simulation.driving if one.name != "phase"]
+    return tuple(
+        Candidate("missing_physics", place.kind, place.name, UNNAMED, (term,), None, place.motions[0][0], UNNAMED_MEANS)
+        for place in places
+        for term in _terms(simulation, place, inputs, rate_of)
+    )
+
+
+def _terms(simulation: Simulation, place: Place, inputs: list[str], rate_of: dict[str, str]) -> Iterator[str]:
+    own, rate = place.motions[0]
+    for name in inputs:
+        yield name
+        yield f"{own}*{name}"
+    if rate and isinstance(simulation, Simulation):
+        for other, speed in rate_of.items():
+            if other != own:
+                yield _acceleration(simulation, speed)
+
+
+def _acceleration(simulation: Simulation, speed: str) -> str:
+    """The right-hand side of a rate, definitions written out and nothing at the ports."""
+    by: dict[str, Tree] = {port.name: parsed("0") for port in simulation.ports}
+    for name, text in simulation.definitions:
+        by[name] = substituted(parsed(text), by, simulation.signals)
+    return written(substituted(parsed(dict(simulation.equations)[speed]), by, simulation.signals))

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, Identity
-from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.fitted import Fitted, prior_of
 from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.penalty import penalty_of
-from gaitdisc.discovery.prior import prior_of
 from gaitdisc.discovery.shooting import ENOUGH, Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation

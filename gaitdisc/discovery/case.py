@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, candidates_of
-from gaitdisc.discovery.candidate_model import fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import record_filter_of
 from gaitdisc.discovery.first_states import StateGuess, guess_states
+from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.input_errors import with_constant_errors
@@ -23,7 +24,7 @@ from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import sensor_noise, white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.scored_model import ScoredModel, leaves, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
@@ -73,6 +74,27 @@ class Case:
         unfiltered = np.array([one is None for one in self.record_filter.cutoffs_hz])
         estimated = np.where(unfiltered, sensor_noise(self.measured.observed), np.nan)
         return np.where(np.isnan(said), estimated, said)
+
+    @cached_property
+    def scale(self) -> GapScale:
+        """What gaps are measured against."""
+        observed = self.measured.observed
+        spread, known = np.nanstd(observed, axis=(0, 1)), self.sensor_noise
+        noise = np.where(np.isnan(known), sensor_noise(observed), known)
+        return GapScale(noise, np.where(spread > 0, spread, 1.0))
+
+    def leaves_noise(self, now: ScoredModel) -> bool:
+        """Whether what a model leaves is no larger than the noise of the sensors.
+
+        Where this is not known (a filtered record whose file does not say it), whether it is autocorrelated no further
+        than by the filter; where the simulation itself errs, and its errors with it, whether it is a small share of the
+        spread.
+        """
+        if self.search.base.inexact and self.scale.relative(now.model.fit) < CRITERIA.inexact:
+            return True
+        if not np.isfinite(self.sensor_noise).all():
+            return not now.noise.is_autocorrelated
+        return leaves(now, self.sensor_noise) < CRITERIA.mere_noise
 
     def noise_floor(self, noise: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the size of the sensors' noise (channel,), or where it is not known, what a simulation leaves.
@@ -135,6 +157,11 @@ class Case:
         """Whether runs were cut at a whole period, and not earlier, as chaos demands."""
         return now.shooting.segments.span >= WHOLE_PERIOD * self.rhythm.samples
 
+    def fitted_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
+        """Fit a model to other runs, which begin along its own."""
+        starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
+        return fit_model(shooting, self.search.base, now.model.parts, starts, like=now.model)
+
     def lengthened(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
 
@@ -143,13 +170,8 @@ class Case:
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (CRITERIA.follows**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
-            guess = self.guess.with_run(now.shooting.segments, now.model.fit.states)
-            samples = min(LENGTHENED * now.shooting.segments.span, longest)
-            shooting = self.learned_runs(samples)
-            starts = guess.starts(shooting.segments)
-            longer = fit_model(
-                shooting.with_noise(now.noise), self.search.base, now.model.parts, starts, like=now.model
-            )
+            shooting = self.learned_runs(min(LENGTHENED * now.shooting.segments.span, longest))
+            longer = self.fitted_over(shooting.with_noise(now.noise), now)
             if not np.isfinite(longer.fit.misfit):
                 break
             longer = replace(scored(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
@@ -176,7 +198,6 @@ def set_up_case(
     """Prepare a case: split the trials, list places and explanations, guess the states.
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
-    possible: whether an explanation is possible here; all are by default
     """
     simulation = with_constant_errors(matched(simulation, measured, shapes))
     if len(measured.trials) == 1:

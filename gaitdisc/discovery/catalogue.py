@@ -121,8 +121,6 @@ def known_shapes() -> tuple[Shape, ...]:
 def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     r"""Read effects of the user's own, in the form of the package's catalogue.
 
-    path: a TOML file with one `[[shape]]` for each effect
-
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "mine.toml"
     >>> _ = file.write_text('[[shape]]\nname = "quintic"\npieces = ["x**5"]\nmeans = "a very stiff spring"')

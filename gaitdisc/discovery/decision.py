@@ -6,20 +6,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gaitdisc.discovery.beam import MOST
-from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.beam import MOST, closing_most
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.estimates import wrong_starts
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
 from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, proof_of, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
-from gaitdisc.discovery.ranking import ranked
-from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
+from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
 from gaitdisc.discovery.search import Search, is_certain
-from gaitdisc.discovery.wrong_start import wrong_starts
 from gaitdisc.results.discovery import Estimate
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
@@ -47,10 +45,10 @@ class Verdict:
 
 def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
-    scale = scale_of(case)
+    scale = case.scale
     as_read, named, rivals = searched(case, as_read, scale)
     named = kept_on_longer_runs(case, as_read, named)
-    exact = leaves_noise(case, named)
+    exact = case.leaves_noise(named)
     plain = None if exact else plainest(case, scale, named)
     if plain:
         return shape_that_leaves_noise(case, as_read, fitted_shape(as_read, case.search, scale), plain) or plain
@@ -82,7 +80,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
         pushed = None if blind else with_random_pushes(case, as_read, as_read, [])
         return pushed or Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
-    if not wanted and not leaves_noise(case, longer):
+    if not wanted and not case.leaves_noise(longer):
         shape = fitted_shape(as_read, case.search, scale)
     return shape_that_leaves_noise(case, as_read, shape, verdict) or verdict
 
@@ -95,9 +93,9 @@ def shape_that_leaves_noise(
     Held-out data prefer it beyond chance, and in free runs as well: several names can imitate one law that has none. A
     single name that leaves mere noise stands.
     """
-    if shape is None or not leaves_noise(case, shape):
+    if shape is None or not case.leaves_noise(shape):
         return None
-    if len(names.found.model.parts) == 1 and leaves_noise(case, names.found):
+    if len(names.found.model.parts) == 1 and case.leaves_noise(names.found):
         return None
     if free_run_error(case, shape) > free_run_error(case, names.found):
         return None
@@ -194,8 +192,6 @@ def kept_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) ->
     """Return what was selected less what longer runs have no use for, on the runs that it was found on.
 
     Where chaos keeps runs short, several explanations together can do what one does with another number.
-
-    as_read, named: the simulation as read and with what the search selected, on the same runs
     """
     if len(named.model.parts) < 2 or case.spans_a_period(as_read):
         return named
@@ -210,12 +206,10 @@ def kept_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) ->
 def with_autocorrelation(
     case: Case, as_read: ScoredModel, named: ScoredModel, shape: ScoredModel | None, rivals: list[ScoredModel]
 ) -> Verdict | None:
-    """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better.
-
-    as_read, named: the simulation as read and with what the search selected
-    """
+    """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better."""
     plain, *found = compared([as_read, named, *([shape] if shape else [])], case.search.base)
-    ordered = [one for one in found if explains(case, plain, one)]
+    likelier = [one for one in found if one.model.parts and plain.bic - one.bic >= CRITERIA.margin]
+    ordered = [one for one in likelier if held_out_proof(case, plain, one).bears_out]
     if not ordered:
         return with_random_pushes(case, as_read, named, rivals)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
@@ -231,16 +225,17 @@ def with_random_pushes(
 
     The runs, or free runs of unseen data, where pushes add up, must err by more than noise and a simulation may.
     """
-    (error, doubt), scale = free_runs(case, as_read), scale_of(case)
-    own_error = leaves_noise(case, as_read) or scale.excess(as_read.model.fit) < CRITERIA.model_error
+    (error, doubt), scale = free_runs(case, as_read), case.scale
+    own_error = case.leaves_noise(as_read) or scale.excess(as_read.model.fit) < CRITERIA.model_error
     noise = case.noise_floor(as_read.noise.size) / scale.spread
     if own_error and error - doubt - np.mean(noise**2) < CRITERIA.model_error**2:
         return None
-    push = random_push(case, runs_that_pushes_move(case, as_read))
-    if push is None:
+    longer = runs_that_pushes_move(case, as_read)
+    pushes = rank_process_noise(longer.shooting, longer.model, case.search.places)
+    if not pushes[0].rival - pushes[0].bic > CRITERIA.margin + 2 * np.log(len(pushes)):  # noise of the sensors does it
         return None
     term = find_term_before(case, as_read, named, rivals)
-    return term or Verdict("process_noise", as_read, tuple(rivals), push)
+    return term or Verdict("process_noise", as_read, tuple(rivals), pushes[0])
 
 
 def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]) -> Verdict | None:
@@ -250,11 +245,9 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     sensors, or with pushes beside it, over the same numbers by the same criterion, and over what is held out. All is
     weighed by its size, with its autocorrelation, and one term was picked among all that were open. A term with states
     of its own begins each held-out run where it suits: free runs must not stray with it.
-
-    as_read, named: the simulation as read and with what the search selected
     """
     pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
-    scale, base, among = scale_of(case), case.search.base, len(case.search.candidates)
+    scale, base, among = case.scale, case.search.base, len(case.search.candidates)
     span = as_read.shooting.segments.span
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     others = [one for one in others if one.shooting.segments.span == span]
@@ -279,19 +272,13 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
 
 
 def says_more(case: Case, shape: ScoredModel, named: ScoredModel) -> bool:
-    """Whether one shape without a name explains more than several names together.
-
-    shape, named: the simulation with a fitted shape, and with what the search selected
-    """
+    """Whether one shape without a name explains more than several names together."""
     named, shape = compared([named, shape], case.search.base)
     return shape.bic < named.bic - CRITERIA.margin
 
 
 def decided(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
-    """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
-
-    returns rivals: all that stood for the first place, best first
-    """
+    """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer."""
     longer = case.lengthened(named)
     if len(named.model.parts) > 1:
         return longer, rivals
@@ -304,16 +291,6 @@ def decided(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[
     return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]
 
 
-def random_push(case: Case, as_read: ScoredModel) -> ProcessNoise | None:
-    """Return the random push that explains the gap better than noise of the sensors, if there is one.
-
-    as_read: on runs in which pushes add up
-    """
-    ranked_pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)
-    best = ranked_pushes[0]
-    return best if best.rival - best.bic > CRITERIA.margin + 2 * np.log(len(ranked_pushes)) else None
-
-
 def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
     """Return the simulation as read on runs as long as pushes are weighed on: they add up, a start takes up few.
 
@@ -323,19 +300,9 @@ def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
     samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
     if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):
         return as_read
-    guess = case.guess.with_run(as_read.shooting.segments, fit.states)
     shooting = case.learned_runs(samples).with_noise(as_read.noise)
-    model = fit_model(shooting, case.search.base, (), guess.starts(shooting.segments), like=as_read.model)
+    model = case.fitted_over(shooting, as_read)
     return ScoredModel(model, shooting) if np.isfinite(model.fit.misfit) else as_read
-
-
-def explains(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
-    """Whether something that repeats itself explains the gap, also on held-out trials.
-
-    as_read, now: the simulation as read and with what was found, under one noise
-    """
-    likelier = bool(now.model.parts) and as_read.bic - now.bic >= CRITERIA.margin
-    return likelier and held_out_proof(case, as_read, now).bears_out
 
 
 def held_out_proof(case: Case, before: ScoredModel, now: ScoredModel, as_read: ScoredModel | None = None) -> Proof:

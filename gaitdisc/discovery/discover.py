@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from gaitdisc.discovery.answer import answer, augmented_of
-from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
@@ -80,11 +79,7 @@ def discover(
 def weigh_explanations(
     case: Case, as_read: ScoredModel, measured: Measured, begun: Callable[[Measured], Case]
 ) -> tuple[Case, ScoredModel, Verdict]:
-    """Search and decide; again without a trial that goes with no other, or with other data held out where need be.
-
-    measured: what the case was set up with
-    begun: sets a case up with other data
-    """
+    """Search and decide; again without a trial that goes with no other, or with other data held out where need be."""
     progress = case.search.progress
     progress(f"weighing {len(case.search.candidates)} explanations")
     verdict = decide(case, as_read)
@@ -93,7 +88,7 @@ def weigh_explanations(
         case = replace(case, substeps=2 * case.substeps)
         as_read = case.as_read()
         verdict = decide(case, as_read)
-    if not leaves_noise(case, verdict.found):
+    if not case.leaves_noise(verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
             progress("one trial goes with no explanation of the others: it is left out")
@@ -109,8 +104,8 @@ def weigh_explanations(
         progress("what is held out never goes where it would act: other data are held out")
         case, as_read = noted(case, other), other.as_read()
         verdict = decide(case, as_read)
-    verdict = prefer_delay(case, as_read, prefer_relatives(case, as_read, verdict))
-    verdict = read_instead(case, as_read, read_shape(case, as_read, verdict))
+    for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
+        verdict = step(case, as_read, verdict)
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)
     case, verdict = weigh_input_errors(case, verdict)
     return case, as_read, without_small(case, as_read, verdict)

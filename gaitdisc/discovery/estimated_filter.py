@@ -46,7 +46,9 @@ def record_filter_of(
     if inputs or any(one.signal > FELT for one in seen.values()):
         seen = _beside_the_simulation(simulation, measured, period, guess, seen, inputs)
     units = [simulation.sensor(name).unit for name in measured.channels]
-    cutoffs = _together(_as_the_surer(seen, units))
+    cutoffs = _as_the_surer(seen, units)
+    if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
+        cutoffs = dict.fromkeys(cutoffs, float(np.exp(np.mean(np.log(list(cutoffs.values()))))))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
 
@@ -76,13 +78,6 @@ def _as_the_surer(seen: dict[int, RecordedFilter], units: list[str]) -> dict[int
         ]
         found[number] = float(np.exp(np.mean(np.log(surer)))) if surer else one.cutoff_hz
     return found
-
-
-def _together(cutoffs: dict[int, float]) -> dict[int, float]:
-    """Cut-offs, one in the place of several that are alike."""
-    if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):
-        return dict.fromkeys(cutoffs, float(np.exp(np.mean(np.log(list(cutoffs.values()))))))
-    return cutoffs
 
 
 def _finding(measured: Measured, channel: int, cutoff: float) -> Finding:

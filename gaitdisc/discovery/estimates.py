@@ -1,4 +1,4 @@
-"""Estimates: the numbers of an explanation under the names a person gives them, with units, signs and intervals."""
+"""Estimates: numbers of explanations and starts under the names a person gives them, with units, signs, intervals."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -58,6 +60,29 @@ def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulatio
         )
         number += 1
     return found
+
+
+def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Estimate]:
+    """Find the states that begin elsewhere than the file says.
+
+    Where trials begin at unlike places, no number of the file can be where they all begin: the error of the mean holds
+    their spread (the ratio of Birge 1932, Phys. Rev. 40, 207).
+
+    returns: state -> where the trials begin on average, weighted by how well each shows it, with its 95 % interval
+    """
+    fit, segments = as_read.model.fit, as_read.shooting.segments
+    first = np.flatnonzero(segments.begin == 0)
+    slopes = fit.slopes[first][..., : fit.starts.shape[1]]
+    variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])
+    weight = 1 / np.maximum(variance, 1e-300)
+    mean = (weight * fit.starts[first]).sum(axis=0) / weight.sum(axis=0)
+    unlike = (weight * (fit.starts[first] - mean) ** 2).sum(axis=0) / max(len(first) - 1, 1)
+    error = np.sqrt(np.maximum(unlike, 1.0) / weight.sum(axis=0))
+    return {
+        state.name: Estimate(float(at), float(at - NORMAL_95 * off), float(at + NORMAL_95 * off), state.unit)
+        for state, at, off in zip(simulation.states, mean, error, strict=True)
+        if state.initial is not None and abs(at - state.initial) > CRITERIA.start * off
+    }
 
 
 def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:

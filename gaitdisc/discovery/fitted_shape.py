@@ -10,14 +10,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate import UNNAMED, UNNAMED_MEANS, Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.unnamed_terms import MEANS, NAME
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
@@ -62,7 +61,7 @@ def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search
 
 
 def _unnamed(place: Place, pieces: list[str], role: str) -> Candidate:
-    return Candidate("missing_physics", place.kind, place.name, NAME, tuple(pieces), None, role, MEANS)
+    return Candidate("missing_physics", place.kind, place.name, UNNAMED, tuple(pieces), None, role, UNNAMED_MEANS)
 
 
 def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredModel | None:
@@ -89,10 +88,7 @@ def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredMod
 
 
 def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
-    """Return what a model leaves of the gap on runs left out of the fit, and a little for each of its numbers.
-
-    one, plain: with a shape or its reading, and the simulation as read
-    """
+    """Return what a model leaves of the gap on runs left out of the fit, and a little for each of its numbers."""
     return one.gap / plain.gap + CRITERIA.each_number * one.model.size if plain.gap > 0 else np.inf
 
 

@@ -6,14 +6,10 @@ Miller 2002, Subset Selection in Regression (replacement of one at a time).
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gaitdisc.discovery.candidate_model import Explanations
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import GapScale
-from gaitdisc.discovery.ranking import ranked
-from gaitdisc.discovery.scored_model import ScoredModel, compared
+from gaitdisc.discovery.scored_model import ScoredModel, compared, leaves, ranked
 from gaitdisc.discovery.search import Search, is_certain
 
 MOST_TURNS = 5  # explanations added, those that were eliminated again included
@@ -63,14 +59,6 @@ def select_forward(
     return now, rivals
 
 
-def leaves(now: ScoredModel, noise: NDArray[np.float64]) -> float:
-    """Return the mean square of what a model leaves, over the variance of the sensors' noise.
-
-    noise (channel,): its standard deviation [the channel's unit]
-    """
-    return float(np.nanmean((now.model.fit.residual / noise) ** 2))
-
-
 def beside_others(
     search: Search, pair: ScoredModel, firsts: list[ScoredModel], explored: set[Explanations]
 ) -> ScoredModel:
@@ -81,23 +69,22 @@ def beside_others(
     explored: beside which another was sought; those of this search are added
     """
     pairs = [pair]
-    unlike = [one for number, one in enumerate(firsts) if not any(_alike(one, other) for other in firsts[:number])]
+    # the same model may stand under two names: a wrong damping, and damping that is missing
+    unlike = [
+        one
+        for number, one in enumerate(firsts)
+        if not any(one.model.size == other.model.size and abs(one.bic - other.bic) < SAME for other in firsts[:number])
+    ]
     for first in unlike[: FIRST_PLACES - 1]:
         pairs += ranked(search.extended(first)[1:], search.candidates)[:1]
         explored.add(first.model.explanations)
     return ranked(compared(pairs, search.base), search.candidates)[0]
 
 
-def _alike(one: ScoredModel, other: ScoredModel) -> bool:
-    """Whether two models are the same model under two names: a wrong damping, and damping that is missing."""
-    return one.model.size == other.model.size and abs(one.bic - other.bic) < SAME
-
-
 def settled(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
     """Exchange and eliminate explanations until nothing changes.
 
     worth: by which the criterion must get worse for one to stay
-    explored: beside which another was sought; those of this search are added
     """
     for _ in range(SETTLED):
         before = now
@@ -108,10 +95,7 @@ def settled(search: Search, now: ScoredModel, worth: float, explored: set[Explan
 
 
 def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> ScoredModel:
-    """Return the model after each explanation was tried against all others in its place.
-
-    explored: beside which another was sought; those of this search are added
-    """
+    """Return the model after each explanation was tried against all others in its place."""
     for number in range(len(now.model.parts)):
         rest = search.without(now, number)
         if rest.model.explanations in explored:
@@ -127,10 +111,7 @@ def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> 
 
 
 def pruned(search: Search, now: ScoredModel, worth: float) -> ScoredModel:
-    """Return the model without the explanations that a better choice of the others has made idle.
-
-    worth: by which the criterion must get worse for one to stay
-    """
+    """Return the model without the explanations that a better choice of the others has made idle."""
     while len(now.model.parts) > 1:
         fewer = [search.without(now, number) for number in range(len(now.model.parts))]
         best = min(fewer, key=lambda one: one.bic)

@@ -16,6 +16,7 @@ from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.noise import Noise, white_noise
+from gaitdisc.discovery.paired_test import errors_rise_p
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.simulation import Simulation
@@ -111,6 +112,13 @@ def cross_validated(
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
     errors = left_out_errors(model.fit) * square / shooting.known.mean()
     return CrossValidated(model, shooting, errors, scale.gap_above(float(errors.mean())))
+
+
+def errs_more(one: CrossValidated, other: CrossValidated) -> float:
+    """Chance of so much greater left-out errors of one set if it were no worse than another (Wilcoxon, one-sided)."""
+    if not np.isfinite(one.errors).all() or len(one.errors) != len(other.errors):
+        return 0.0
+    return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
 
 
 def left_out_errors(fit: Fitted) -> NDArray[np.float64]:

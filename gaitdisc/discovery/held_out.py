@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted
@@ -66,7 +65,7 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
 
     returns: mean squares, over each channel's variance
     """
-    scale, found = scale_of(case), []
+    scale, found = case.scale, []
     for trial in case.held_out:
         samples = int(case.measured.drive.samples[trial])
         segments = case.segments((trial,), samples / case.rhythm.samples)
@@ -106,7 +105,7 @@ def strays(case: Case, now: ScoredModel, before: float) -> bool:
 
     before: what free runs of the simulation as read err by, over each channel's variance
     """
-    (error, doubt), scale = free_runs(case, now), scale_of(case)
+    (error, doubt), scale = free_runs(case, now), case.scale
     least = float(np.mean((scale.size / scale.spread) ** 2))
     return error > max(before, CRITERIA.grown**2 * (least + doubt))
 
@@ -121,7 +120,7 @@ def grows_along_runs(case: Case, now: ScoredModel) -> bool:
     """
     if not case.spans_a_period(now):
         return False
-    (error, doubt), scale = free_runs(case, now), scale_of(case)
+    (error, doubt), scale = free_runs(case, now), case.scale
     short = max(scale.relative(now.model.fit), CRITERIA.model_error) ** 2
     noise = float(np.mean((case.noise_floor(now.noise.size) / scale.spread) ** 2))
     return error > min(CRITERIA.grown**2 * (short + doubt), CRITERIA.half + noise + doubt)
@@ -132,8 +131,6 @@ def is_uninformative(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool
 
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
     apart, never which of them the measurement prefers.
-
-    as_read, now: the simulation as read and with what trials that were learned from speak for
     """
     if not now.model.parts or now.gained < CRITERIA.support:
         return False
@@ -141,10 +138,7 @@ def is_uninformative(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool
 
 
 def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Case:
-    """Return the case with other trials held out: the last of those that are informative.
-
-    as_read, now: the simulation as read and with what trials that were learned from speak for
-    """
+    """Return the case with other trials held out: the last of those that are informative."""
     held = _informative(case, as_read, now)[-len(case.held_out) :]
     learned = tuple(sorted({*case.learned, *case.held_out} - {*held}))
     return replace(case, learned=learned, held_out=held)
@@ -231,9 +225,7 @@ def gap_size(
 ) -> GapSize:
     """Measure the gap before and after.
 
-    before, after: the same runs of the simulation as read and with what was found
     floor (channel,): standard deviation of the noise [the channel's unit]
-    test: of the squared errors, or of those of what the data did not bear out
     """
     spread = np.nanstd(after.measured, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
@@ -243,10 +235,7 @@ def gap_size(
 
 
 def drawn_runs(case: Case, before: Trial, after: Trial) -> Runs:
-    """Return the runs as a report draws them.
-
-    before, after: the same runs of the simulation as read and with what was found
-    """
+    """Return the runs as a report draws them."""
     segments, drive = before.segments, case.measured.drive
     names = [one.name for one in case.search.base.inputs]
     time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate

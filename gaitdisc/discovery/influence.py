@@ -99,7 +99,7 @@ def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -
         kinds = "ports" if simulation.ports else "equations"
         raise SimulationError(
             "an effect can be identified only where it changes a measured channel",
-            f"{_listed(idle.places)} affects none of {', '.join((name for name, _ in simulation.observations))}",
+            f"{' or '.join(map(repr, idle.places))} affects none of {', '.join(dict(simulation.observations))}",
             "Check its factors, or measure a channel that it affects.",
             (kinds, idle.places[0]),
         )
@@ -117,7 +117,3 @@ def nearly_off(effects: tuple[FoundEffect, ...], source: str) -> tuple[Finding, 
     what = " and ".join(f"{name!r} ({gain:.2g} times)" for name, gain in gains.items()) + " are nearly switched off"
     spoils = "the answer, if the simulation follows a recorded motion; combine signals of one recording into one input"
     return (Finding("warning", "inputs switched off", source, what, spoils),)
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return " or ".join(repr(name) for name in names)

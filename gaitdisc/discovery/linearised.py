@@ -55,10 +55,7 @@ class Linearised:
         return None
 
     def among(self, some: NDArray[np.intp]) -> Linearised:
-        """Return the maps of some of the segments.
-
-        some: their numbers
-        """
+        """Return the maps of some of the segments."""
         return Linearised(self.onward[some], self.pushed[some], self.landed[some])
 
     def of_push(self, place: int, push: NDArray[np.float64]) -> NDArray[np.float64]:

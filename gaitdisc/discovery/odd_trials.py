@@ -221,7 +221,6 @@ def without_trial_apart(case: Case) -> Measured:
     follows from its slopes, to first order, for each trial in turn: this finds the one to suspect. The others are then
     searched without it, and for comparison without the next.
 
-    case: the simulation as read and all trials, which leave more than noise whatever is named
     returns: the trials as they were where none stands apart, or there are too few or too many to say
     """
     measured = case.measured

@@ -39,9 +39,9 @@ LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag", "contact_damp
 def penalty_of(candidate: Candidate, values: Mapping[str, float]) -> float:
     """Return the share of the gap that an explanation must close to be worth its statement.
 
-    values: its numbers: a friction that drives costs more than one that resists
+    values: its numbers: a friction that drives costs the least that is named more than one that resists
     """
     drives = candidate.name in LOSSES and values.get("factor", 0.0) > 0
     flexible, bent = candidate.name in FLEXIBLE, candidate.name in BENT
-    price = CRITERIA.flexible if flexible else CRITERIA.bent if bent else CRITERIA.plain
-    return price + CRITERIA.drives * drives
+    price = CRITERIA.bent if bent else CRITERIA.plain
+    return price + CRITERIA.bent * flexible + CRITERIA.matters * drives

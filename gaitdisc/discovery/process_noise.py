@@ -55,7 +55,8 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
     size = np.sqrt((plain**2).sum(axis=(0, 1)) / count - (plain.sum(axis=(0, 1)) / count) ** 2)
     if not segments.margin:  # pushes move one channel more than another: what is left of it is no sensor's noise
         size = np.clip(sensor_noise(shooting.measured.observed), LEAST_NOISE * size, size)
-    starts = _raw_slopes(shooting, model)[some, :length] / size[:, None] * known[..., None]
+    unwhitened = shooting.with_noise(white_noise(np.ones(len(size)))).at(model.machine, (), fit.values, fit.starts)
+    starts = unwhitened.slopes.reshape(*fit.residual.shape, -1)[some, :length] / size[:, None] * known[..., None]
     rival = _autoregressive(fit.residual, starts * size[:, None], some, known)
     sensors = sensor_covariance(shooting, known)
     penalty = 2 * float(count @ np.log(size)) + np.log(count.sum())
@@ -152,10 +153,3 @@ def _known_before(known: NDArray[np.bool_]) -> NDArray[np.intp]:
     for sample in range(1, known.shape[1]):
         out[:, sample] = (out[:, sample - 1] + 1) * known[:, sample - 1]
     return out
-
-
-def _raw_slopes(shooting: Shooting, model: CandidateModel) -> NDArray[np.float64]:
-    """Return what each start state changes in what is seen (segment, sample, channel, state), unwhitened."""
-    plain = shooting.with_noise(white_noise(np.ones(model.fit.residual.shape[2])))
-    fit = plain.at(model.machine, (), model.fit.values, model.fit.starts)
-    return fit.slopes.reshape(*model.fit.residual.shape, -1)

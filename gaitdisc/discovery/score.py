@@ -90,7 +90,9 @@ class Scorer:
         basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
         left, slopes = self.fit.projected
         others = _Others(self.shooting.segments.trial)
-        known = others.product(slopes, slopes) + np.diag(self._prior_weights())
+        prior = self.fit.prior
+        weights = np.concatenate([np.zeros(len(self.fit.free) - len(prior.names)), 1 / prior.sd**2])
+        known = others.product(slopes, slopes) + np.diag(weights)
         match = others.product(slopes, left[..., None])[..., 0]
         gained = np.zeros(others.count)
         for some, columns in self._columns(candidates):
@@ -103,11 +105,6 @@ class Scorer:
                 gained[number] = max([gained[number], *gains])
         square = others.product(left[..., None], left[..., None])[:, 0, 0]
         return (square - gained) / (others.segments * left.shape[1])
-
-    def _prior_weights(self) -> NDArray[np.float64]:
-        """What the prior adds to the curvature of each constant that is in already (free,)."""
-        prior = self.fit.prior
-        return np.concatenate([np.zeros(len(self.fit.free) - len(prior.names)), 1 / prior.sd**2])
 
     def _explained(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Basis of the start states, basis of the constants already in (row, constant), what is left (row,).
@@ -138,7 +135,8 @@ class Scorer:
                 push = self._along([piece for _, pieces in some for piece in pieces])
                 yield [cell for cell, _ in some], self._white(line.of_push(number, push))
         for i, one in enumerate(candidates):
-            if one.verdict != "missing_physics" and _fits_beside(one, self.simulation):
+            late = one.name == "sensor_lag" and "delay(" in dict(self.simulation.observations)[one.place]
+            if one.verdict != "missing_physics" and not late:  # a signal that is late already is not delayed again
                 yield self._signal_columns(line, i, one)
 
     def _cells(
@@ -275,10 +273,3 @@ def _gains(
         else:
             values = {slot: none + float(one) for (slot, none), one in zip(cell.idle.items(), found, strict=True)}
         yield Score(candidates[cell.candidate], values | cell.constants, gain), cell.candidate
-
-
-def _fits_beside(candidate: Candidate, simulation: Simulation) -> bool:
-    """Whether a signal error can be written into what is there: a signal that is late already is not delayed again."""
-    if candidate.name != "sensor_lag":
-        return True
-    return "delay(" not in dict(simulation.observations)[candidate.place]

@@ -1,23 +1,30 @@
-"""A candidate model scored: its information criterion under autocorrelated noise estimated from its residuals.
+"""Models scored and ranked: the information criterion under autocorrelated noise estimated from residuals.
 
 Source: Schwarz 1978, Ann. Stat. 6, 461 (the criterion, BIC); Cochrane and Orcutt 1949, J. Am. Stat. Assoc. 44, 32
-(fit, estimate the autocorrelation of the residuals, whiten, fit again).
+(fit, estimate the autocorrelation of the residuals, whiten, fit again); Foster and George 1994, Ann. Stat. 22, 1947
+(2 log p for each of p that was selected, the risk inflation criterion).
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
+from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.discovery.unnamed_terms import NAME as UNNAMED
 from gaitdisc.simulation.simulation import Simulation
 
 TURNS = 4
 INTEGRATED = 1e-4  # of a channel's spread: how far two integrators of one model may be apart
+# Where two explanations fit equally well, the simpler statement first.
+PREFERENCE = ("wrong_parameter", "input_error", "sensor_error", "missing_physics")
 
 
 @dataclass(frozen=True)
@@ -76,6 +83,14 @@ def scored(shooting: Shooting, base: Simulation, model: CandidateModel, rounds: 
     return ScoredModel(model, shooting)
 
 
+def leaves(now: ScoredModel, noise: NDArray[np.float64]) -> float:
+    """Return the mean square of what a model leaves, over the variance of the sensors' noise.
+
+    noise (channel,): its standard deviation [the channel's unit]
+    """
+    return float(np.nanmean((now.model.fit.residual / noise) ** 2))
+
+
 def compared(models: list[ScoredModel], base: Simulation) -> list[ScoredModel]:
     """Put models under one noise: what the best of them leaves.
 
@@ -89,3 +104,34 @@ def compared(models: list[ScoredModel], base: Simulation) -> list[ScoredModel]:
         if min(range(len(models)), key=lambda number: models[number].bic) == best:
             break
     return models
+
+
+def ranked(models: list[ScoredModel], candidates: tuple[Candidate, ...]) -> list[ScoredModel]:
+    """Return models, the best first.
+
+    A kind of explanation with many members (a missing term: any shape at any place) is more likely to have one that
+    fits by chance than a kind with few (a wrong parameter): each kind is penalised for the number of its
+    members. Of what the criterion does not distinguish the simplest statement stands first.
+    """
+    models = [one for one in models if np.isfinite(one.bic)]
+    if not models:
+        return models
+    members = Counter(verdict for verdict, _ in {(one.verdict, one.label) for one in candidates})
+
+    def penalised(one: ScoredModel) -> float:
+        return one.bic + sum(2 * float(np.log(max(members[verdict], 1))) for verdict in one.verdicts)
+
+    models.sort(key=penalised)
+    least = min(models, key=lambda one: one.bic)
+    fewer = [one for one in models if one.model.size < least.model.size]
+    simple = [one for one in fewer if one.bic < least.bic + CRITERIA.margin]
+    first = simple[0] if simple else models[0]
+    order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
+
+    def complexity(one: ScoredModel) -> tuple[list[int], float, list[int]]:
+        names = [order.get(part.candidate.name, len(order)) for part in one.model.parts]
+        return [PREFERENCE.index(verdict) for verdict in one.verdicts], round(one.model.penalty, 6), names
+
+    tied = [one for one in models if one.model.size == first.model.size]
+    first = min((one for one in tied if penalised(one) <= penalised(first) + CRITERIA.tie), key=complexity)
+    return [first, *(one for one in models if one is not first)]

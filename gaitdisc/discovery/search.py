@@ -32,10 +32,6 @@ NEARLY = 0.5  # off the misfit: too little to distinguish explanations by
 EVERY = 5.0  # seconds between two lines about a round that lasts
 
 
-def _silent(line: str) -> None:
-    """Where nobody wants to know how far it is."""
-
-
 @dataclass(frozen=True)
 class Search:
     """What is searched, and in what."""
@@ -44,7 +40,7 @@ class Search:
     places: tuple[Place, ...]
     candidates: tuple[Candidate, ...]
     rhythm: Rhythm
-    progress: Callable[[str], None] = field(default_factory=lambda: _silent, compare=False)
+    progress: Callable[[str], None] = field(default=lambda _: None, compare=False)
 
     def extended(self, now: ScoredModel, most: int = MOST_COMPARED) -> list[ScoredModel]:
         """Return the model and, after it, others with one explanation more, all under the noise that the best leaves.
@@ -61,9 +57,12 @@ class Search:
         tried = [self.with_part(now, Part(one.candidate, one.values)) for one in self._reported(worth)]
         far = [] if model.parts else self.far_off(now)
         tried = [*(one for one in tried if self.sensible(one) and is_certain(one, -1)), *far]
-        tried = sorted(best_of_each(tried), key=lambda one: one.bic)[:most]
+        likeliest: dict[Explanations, CandidateModel] = {}
+        for one in sorted(tried, key=lambda one: one.bic):
+            likeliest.setdefault(one.explanations, one)
         if not tried:
             return []
+        tried = list(likeliest.values())[:most]
         before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)], self.base)
         return [before, *(replace(one, gained=before.bic - one.bic) for one in more)]
 
@@ -167,22 +166,17 @@ class Search:
         return ScoredModel(fewer, now.shooting)
 
 
-def best_of_each(models: list[CandidateModel]) -> list[CandidateModel]:
-    """Return the likeliest of the models with the same explanations."""
-    best: dict[Explanations, CandidateModel] = {}
-    for one in models:
-        if one.explanations not in best or one.bic < best[one.explanations].bic:
-            best[one.explanations] = one
-    return list(best.values())
-
-
 def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:
-    """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error."""
+    """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error.
+
+    A wrong parameter with bounds is idle at the nearer of these.
+    """
     variance = np.diag(model.fit.covariance)
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
     errors = dict(zip(model.fit.free, error, strict=True))
     return all(
-        _off(part, slot, none) > CRITERIA.certain * errors[names[slot]]
+        (part.candidate.beyond_bounds(part.values[slot]) if part.candidate.bounds else abs(part.values[slot] - none))
+        > CRITERIA.certain * errors[names[slot]]
         for part, names in list(zip(model.parts, model.names, strict=True))[first:end]
         if len(part.candidate.idle) == 1
         for slot, none in part.candidate.idle.items()
@@ -198,10 +192,3 @@ def may_vanish(model: CandidateModel, number: int) -> bool:
         for slot, kind in (part.candidate.constants or {}).items()
         if kind in VANISHING
     )
-
-
-def _off(part: Part, slot: str, idle: float) -> float:
-    """How far a number is from where it changes nothing: a wrong parameter with bounds, from the nearer of these."""
-    if part.candidate.bounds:
-        return part.candidate.beyond_bounds(part.values[slot])
-    return abs(part.values[slot] - idle)

@@ -6,19 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.discovery.beam import errs_more
-from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
 from gaitdisc.discovery.forward_selection import select_forward
-from gaitdisc.discovery.gap_share import cross_validated
+from gaitdisc.discovery.gap_share import cross_validated, errs_more
 from gaitdisc.discovery.grids import delays
 from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, proof_of, strays
-from gaitdisc.discovery.ranking import ranked
-from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
+from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
 from gaitdisc.results.discovery import ALPHA
 
@@ -108,8 +105,6 @@ def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tu
 
     In short runs a part of what is missing leaves mere noise; along whole ones the rest adds up. Where a small change
     of the start grows, free runs say nothing.
-
-    returns: the simulation as read, its numbers those of whole runs; and the verdict
     """
     if verdict.word == "process_noise" or verdict.starts or not case.spans_a_period(as_read):
         return as_read, verdict
@@ -133,10 +128,8 @@ def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
 
     All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
     """
-    shooting = case.learned_runs(case.longest).with_noise(scale_of(case).error_of(now.model.fit))
-    guess = case.guess.with_run(now.shooting.segments, now.model.fit.states)
-    starts = guess.starts(shooting.segments)
-    model = fit_model(shooting, case.search.base, now.model.parts, starts, like=now.model)
+    shooting = case.learned_runs(case.longest).with_noise(case.scale.error_of(now.model.fit))
+    model = case.fitted_over(shooting, now)
     return ScoredModel(model, shooting.with_past(model.fit.states)) if case.search.sensible(model) else now
 
 
@@ -147,8 +140,8 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
         return verdict
     whole = fit_whole_runs(case, found)
     whole = scored(whole.shooting, search.base, whole.model)
-    own_error = scale_of(case).excess(whole.model.fit) < CRITERIA.model_error
-    if own_error or leaves_noise(case, whole):
+    own_error = case.scale.excess(whole.model.fit) < CRITERIA.model_error
+    if own_error or case.leaves_noise(whole):
         return verdict
     named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
     if named is whole:
@@ -172,7 +165,7 @@ def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict
     The gap is that of unseen data above the sensors' noise.
     """
     found, proof = verdict.found, verdict.proof
-    if not found.model.parts or not proof or leaves_noise(case, found):
+    if not found.model.parts or not proof or case.leaves_noise(found):
         return verdict
     size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
     if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:
@@ -215,11 +208,11 @@ def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate)
 def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
     """Whether data show that a general shape explains more than its relative."""
     first, second = compared([relative, general], case.search.base)
-    if leaves_noise(case, second):
+    if case.leaves_noise(second):
         return first.bic - second.bic > CRITERIA.margin
     proof = proof_of(case, first, second, second)
     if proof.bears_out:
         return True
-    scale, base = scale_of(case), case.search.base
+    scale, base = case.scale, case.search.base
     left = [cross_validated(scale, one.shooting, base, one.model.parts, one.model) for one in (first, second)]
     return proof.test.fall > 0 and errs_more(*left) < ALPHA

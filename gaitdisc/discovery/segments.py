@@ -59,10 +59,7 @@ class Segments:
         return self.length - 2 * self.margin
 
     def among(self, some: NDArray[np.intp]) -> Segments:
-        """Return some of the segments.
-
-        some: their numbers
-        """
+        """Return some of the segments."""
         return replace(self, trial=self.trial[some], begin=self.begin[some])
 
     def spread(self, most: int) -> Segments:

@@ -13,9 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.fitted import Fitted, Prior
 from gaitdisc.discovery.noise import MOST_LAGS, Noise
-from gaitdisc.discovery.prior import Prior
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.simulation.compiled_simulation import Compiled

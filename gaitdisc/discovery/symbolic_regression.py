@@ -15,8 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
-from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.catalogue import Shape, known_shapes
@@ -27,7 +26,6 @@ from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.unnamed_terms import NAME
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMP = Shape("bump", ("exp(-((x - c)/w)**2)",), {"c": "quantiles of x", "w": "half widths of x"})
@@ -60,9 +58,9 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         2001.04385 (a learned term of an equation, read by regression).
     """
     shape = verdict.found
-    if verdict.word != NAME or len(shape.model.parts) != 1 or not verdict.proof:
+    if verdict.word != UNNAMED or len(shape.model.parts) != 1 or not verdict.proof:
         return verdict
-    search, scale = case.search, scale_of(case)
+    search, scale = case.search, case.scale
     plain = cross_validated(scale, shape.shooting, search.base, (), shape.model)
     if not np.isfinite(plain.gap):
         return verdict
@@ -90,13 +88,13 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     if named.model.size < FEWEST_NUMBERS or len(set(places)) == len(places):
         return verdict
     twice = len(set(named.labels)) < len(named.labels)
-    if leaves_noise(case, named) and not twice:
+    if case.leaves_noise(named) and not twice:
         return verdict
-    shape = fitted_shape(as_read, case.search, scale_of(case))
+    shape = fitted_shape(as_read, case.search, case.scale)
     if shape is None:
         return verdict
     proof = held_out_proof(case, as_read, shape)
-    instead = read_shape(case, as_read, Verdict(NAME, shape, (named, *verdict.rivals), proof=proof))
+    instead = read_shape(case, as_read, Verdict(UNNAMED, shape, (named, *verdict.rivals), proof=proof))
     less = instead.read and instead.found.model.size < named.model.size
     return instead if less and held_out_proof(case, named, instead.found, as_read).bears_out else verdict
 
@@ -116,15 +114,10 @@ def _readings(search: Search, shape: ScoredModel) -> Iterator[Part]:
     motion = next((one for one in place.motions if one[0] == part.candidate.role), None)
     if motion:
         for pieces, factors in _Curve(search, shape, motion).subsets():
-            reading = _candidate(part.candidate, pieces)
-            begin = dict(zip(reading.slots, [*factors, *_constants(pieces)[1].values()], strict=True))
+            kinds, values, texts = _constants(pieces)
+            reading = replace(part.candidate, pieces=texts, constants=kinds)
+            begin = dict(zip(reading.slots, [*factors, *values.values()], strict=True))
             yield Part(reading, begin)
-
-
-def _candidate(shape: Candidate, pieces: tuple[Piece, ...]) -> Candidate:
-    """The explanation that a few pieces are, in the place of a shape."""
-    kinds, _, texts = _constants(pieces)
-    return replace(shape, pieces=texts, constants=kinds)
 
 
 def _constants(pieces: tuple[Piece, ...]) -> tuple[dict[str, str], dict[str, float], tuple[str, ...]]:
@@ -143,10 +136,6 @@ def _constants(pieces: tuple[Piece, ...]) -> tuple[dict[str, str], dict[str, flo
 def _factor(piece: str) -> str:
     """A piece as it stands in a product."""
     return f"({piece})" if " - max(" in piece else piece
-
-
-def _marked(shape: Shape) -> dict[str, str]:
-    return {slot: f"_{slot}" for slot in shape.constants}
 
 
 @dataclass(frozen=True)
@@ -222,7 +211,8 @@ class _Curve:
                 yield from self._at(product, along)
 
     def _at(self, shape: Shape, along: NDArray[np.float64]) -> Iterator[Piece]:
-        (text,) = shape.written({"x": self.motion[0], "v": self.motion[1]} | _marked(shape))
+        names = {"x": self.motion[0], "v": self.motion[1]} | {slot: f"_{slot}" for slot in shape.constants}
+        (text,) = shape.written(names)
         for values in cells(dict(shape.constants), along, self.search.rhythm):
             yield Piece(text, dict(shape.constants), values)
 

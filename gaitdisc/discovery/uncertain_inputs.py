@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.candidate import UNNAMED
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
@@ -30,7 +31,6 @@ from gaitdisc.discovery.process_noise import MOST_NUMBERS, sensor_covariance
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.discovery.unnamed_terms import NAME as UNNAMED
 from gaitdisc.recording import Finding
 from gaitdisc.results.effect_words import spoken
 from gaitdisc.words import listed
@@ -71,10 +71,7 @@ class Weighed:
 
 
 def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
-    """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt.
-
-    returns case: with a finding about what is not named
-    """
+    """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt."""
     found, erring = verdict.found, [repr(one.name) for one in wandering(case.search.base)]
     if not erring or verdict.starts:
         return case, verdict
@@ -161,8 +158,7 @@ def cut_short(case: Case, now: ScoredModel) -> ScoredModel:
     if now.shooting.segments.span <= samples:
         return now
     shooting = case.learned_runs(samples).with_noise(now.noise)
-    starts = case.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-    model = fit_model(shooting, case.search.base, now.model.parts, starts, like=now.model)
+    model = case.fitted_over(shooting, now)
     return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 

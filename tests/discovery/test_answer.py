@@ -3,18 +3,32 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hidden_in_a_function import tank, write_record
-from hidden_in_a_mass import Experiment, mass, record, with_load
+from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+from texts import says
 
-from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
+from gaitdisc.discovery.answer import (
+    answer,
+    augmented_of,
+    bic_gain,
+    corrected,
+    file_bounds,
+    phase_of,
+    region_of,
+    rivals_of,
+)
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
+from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.process_noise import rank_process_noise
-from gaitdisc.discovery.scored_model import compared
+from gaitdisc.discovery.scored_model import compared, scored
+from gaitdisc.results.discovery import Correction, Estimate
 from gaitdisc.simulation.measured_table import read_measured
-from gaitdisc.simulation.parts import Input
+from gaitdisc.simulation.parts import Input, Parameter
 from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
 
 ABOVE = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
@@ -64,6 +78,7 @@ def test_what_was_named_is_not_its_own_rival(answered):
     discovery, _ = answered
     assert ("cubic_stiffness", "load") not in [(one.name, one.place) for one in discovery.rivals]
     assert discovery.rivals
+    assert discovery.units == ("m",)
     assert not any(one.tied for one in discovery.rivals if one.name == "linear_stiffness")
 
 
@@ -85,10 +100,6 @@ def test_numbers_are_written_one_explanation_after_the_other():
 )
 def test_a_region_is_said_where_an_effect_has_one(candidate, values, region):
     assert region_of(Part(candidate, values)) == region
-
-
-def test_units_are_those_of_what_is_observed(case):
-    assert units_of(case) == ("m",)
 
 
 @pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])
@@ -115,3 +126,130 @@ def test_random_pushes_of_a_function_are_answered(tmp_path):
     found, augmented = answer(case, as_read, Verdict("process_noise", as_read, (), process_noise))
     assert [(one.place, one.name) for one in found.effects] == [("leak", "process_noise")]
     assert augmented == tank()
+
+
+@pytest.fixture(scope="module")
+def shape(case, as_read, cubic):
+    """Return an answer without a name that is the truth: no effect of the catalogue but one comes near it."""
+    part = Part(replace(cubic, name="unnamed"), {"factor": -14.0})
+    model = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    return scored(as_read.shooting, case.search.base, model)
+
+
+def test_the_evidence_of_an_answer_is_its_own(case, shape):
+    before = fit_model(shape.shooting, case.search.base, (), shape.model.fit.starts, 15)
+    assert bic_gain(case.search, shape) == pytest.approx(before.bic - shape.bic)
+
+
+def test_an_answer_of_nothing_has_no_evidence(case, as_read):
+    assert bic_gain(case.search, as_read) == 0.0
+
+
+def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(case, shape, named):
+    gained = bic_gain(case.search, shape)
+    found = tuple(one for one in named[1] if one.labels != ("cubic_stiffness@load",))
+    assert found
+    rivals = rivals_of(case.search, shape, found, gained)
+    assert rivals
+    assert not any(one.tied for one in rivals)
+    assert all(one.gained < gained - CRITERIA.tie for one in rivals)
+
+
+def test_a_rival_that_explains_as_much_is_tied(case, shape, named):
+    gained = bic_gain(case.search, shape)
+    first = rivals_of(case.search, shape, tuple(named[1]), gained)[0]
+    assert first.scored.labels == ("cubic_stiffness@load",)
+    assert first.tied
+    assert first.gained == pytest.approx(gained, abs=0.5)
+
+
+def test_one_that_is_in_the_answer_is_no_rival(case, named):
+    now, found = named
+    rivals = rivals_of(case.search, now, tuple(found), bic_gain(case.search, now))
+    assert "cubic_stiffness@load" not in [one.scored.labels[-1] for one in rivals]
+
+
+def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(case, as_read, cubic, named):
+    drift = next(one for one in case.search.candidates if one.label == "sensor_drift@x")
+    parts = (Part(cubic, {"factor": -14.0}), Part(drift, {"rate": 0.0}))
+    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
+    both = scored(as_read.shooting, case.search.base, model)
+    offset = next(one for one in case.search.candidates if one.label == "sensor_offset@x")
+    other = fit_model(as_read.shooting, case.search.base, (Part(offset, {"offset": 0.0}),), as_read.model.fit.starts)
+    (rival,) = rivals_of(case.search, both, (replace(both, model=other),), 0.0)
+    assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
+    assert rival.tied
+
+
+def test_where_nothing_is_named_rivals_keep_what_they_were_found_with(case, as_read, named):
+    rivals = rivals_of(case.search, as_read, tuple(named[1]), 0.0)
+    assert [one.gained for one in rivals] == [one.gained for one in named[1]][: len(rivals)]
+    assert not any(one.tied for one in rivals)
+
+
+OFF = {"m": (2.0, 2.08), "k": (24.0, 22.9), "c": (0.8, 0.84)}
+
+
+def within(low, high):
+    """The mass, whose stiffness has bounds."""
+    return replace(
+        mass(), parameters=[replace(k, low=low, high=high) if k.name == "k" else k for k in mass().parameters]
+    )
+
+
+def believed(bounds=0.125):
+    """The mass, each number off by about 4 %, within bounds."""
+    text = MASS
+    for true, off in OFF.values():
+        low, high = off * (1 - bounds), off * (1 + bounds)
+        text = text.replace(f"value = {true}", f"value = {off}\nlow = {low:.6g}\nhigh = {high:.6g}")
+    return simulation_of(text, "believed.toml")
+
+
+def test_where_only_numbers_are_a_little_off_nothing_is_named_and_they_are_corrected():
+    found, augmented = discover(believed(), record(mass(), 3))
+    assert (found.verdict, found.effects) == ("no_gap", ())
+    moved = {one.parameter: one for one in found.corrections}
+    for name, (true, off) in OFF.items():
+        assert moved[name].given == off
+        assert moved[name].found.value == pytest.approx(true, rel=0.02)
+        assert augmented.values()[name] == moved[name].found.value
+    assert augmented.effects == ()
+    assert "Changed within their bounds" in found.sentence
+
+
+def test_numbers_that_are_a_little_off_do_not_spoil_the_name_and_value_of_what_is_missing():
+    found, augmented = discover(believed(), record(with_load("-14*x**3"), 3))
+    assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
+    stiffness = found.effects[0].estimates["stiffness"]
+    assert stiffness.value == pytest.approx(14.0, rel=0.03)
+    assert stiffness.low < 14.0 < stiffness.high
+    assert augmented.values()["k"] == pytest.approx(24.0, rel=0.03)
+
+
+def test_a_number_that_has_to_leave_its_bounds_is_wrong_and_lies_outside():
+    found, _ = discover(within(23.5, 24.5), record(mass().with_values({"k": 27.0}), 3))
+    assert (found.verdict, found.effects[0].place, found.effects[0].bounds) == ("wrong_parameter", "k", (23.5, 24.5))
+    assert says(found.sentence, "23.5", "24.5 N/m")
+    assert not found.corrections
+
+
+def test_few_samples_do_not_carry_a_number_out_of_its_bounds():
+    how = Experiment(trials=2, seconds=4.0, noise=0.3)
+    found, augmented = discover(within(23.9, 24.1), record(mass(), 5, how))
+    assert found.verdict == "no_gap"
+    assert 23.9 <= augmented.values()["k"] <= 24.1
+
+
+def test_numbers_are_written_into_the_file():
+    moved = Correction("k", 24.0, Estimate(25.0, 24.0, 26.0, "N/m"))
+    assert corrected(mass(), (moved,)).values()["k"] == 25.0
+    assert corrected(mass(), ()) == mass()
+
+
+def test_a_parameter_with_one_bound_has_none_on_the_other_side():
+    wrong = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
+    assert file_bounds(mass(), wrong) == ()
+    bounded = mass().with_parameter(Parameter("k", 24.0, "N/m", high=30.0))
+    assert file_bounds(bounded, wrong) == (-float("inf"), 30.0)
+    assert file_bounds(bounded, replace(wrong, verdict="sensor_error")) == ()

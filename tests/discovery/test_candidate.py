@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, mass, two_rods
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.candidate import Candidate, candidates_of, unnamed_terms
+from gaitdisc.discovery.candidate_model import Part, fit_model, with_parts
 from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.penalty import BENT, FLEXIBLE, penalty_of
 from gaitdisc.discovery.places import places_of
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -152,3 +155,79 @@ def test_the_share_of_the_stride_does_not_lag():
     labels = {one.label for one in _candidates(simulation_of(text, "stride.toml"))}
     assert "input_delay@phase" in labels
     assert "input_lag@phase" not in labels
+
+
+def terms(simulation):
+    found = unnamed_terms(simulation, places_of(simulation, compile_simulation(simulation)))
+    return [(one.place, one.pieces[0]) for one in found]
+
+
+def test_an_input_and_a_state_times_it_may_act_at_a_port():
+    assert terms(mass()) == [("load", "push"), ("load", "x*push")]
+
+
+def test_another_bodys_acceleration_may_act_with_nothing_at_its_port():
+    upper, lower = terms(two_rods())
+    assert (upper[0], lower[0]) == ("upper_moment", "lower_moment")
+    assert "lower_rate" in upper[1] and "upper_rate" in lower[1]
+    assert "moment" not in upper[1] + lower[1]
+
+
+def test_each_compiles_where_it_is_put():
+    simulation = two_rods()
+    for one in unnamed_terms(simulation, places_of(simulation, compile_simulation(simulation))):
+        assert one.name == "unnamed"
+        compile_simulation(one.written(simulation, {"factor": "0.5"}))
+
+
+def penalty(case, label, **values):
+    candidate = next(one for one in case.search.candidates if one.label == label)
+    return penalty_of(candidate, dict.fromkeys(candidate.slots, 1.0) | values)
+
+
+def test_what_imitates_anything_costs_more_than_a_plain_term(case):
+    plain = penalty(case, "viscous_damping@load", factor=-0.3)
+    assert plain == CRITERIA.plain
+    for name in ("delayed_feedback", "product_coupling", "periodic_forcing"):
+        assert penalty(case, f"{name}@load") == CRITERIA.plain + CRITERIA.bent > 2 * plain
+
+
+def test_a_friction_that_drives_costs_more(case):
+    resists, drives = (penalty(case, "coulomb_friction@load", factor=one) for one in (-1.0, 1.0))
+    assert drives == resists + CRITERIA.matters
+
+
+def test_every_price_is_of_an_explanation_that_there_is(case):
+    names = {shape.name for shape in known_shapes()} | {one.name for one in case.search.candidates}
+    assert {*BENT, *FLEXIBLE} <= names | {"unnamed"}
+
+
+WRONG = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
+DRIFT = Candidate("sensor_error", "observation", "x", "sensor_drift")
+
+
+def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
+    parts = (Part(WRONG, {"value": 25.0}), Part(DRIFT, {"rate": 0.1}))
+    simulation, names = with_parts(mass(), parts)
+    assert names == ({"value": "k"}, {"rate": "part1_rate"})
+    assert dict(simulation.observations)["x"] == "(x) + part1_rate*t"
+
+
+def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic):
+    part = Part(cubic, {"factor": 0.0})
+    model = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    error = float(np.sqrt(model.fit.covariance[0, 0]))
+    assert model.parts[0].values["factor"] == pytest.approx(-14.0, abs=max(4 * error, 0.1))
+    assert model.names == ({"factor": "part0_factor"},)
+    assert model.fit.misfit < as_read.model.fit.misfit
+
+
+def test_a_number_more_costs_the_logarithm_of_what_was_measured(case, as_read, cubic):
+    model = fit_model(as_read.shooting, case.search.base, (Part(cubic, {"factor": 0.0}),), as_read.model.fit.starts)
+    assert model.size == 1
+    assert model.bic - model.fit.misfit == pytest.approx(np.log(model.fit.white.size))
+
+
+def test_without_explanations_only_the_starts_are_fitted(as_read):
+    assert as_read.model.size == 0
+    assert as_read.model.bic == as_read.model.fit.misfit

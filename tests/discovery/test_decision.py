@@ -8,7 +8,7 @@ from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
-from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed, strongest
 from gaitdisc.discovery.scored_model import ScoredModel, scored
@@ -83,7 +83,7 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, a
     monkeypatch.setattr("gaitdisc.discovery.decision.searched", lambda *_: (as_read, three, []))
     monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
     monkeypatch.setattr("gaitdisc.discovery.decision.CRITERIA", replace(CRITERIA, half=half))
-    monkeypatch.setattr("gaitdisc.discovery.decision.leaves_noise", lambda *_: False)
+    monkeypatch.setattr(Case, "leaves_noise", lambda *_: False)
     for name in ("plainest", "with_random_pushes"):
         monkeypatch.setattr(f"gaitdisc.discovery.decision.{name}", lambda *_: None)
     verdict = decide(case, as_read)
@@ -97,7 +97,7 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, 
     names = SimpleNamespace(found=two, rivals=("rival",))
     proofs, errors = iter([True, True, False, True, False]), {"shape": 0.1}
     monkeypatch.setattr(decision, "free_run_error", lambda _, now: errors["shape"] if now == "shape" else 0.2)
-    monkeypatch.setattr(decision, "leaves_noise", lambda _, now: now in ("shape", one))
+    monkeypatch.setattr(Case, "leaves_noise", lambda _, now: now in ("shape", one))
     monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
     found = decision.shape_that_leaves_noise(case, as_read, "shape", names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
@@ -106,7 +106,7 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, 
     assert decision.shape_that_leaves_noise(case, as_read, "shape", SimpleNamespace(found=one)) is None  # leaves noise
     errors["shape"] = 0.3
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
-    monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
+    monkeypatch.setattr(Case, "leaves_noise", lambda *_: False)
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
 
 

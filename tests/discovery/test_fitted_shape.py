@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fitted_shape, shapes_at
 from gaitdisc.simulation.expression import parsed
@@ -53,7 +52,7 @@ def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     case, now = bumpy
-    shape = fitted_shape(now, case.search, scale_of(case))
+    shape = fitted_shape(now, case.search, case.scale)
     assert shape is not None
     (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")

@@ -6,8 +6,7 @@ from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import beside_others, exchanged, pruned, select_forward, settled
-from gaitdisc.discovery.ranking import ranked
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import ScoredModel, ranked
 
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 

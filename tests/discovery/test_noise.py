@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from gaitdisc.discovery.noise import MOST_LAGS, Noise, noise_of, white_noise
+from gaitdisc.discovery.noise import LEAST, MOST_LAGS, Noise, noise_of, sensor_noise, white_noise, whiten
 from gaitdisc.discovery.record_filter import RecordFilter
 
 FIRST, SECOND = 1.2, -0.5  # x[k] = 1.2 x[k-1] - 0.5 x[k-2] + e[k], e of variance 1
@@ -108,3 +110,86 @@ def test_a_memory_that_the_records_filter_explains_is_none():
         seen = passed.filtered(noise, 1)[:, 40 : -40 : passed.every]
         assert noise_of(seen).is_autocorrelated
         assert noise_of(seen, autocorrelation=autocorrelation).is_autocorrelated == beyond
+
+
+T = np.arange(3000) / 100
+
+
+def record(sd, seed=0):
+    return np.sin(2 * np.pi * 0.9 * T) + np.random.default_rng(seed).normal(0, sd, T.size)
+
+
+@pytest.mark.parametrize("sd", [0.001, 0.02, 0.3])
+def test_white_noise_is_found_whatever_moves_below_it(sd):
+    found = sensor_noise(np.stack([record(sd, seed) for seed in range(3)])[:, :, None])
+    assert found == pytest.approx([sd], rel=0.06)
+
+
+def test_each_channel_has_its_own_and_ends_of_trials_are_left_out():
+    two = np.stack([record(0.02), record(0.1, 1)], axis=-1)[None]
+    longer = np.concatenate([two, np.full((1, 500, 2), np.nan)], axis=1)
+    assert sensor_noise(longer) == pytest.approx(sensor_noise(two))
+    assert sensor_noise(two) == pytest.approx([0.02, 0.1], rel=0.06)
+
+
+def test_a_record_without_noise_keeps_what_rounding_leaves():
+    cubic = (T**3)[None, :, None]
+    assert sensor_noise(cubic)[0] == pytest.approx(LEAST * cubic.std())
+
+
+def test_a_trial_of_ten_samples_says_nothing():
+    short = np.full((2, 3000, 1), np.nan)
+    short[0, :, 0] = record(0.05)
+    short[1, :10, 0] = 100 * np.random.default_rng(2).normal(size=10)
+    assert sensor_noise(short) == pytest.approx(sensor_noise(short[:1]), rel=0.5)
+    assert sensor_noise(short[:1]) == pytest.approx([0.05], rel=0.06)
+
+
+def _whitened(values, predictors, spread, known=None):
+    out = np.empty_like(values)
+    known = np.ones(values.shape[:3], bool) if known is None else known
+    whiten(values, 0, known, np.array(predictors), np.array(spread), out)
+    return out
+
+
+def test_what_the_past_says_is_taken_off_and_the_rest_divided():
+    out = _whitened(
+        np.array([4.0, 6.0, 8.0]).reshape(1, 3, 1, 1), [[0.0, 0.0], [0.5, 0.0], [1.0, -0.5]], [4.0, 2.0, 1.0]
+    )
+    np.testing.assert_allclose(out.ravel(), [4 / 4, (6 - 0.5 * 4) / 2, 8 - 6 + 0.5 * 4])
+
+
+def test_each_segment_begins_afresh():
+    values = np.arange(12.0).reshape(2, 6, 1, 1)
+    table, spread = [[0.0], [0.9]], [2.0, 1.0]
+    both = _whitened(values, table, spread)
+    alone = _whitened(values[1:], table, spread)
+    np.testing.assert_array_equal(both[1:], alone)
+
+
+def test_what_follows_a_gap_begins_afresh_and_the_gap_is_nothing():
+    values = np.arange(1.0, 8.0).reshape(1, 7, 1, 1)
+    known = np.array([1, 1, 0, 0, 1, 1, 1], bool).reshape(1, 7, 1)
+    table, spread = [[0.0], [0.9]], [2.0, 1.0]
+    out = _whitened(values, table, spread, known)
+    np.testing.assert_array_equal(out[:, 2:4], 0.0)
+    np.testing.assert_array_equal(out[:, 4:], _whitened(values[:, 4:], table, spread))
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-0.9, 0.9), st.floats(0.1, 10.0), st.integers(0, 99))
+def test_the_innovations_of_an_autoregression_come_back(autocorrelation, size, seed):
+    innovations = np.random.default_rng(seed).normal(size=30)
+    spread = size / np.sqrt(1 - autocorrelation**2)
+    values = [spread * innovations[0]]
+    for one in innovations[1:]:
+        values.append(autocorrelation * values[-1] + size * one)
+    out = _whitened(np.reshape(values, (1, 30, 1, 1)), [[0.0], [autocorrelation]], [spread, size])
+    np.testing.assert_allclose(out.ravel(), innovations, atol=1e-9)
+
+
+def test_other_channels_are_left_alone():
+    out = np.full((1, 4, 2, 1), 7.0)
+    whiten(np.ones((1, 4, 2, 1)), 1, np.ones((1, 4, 2), bool), np.zeros((1, 1)), np.array([2.0]), out)
+    np.testing.assert_array_equal(out[..., 0, 0], 7.0)
+    np.testing.assert_array_equal(out[..., 1, 0], 0.5)

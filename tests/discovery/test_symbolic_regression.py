@@ -5,7 +5,6 @@ import re
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict, held_out_proof
@@ -23,7 +22,7 @@ def asked(term):
 def damped():
     """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
     case, as_read = asked("-8*x**2*v")
-    shape = fitted_shape(as_read, case.search, scale_of(case))
+    shape = fitted_shape(as_read, case.search, case.scale)
     return case, as_read, Verdict("unnamed", shape, (), proof=held_out_proof(case, as_read, shape))
 
 
