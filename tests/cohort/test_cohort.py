@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.cohort import CALIBRATION_SEED, CHANGES, HIDDEN, REPORTED_SEED, the_twelve, walks_of
+from gaitdisc.cohort.cohort import CALIBRATION_SEED, CHANGES, HIDDEN, REPORTED_SEED, the_twelve, walked_cohort, walks_of
 from gaitdisc.cohort.habit import BURSTS, STANCE, activity, habitual
 from gaitdisc.cohort.leg_path import habit_angles
 from gaitdisc.cohort.measurement import measured
@@ -80,6 +80,11 @@ def test_effects_can_be_hidden(hidden):
 def test_an_unknown_effect_is_refused():
     with pytest.raises(SchemaError, match="spring, weak plantarflexor"):
         walks_of(the_twelve()[0], 6.0, "gremlin")
+
+
+def test_the_cohort_comes_one_person_at_a_time():
+    names = [walks.person.name for walks, _ in zip(walked_cohort(4.0), range(2), strict=False)]
+    assert names == ["W01", "W02"]
 
 
 @pytest.mark.slow
