@@ -68,24 +68,20 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
         word: int(np.random.SeedSequence([whose, number]).generate_state(1)[0])
         for number, word in enumerate(CONDITIONS)
     }
-    nominal = walked(person, None, duration_s, seeds["nominal"])
-    exo = walked(changed, spring, duration_s, seeds["exo"])
-    trials = {
-        "nominal": measured(nominal, f"{person.name}_nominal", "nominal"),
-        "exo": measured(exo, f"{person.name}_exo", "exo", late_s),
+    walks = {
+        "nominal": walked(person, None, duration_s, seeds["nominal"]),
+        "exo": walked(changed, spring, duration_s, seeds["exo"]),
     }
-    if markers:
-        for word, walk in (("nominal", nominal), ("exo", exo)):
-            seen = marker_trial(walk, trials[word].name, word)
-            streams = {**seen.streams, "emg": trials[word].stream("emg")}
-            trials[word] = replace(seen, streams=streams)
+    trials = {}
+    for word, walk in walks.items():
+        trial = measured(walk, f"{person.name}_{word}", word, late_s if word == "exo" else 0.0)
+        if markers:
+            seen = marker_trial(walk, trial.name, word)
+            trial = replace(seen, streams={**seen.streams, "emg": trial.stream("emg")})
+        trials[word] = trial
     truth = {
         "person": person.name,
-        "sex": person.sex,
-        "age_years": person.age_years,
-        "height_m": person.height_m,
-        "mass_kg": person.mass_kg,
-        "speed_m_per_s": person.speed_m_per_s,
+        **{name: getattr(person, name) for name in ("sex", "age_years", "height_m", "mass_kg", "speed_m_per_s")},
         "hidden": hidden,
         "spring_nm_per_deg": spring.stiffness if spring else 0.0,
         "engaged_deg": person.engaged_deg,
@@ -94,7 +90,7 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
         "effort_change": person.adaptation.effort.tolist(),
         "change_s": person.change_s if np.isfinite(person.change_s) else None,
         "emg_late_s": late_s,
-        "contacts_r_s": {"nominal": nominal.contacts().tolist(), "exo": exo.contacts().tolist()},
+        "contacts_r_s": {word: walk.contacts().tolist() for word, walk in walks.items()},
     }
     return Walks(person, trials, truth)
 

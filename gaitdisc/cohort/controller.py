@@ -81,7 +81,8 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     hip = cycle_rate(hip_rate, step_s)
     moments = joint_moments(leg, psi, hip, np.hstack([force, arm]), step_s)
     expected = moments.copy()
-    expected[:, 2] -= _relief(person, psi)
+    if person.learnt is not None:  # the commands allow for a part of the spring's moment
+        expected[:, 2] -= person.adaptation.relief * engaged_moment(person.learnt, person, psi)
     strength = strength_of(person.mass_kg, person.style.strength[side])
     joint, joint_rate = _by_joint(psi), _by_joint(cycle_rate(psi, step_s))
     capacity = capacities(strength, joint, joint_rate)
@@ -105,13 +106,6 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
 def engaged_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
     """Moment of a spring on the ankle [N m]; psi (phase, 3) [rad]: thigh, shank, foot."""
     return spring.moment(np.degrees(psi[:, 2] - psi[:, 1]), person.engaged_deg)
-
-
-def _relief(person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Part of the spring's moment that the commands allow for, towards dorsiflexion (so negative) [N m]."""
-    if person.learnt is None:
-        return np.zeros(len(psi))
-    return person.adaptation.relief * engaged_moment(person.learnt, person, psi)
 
 
 def habitual_activation(person: Person, side: int, phase: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -129,11 +129,7 @@ def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted:
 
 
 def thigh_shank_foot(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Absolute angles of the segments from joint angles.
-
-    angles (phase, joint) [deg]: in the order of `JOINTS`
-    returns (phase, 3) [rad]
-    """
+    """Absolute angles of the segments (phase, 3) [rad] from angles (phase, joint) [deg] in the order of `JOINTS`."""
     thigh = angles[:, 0]
     shank = thigh - angles[:, 3]
     return np.radians(np.column_stack([thigh, shank, shank + angles[:, 4]]))
@@ -182,11 +178,8 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     wanted = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
     moved, found = np.zeros(6 * CORRECTED), psi
     for _ in range(4):
-        slip, rate, lever = (
-            contact_path(leg, found, pressure) - wanted,
-            by_phase(found),
-            pressed_point(leg, found[:, 2], pressure),
-        )
+        slip, rate = contact_path(leg, found, pressure) - wanted, by_phase(found)
+        lever = pressed_point(leg, found[:, 2], pressure)
         c, s = np.cos(found), np.sin(found)
         l1, l2 = leg.thigh_m, leg.shank_m
         along = [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]], [l1 * s[:, 0], l2 * s[:, 1], lever[:, 0]]
@@ -225,10 +218,7 @@ def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.floa
 
 
 def by_phase(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rate by phase of one whole cycle.
-
-    cycle (phase, ...): evenly spaced, without its end
-    """
+    """Rate by phase of one whole cycle (phase, ...), evenly spaced, without its end."""
     return cycle_rate(cycle, 1 / len(cycle))
 
 

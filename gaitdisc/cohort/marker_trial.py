@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.cohort.body import Leg, ankle_place, leg_of
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, pressure_centre, staged
+from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, pressure_centre, staged, thigh_shank_foot
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Surface, Trial
@@ -121,9 +121,7 @@ def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
 
 def _pressed(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
     """Point under the pressure from the hip (time, 2), forwards and up [m]."""
-    thigh = walk.angles[:, side, 0]
-    shank = thigh - walk.angles[:, side, 3]
-    psi = np.radians(np.column_stack([thigh, shank, shank + walk.angles[:, side, 4]]))
+    psi = thigh_shank_foot(walk.angles[:, side])
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] + 0.5 * side
     pressure = pressure_centre(staged(walk.person, phase % 1.0), leg.sole_m)
     return ankle_place(leg, psi) + pressed_point(leg, psi[:, 2], pressure)
@@ -219,10 +217,8 @@ def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generat
         foot = segments[f"foot_{side}"][0][:, 2]
         slow = np.column_stack([at[:, 0], np.zeros(len(at)), foot]) @ TO_LABORATORY.T
         point = np.column_stack([np.interp(walk.quick_s, walk.slow_s, one) for one in slow.T])
-        force = np.column_stack(
-            [walk.force[:, column, 0], walk.force[:, column, 1], -sign * INWARDS * walk.force[:, column, 1]]
-        )
-        force = force @ TO_LABORATORY.T
+        along, up = walk.force[:, column].T
+        force = np.column_stack([along, up, -sign * INWARDS * up]) @ TO_LABORATORY.T
         moment = np.cross(point - belt.corners.mean(axis=0), force)
         columns += [force + rng.normal(0.0, FORCE_N, force.shape), moment + rng.normal(0.0, MOMENT_NM, moment.shape)]
         channels += [
@@ -254,9 +250,17 @@ def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: flo
     length = min(PLATE_M[0], 0.9 * 0.5 * stride_s * speed_m_per_s)
     plates, columns = [], []
     rng = np.random.default_rng([round(1000 * start_s), 47])
+    along, half = np.array([1.0, 0.0, 0.0]), PLATE_M[1] / 2
     for step, belt in zip((right, left), belts.surfaces, strict=True):
-        plate = _plate(step, belt, length, speed_m_per_s * (step.middle_s - start_s))
-        columns += _seen(step, belt, plate, speed_m_per_s * (parts["forces"].time - start_s), rng)
+        middle = belt.corners.mean(axis=0)[0] + step.along_m + speed_m_per_s * (step.middle_s - start_s)
+        front, back = length / 2, -length / 2  # around the step, across the whole walkway
+        corners = np.array([[front, -half, 0.0], [back, -half, 0.0], [back, half, 0.0], [front, half, 0.0]])
+        plate = Surface(belt.name, corners + middle * along)
+        apart = belt.corners.mean(axis=0) - plate.corners.mean(axis=0)
+        apart = apart + (speed_m_per_s * (parts["forces"].time - start_s))[:, None] * along
+        moment = step.moment + np.cross(apart, step.force)  # about the middle of the plate
+        columns.append(step.force + rng.normal(0.0, FORCE_N, step.force.shape))
+        columns.append(moment + rng.normal(0.0, MOMENT_NM, moment.shape))
         plates.append(plate)
     walked = np.zeros_like(parts["markers"].values)
     walked[:, 0::3] = speed_m_per_s * (parts["markers"].time - start_s)[:, None]
@@ -289,20 +293,3 @@ def _step(forces: Recording, belt: str, after_s: float) -> _Step:
     stands = runs(loads[:, 2] > STANDS_N)
     whole = [(a, b) for a, b in stands if forces.time[a] > after_s and b < len(loads) and b - a > 0.2 * forces.rate_hz]
     return _Step(forces.time, loads, slice(*whole[0]))
-
-
-def _plate(step: _Step, belt: Surface, length: float, walked_m: float) -> Surface:
-    """Plate around the step, across the whole walkway."""
-    middle = belt.corners.mean(axis=0)[0] + step.along_m + walked_m
-    half = PLATE_M[1] / 2
-    corners = [[length / 2, -half, 0.0], [-length / 2, -half, 0.0], [-length / 2, half, 0.0], [length / 2, half, 0.0]]
-    return Surface(belt.name, np.array(corners) + np.array([middle, 0.0, 0.0]))
-
-
-def _seen(
-    step: _Step, belt: Surface, plate: Surface, walked_m: NDArray[np.float64], rng: np.random.Generator
-) -> list[NDArray[np.float64]]:
-    """Force and moment about the middle of the plate, as it reports them."""
-    apart = belt.corners.mean(axis=0) - plate.corners.mean(axis=0) + walked_m[:, None] * np.array([1.0, 0.0, 0.0])
-    moment = step.moment + np.cross(apart, step.force)
-    return [step.force + rng.normal(0.0, FORCE_N, step.force.shape), moment + rng.normal(0.0, MOMENT_NM, moment.shape)]

@@ -147,10 +147,7 @@ def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> Array
         with hdf5_file(path) as file:
             names = tuple(name for name in map(str, file) if not name.startswith("#"))
         return ArrayFile(raw, names, lambda name: _of_hdf5(path, name))
-    return _in_process(raw, path, process or ReaderProcess())
-
-
-def _in_process(raw: RawFile, path: Path, process: ReaderProcess) -> ArrayFile:
+    process = process or ReaderProcess()
     most = min(_UNPACKED[0] + _UNPACKED[1] * len(raw.content), LARGEST_BYTES)
 
     def answered(name: str) -> tuple[dict[str, Any], Arrays]:
@@ -164,7 +161,7 @@ def _in_process(raw: RawFile, path: Path, process: ReaderProcess) -> ArrayFile:
                 "Save it as numeric arrays: numpy.savez without objects.",
             )
         if said:
-            needed = f"{raw.name} cannot be read as {'an .npz' if path.suffix.lower() == '.npz' else 'a .mat'} file"
+            needed = f"{raw.name} cannot be read as {'an .npz' if is_npz else 'a .mat'} file"
             found = f"the reader reports: {' '.join(said.split())[:160].rstrip('.')}"
             raise ReadError(needed, found, "Save it again. It may be incomplete or of another type.")
         return answer, arrays

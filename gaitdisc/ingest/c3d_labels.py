@@ -32,11 +32,7 @@ def without_people(label: str, people: Iterable[str]) -> str:
 
 
 def without_prefix(label: str) -> str:
-    """Label of a point without the prefix that names whose it is.
-
-    >>> without_prefix("Ann:LASI")
-    'LASI'
-    """
+    """Label of a point without the prefix that names whose it is, `Ann:LASI`."""
     return label.rpartition(":")[2].strip()
 
 

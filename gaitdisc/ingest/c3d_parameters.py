@@ -236,7 +236,7 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
         offset = int.from_bytes(section[offset_at : offset_at + 2], order)
         end = offset_at + offset if offset else len(section)
         if offset == 1 or end > len(section):
-            raise _broken(header, f"the entry {_shown(name)} at byte {at} points {offset} bytes ahead, beyond the end")
+            raise _broken(header, f"the entry {name[:24]!r} at byte {at} points {offset} bytes ahead, beyond the end")
         yield name, group, section[offset_at + 2 : end]
         if not offset:
             return
@@ -246,13 +246,13 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
 def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     width = _WIDTHS.get(int.from_bytes(body[:1], "little", signed=True))
     if len(body) < 2 or width is None or body[1] > _DIMENSIONS_AT_MOST or len(body) < 2 + body[1]:
-        raise _broken(header, f"the parameter {_shown(name)} has an unknown type")
+        raise _broken(header, f"the parameter {name[:24]!r} has an unknown type")
     is_text = body[0] == 255
     dimensions = tuple(body[2 : 2 + body[1]])
     count = math.prod(dimensions)
     raw = body[2 + len(dimensions) :][: count * width]
     if len(raw) < count * width:
-        raise _broken(header, f"parameter {_shown(name)} has {len(raw)} bytes, but {dimensions} need {count * width}")
+        raise _broken(header, f"parameter {name[:24]!r} has {len(raw)} bytes, but {dimensions} need {count * width}")
     if is_text:
         length = dimensions[0] if dimensions else 1
         return tuple(_text(raw[at : at + length]) for at in range(0, len(raw), length)) if length else ()
@@ -265,10 +265,6 @@ def _text(raw: bytes) -> str:
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
     return re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", text).rstrip()
-
-
-def _shown(name: str) -> str:
-    return repr(name[:24])
 
 
 def _broken(header: C3DHeader, found: str) -> ReadError:

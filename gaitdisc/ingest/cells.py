@@ -50,9 +50,8 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
     numbers = np.array([first_line + i for i, line in enumerate(lines) if line.strip()], dtype=np.intp)
     rows = [line for line in lines if line.strip()]
     if not rows:
-        raise ReadError(
-            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
-        )
+        found = f"none follow line {first_line - 1}"
+        raise ReadError(f"{form.file} must contain rows of numbers", found, "Export the whole trial.")
     rows = _even_rows(rows, labels, numbers, form)
     values = _numbers(rows, form)
     if values is None or np.isinf(values).any():
@@ -139,9 +138,8 @@ def check_counts(cells: Cells, file: str, *counts: tuple[str, Sequence[int], int
         wrong = sorted({count for count in claimed if count != there})
         if wrong:
             what = f"the header states {' and '.join(map(str, wrong))} {kind}, the file has {there}"
-            findings.append(
-                Finding("warning", "wrong count", file, what, "nothing here, but other programs may refuse the file")
-            )
+            spoils = "nothing here, but other programs may refuse the file"
+            findings.append(Finding("warning", "wrong count", file, what, spoils))
     return findings
 
 
@@ -182,14 +180,12 @@ def even_time(
         return f"line {lines[row]}" if lines is not None else f"row {row + 1}"
 
     if len(time) < 2:
-        raise SamplingError(
-            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the whole trial."
-        )
+        needed = f"{file}: a recording must have at least two samples"
+        raise SamplingError(needed, f"it has {len(time)}", "Export the whole trial.")
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))
-        raise SamplingError(
-            f"{file}: every sample must have a time", f"{place(row)} has {time[row]}", "Export it again."
-        )
+        found = f"{place(row)} has {time[row]}"
+        raise SamplingError(f"{file}: every sample must have a time", found, "Export it again.")
     steps = np.diff(time)
     if steps.min() <= 0:
         row = int(np.argmin(steps))
@@ -203,7 +199,10 @@ def even_time(
     if np.abs(time - even).max() <= ALREADY_EVEN * step:
         return time
     _check_rounding(time, digit_s, file, place)
-    return _rounded_rate(time, even, digit_s)
+    # a whole number of samples a second where the digits allow one, else from first to last time
+    rate = round((len(time) - 1) / (time[-1] - time[0]))
+    whole = time[0] + np.arange(len(time)) / rate if rate > 0 else even
+    return whole if np.abs(time - whole).max() <= 1.01 * digit_s else even
 
 
 def _check_rounding(time: NDArray[np.float64], digit_s: float, file: str, place) -> None:
@@ -221,13 +220,3 @@ def _check_rounding(time: NDArray[np.float64], digit_s: float, file: str, place)
         f"step is {np.median(steps):.6g} s, and times have a resolution of {digit_s:.0e} s",
         "Samples are missing, or times have too few digits. Export at one rate and with more digits.",
     )
-
-
-def _rounded_rate(time: NDArray[np.float64], even: NDArray[np.float64], digit_s: float) -> NDArray[np.float64]:
-    """Even base at a whole number of samples a second where the digits allow one, else from first to last time."""
-    rate = round((len(time) - 1) / (time[-1] - time[0]))
-    if rate > 0:
-        whole = time[0] + np.arange(len(time)) / rate
-        if np.abs(time - whole).max() <= 1.01 * digit_s:
-            return whole
-    return even

@@ -74,11 +74,7 @@ class Measured:
 
 
 def is_people_table(path: Path) -> bool:
-    """Whether a file's name is that of a table of people: `participants.tsv`, `manifest.csv` and the like.
-
-    >>> is_people_table(Path("raw/participants.tsv")), is_people_table(Path("S01/walk.csv"))
-    (True, False)
-    """
+    """Whether a file's name is that of a table of people: `participants.tsv`, `manifest.csv` and the like."""
     return path.suffix.lower() in (".csv", ".tsv") and path.stem.lower() in TABLES
 
 
@@ -223,11 +219,7 @@ def walk_key(path: Path) -> str:
 
 
 def walk_place(path: Path) -> tuple[str, ...]:
-    """Folders of a file without those that only name the kind: files of one walk may lie in `IK` and in `GRF`.
-
-    >>> walk_place(Path("P01/IK/walk1.mot")) == walk_place(Path("P01/GRF/walk1.mot")) == ("P01",)
-    True
-    """
+    """Folders of a file without those that only name the kind: files of one walk may lie in `IK` and in `GRF`."""
     return tuple(folder for folder in path.parent.parts if folder.lower() not in WORDS["content"])
 
 

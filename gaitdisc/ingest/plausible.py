@@ -75,15 +75,15 @@ def without_impossible(
     findings: list[Finding] = []
     for key, recording in streams.items():
         beyond = np.zeros(recording.values.shape, bool)
+        ranges = {}
         for place, channel in enumerate(recording.channels):
-            limits = _limits(channel)
-            if limits is None:
-                continue
-            values = recording.values[:, place]
-            beyond[:, place] = (values < limits.low) | (values > limits.high)  # NaN is neither
+            limits = next((one for one in plausible_ranges() if one.covers(channel)), None)
+            if limits is not None:
+                values, ranges[place] = recording.values[:, place], limits
+                beyond[:, place] = (values < limits.low) | (values > limits.high)  # NaN is neither
         counted = [i for i, c in enumerate(recording.channels) if c.quantity == "emg" and beyond[:, i].any()]
         if any(beyond[:, i].mean() > FEW for i in counted):
-            findings += [_other_unit(recording, i) for i in counted]
+            findings += [_other_unit(recording, i, ranges[i]) for i in counted]
             beyond[:, counted] = False
         before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
         frames = round(before_s * recording.rate_hz) if before_s else 0
@@ -91,7 +91,8 @@ def without_impossible(
         lost: set[str] = set()
         for place in np.flatnonzero(beyond.any(axis=0)).tolist():
             lost |= {plates[place]} - {""}
-            findings.append(_finding(recording, place, beyond[:, place], frames, bool({*plates} - lost - {""})))
+            others = bool({*plates} - lost - {""})
+            findings.append(_finding(recording, place, ranges[place], beyond[:, place], frames, others))
         known = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
         rest = [channel.name for channel, plate in zip(known.channels, plates, strict=True) if plate not in lost]
         kept[key] = known.selected(rest) if lost else known
@@ -179,14 +180,8 @@ def _frozen_finding(recording: Recording, place: int, still: NDArray[np.bool_]) 
     return Finding("warning", "frozen", recording.source.file, what, "these frames; fill the gap", name, spans)
 
 
-def _limits(channel: Channel) -> PlausibleRange | None:
-    return next((one for one in plausible_ranges() if one.covers(channel)), None)
-
-
-def _other_unit(recording: Recording, place: int) -> Finding:
+def _other_unit(recording: Recording, place: int, limits: PlausibleRange) -> Finding:
     channel = recording.channels[place]
-    limits = _limits(channel)
-    assert limits is not None  # it was found beyond them
     most = float(np.nanmax(np.abs(recording.values[:, place])))
     thousandth = channel.unit == "V" and most <= 1e3 * limits.high
     looks = "it looks like mV or counts" if thousandth else "it may be in counts"
@@ -195,11 +190,11 @@ def _other_unit(recording: Recording, place: int) -> Finding:
     return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
 
 
-def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int, other_plates: bool) -> Finding:
+def _finding(
+    recording: Recording, place: int, limits: PlausibleRange, beyond: NDArray[np.bool_], before: int, other_plates: bool
+) -> Finding:
     """First value beyond the range, with its frame in the file, and how many there are; a force is refused."""
     channel, first, file = recording.channels[place], int(np.argmax(beyond)), recording.source.file
-    limits = _limits(channel)
-    assert limits is not None  # it was found beyond them
     count, unit = int(beyond.sum()), "" if channel.unit == "1" else f" {channel.unit}"
     more = f", as {'is' if count == 2 else 'are'} {count - 1} more of {len(beyond)} frames" if count > 1 else ""
     where = (

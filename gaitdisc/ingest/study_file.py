@@ -257,11 +257,7 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
         needed = f"the keys of {_table(place[:-1])} must be among {', '.join(keys)}"
         return (needed, f"{place[-1]!r} is unknown", f"Did you mean {nearest!r}?" if nearest else "Remove it.")
     if kind == "missing" and isinstance(place[-1], int):
-        return (
-            f"{_named(place[:-1])} must have at least {place[-1] + 1} entries",
-            f"found {place[-1]}",
-            "Add one.",
-        )
+        return f"{_named(place[:-1])} must have at least {place[-1] + 1} entries", f"found {place[-1]}", "Add one."
     if kind == "missing":
         remedy = f"Add {place[-1]} ({_about(place, model)})."
         return f"{_table(place[:-1])} must have {place[-1]!r}", "it is missing", remedy

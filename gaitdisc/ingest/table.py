@@ -173,16 +173,14 @@ def _header(line: str, channels: Mapping[str, str] | None) -> tuple[str, list[st
 def _units_below(below: Sequence[str], labels: Sequence[str], separator: str) -> list[str]:
     """Labels with the units of a line below them, where that line holds units and blanks alone; else nothing."""
     cells = [cell.strip().strip("()[]") for line in below for cell in next(csv.reader([line], delimiter=separator), [])]
-    if len(cells) != len(labels) or not any(cells) or any(cell and _known_unit(cell) is None for cell in cells):
+    units = [re.sub(r"/s2?$", "", cell) for cell in cells if cell and cell != "ms"]
+    unknown = any(unit[:1].isdigit() or parsed_unit(unit) is None for unit in units)
+    if len(cells) != len(labels) or not any(cells) or unknown:
         return []
     return [
         f"{label} [{cell}]" if cell and split_unit(label)[1] is None else label
         for label, cell in zip(labels, cells, strict=True)
     ]
-
-
-def _known_unit(cell: str) -> str | None:
-    return "ms" if cell == "ms" else parsed_unit(re.sub(r"/s2?$", "", cell)) if not cell[0].isdigit() else None
 
 
 def _check_labels(labels: Sequence[str], where: str) -> None:

@@ -1,12 +1,15 @@
-"""Several files of one walk become one trial."""
+"""Several files of one walk become one trial; what is written comes back."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from texts import says
 
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
-from gaitdisc.ingest.reading import read_planned_trial, read_trial
+from gaitdisc.ingest.reading import READERS, WRITERS, read_planned_trial, read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.recording import Recording
@@ -106,3 +109,46 @@ def test_a_planned_trial_has_the_name_of_the_plan(tmp_path):
     trial = read_planned_trial(study, person, person.trials[1])
     assert (trial.name, trial.subject, trial.condition) == ("P07 natural 2", "P07", "natural")
     assert trial.streams["emg"].time[0] == pytest.approx(0.1)
+
+
+SHARED = [*vocabulary().channels, Channel("RHEE.x", "marker", "m"), Channel("pelvis_tx_force", "force", "N")]
+SHARED += [Channel(c.name, "emg", "1", c.side) for c in vocabulary().channels if c.quantity == "emg"]
+STATED = [  # by the header of a storage file alone
+    Channel("sync pulse", "signal", "V"),
+    Channel("strain", "signal", "deg/s"),
+    Channel("device_angle_r", "angle", "deg", "r"),
+    Channel("m=1 [x]", "signal", "1"),
+    Channel("ground_force_r_vx_", "force", "N/kg", "r"),
+]
+QUOTED = [
+    Channel("emg_sol_x", "emg", "1"),
+    Channel("sync, pulse", "signal", "V"),
+    Channel('say "x" [y]', "signal", "N"),
+    Channel("exo_r", "angle", "deg", "r"),
+]
+
+
+@st.composite
+def recordings(draw, channels):
+    chosen = draw(st.lists(st.sampled_from(channels), min_size=1, max_size=6, unique_by=lambda c: c.name))
+    count, rate = draw(st.integers(2, 8)), draw(st.sampled_from([60.0, 100.0, 148.148, 2000.0]))
+    values = draw(arrays(float, (count, len(chosen)), elements=st.floats(-1e6, 1e6)))
+    column = draw(st.integers(0, len(chosen) - 1))
+    if "force" not in chosen[column].quantity and draw(st.booleans()):
+        values[draw(st.integers(0, count - 1)), column] = np.nan
+    return Recording(draw(st.sampled_from([0.0, 0.45, 3.3, 12.3])) + np.arange(count) / rate, values, tuple(chosen))
+
+
+@pytest.mark.parametrize(("ending", "own"), [(".sto", STATED), (".csv", QUOTED), (".parquet", QUOTED)])
+@given(data=st.data())
+def test_round_trip(tmp_path_factory, ending, own, data):
+    recording = data.draw(recordings(SHARED + own))
+    path = WRITERS[ending](recording, tmp_path_factory.mktemp("rt") / f"walk{ending}")
+    streams = READERS[ending](path).streams.values()
+    back = {c.name: (c, stream[c.name], stream.time) for stream in streams for c in stream.channels}
+    assert set(back) == set(recording.names)
+    for channel in recording.channels:
+        found, values, time = back[channel.name]
+        assert found == channel
+        np.testing.assert_array_equal(values, recording[channel.name])
+        np.testing.assert_array_equal(time, recording.time)
