@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_stream
 from scipy.signal import butter, sosfreqz
 
 from gaitdisc.channel import Channel
@@ -16,7 +17,7 @@ from gaitdisc.statistics.r2 import analytic_null
 
 
 def with_values(trial, key, values):
-    return replace(trial, streams={**trial.streams, key: trial.stream(key).with_values(values)})
+    return with_stream(trial, key, trial.stream(key).with_values(values))
 
 
 def test_a_walk_is_filtered_cut_and_differentiated(trial, study):
@@ -136,7 +137,7 @@ def test_clocks_that_do_not_meet(trial, study):
     later = Recording(emg.time + 1000.0, emg.values, emg.channels)
     models = Models(emg=("emg_sol_r",), outputs=("ankle_angle_r",))
     with pytest.raises(ValueError, match="overlap in time"):
-        processed(replace(trial, streams={**trial.streams, "emg": later}), study.model_copy(update={"models": models}))
+        processed(with_stream(trial, "emg", later), study.model_copy(update={"models": models}))
 
 
 def test_summary_keeps_every_stride_and_cuts_each_side_by_its_own_foot(trial, study):
@@ -198,7 +199,7 @@ def test_raw_emg_reaches_about_half_as_well():
 def test_the_rate_of_raw_emg_is_taken_from_the_walk(trial, study):
     study = study.model_copy(update={"models": study.models.model_copy(update={"emg": ("emg_sol_r",)})})
     emg = trial.stream("emg")
-    envelopes = replace(trial, streams={**trial.streams, "emg": replace(emg, values=np.abs(emg.values))})
+    envelopes = with_stream(trial, "emg", replace(emg, values=np.abs(emg.values)))
     for given, emg_hz in ((trial, emg.rate_hz), (envelopes, None)):
         walk = replace(processed(trial, study), trial=given)
         expected = filter_null(walk.state.channels, Filters(), walk.state.rate_hz, emg_hz)

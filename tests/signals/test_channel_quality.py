@@ -13,9 +13,7 @@ from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.channel_quality import (
     channel_findings,
-    clipped,
     drift_findings,
-    jumping,
     plateau_findings,
     plateau_marked,
     plateaus,
@@ -79,13 +77,6 @@ def test_a_force_that_is_cut_off_is_clipped():
     t = np.arange(2000) / 1000
     f = np.clip(900 * np.sin(2 * np.pi * t), 0.0, 700.0)
     assert [finding.kind for finding in channel_findings(one(f, FORCE, 1000.0))] == ["clipped"]
-
-
-def test_marks_lie_on_the_fault():
-    assert not clipped(np.sin(np.arange(1000) / 30)).any()
-    x = np.sin(np.arange(1000) / 30)
-    x[700] += 0.5
-    assert np.flatnonzero(jumping(x)).tolist() == list(range(698, 703))
 
 
 def test_a_real_ankle_that_jumps(gait_data, real):

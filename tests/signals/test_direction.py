@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
+from changed_trials import markers_at
 
-from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
-from gaitdisc.recording import Recording
 from gaitdisc.signals.direction import given_direction, marker_position, pelvis_position, walking_direction
 
 HEELS, PELVIS = {"r": "RHEE", "l": "LHEE"}, ("SACR",)
@@ -18,8 +17,7 @@ def walker(forward, up=(0.0, 0.0, 1.0), speed=0.0):
         phase = (t + late) % 1.0
         ahead = np.where(phase < 0.62, 0.3 - 0.6 * phase / 0.62, -0.3 + 0.6 * (phase - 0.62) / 0.38)
         parts[f"{side}HEE"] = (speed * t + ahead)[:, None] * forward + 0.05 * up
-    channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in parts for axis in "xyz")
-    return Recording(t, np.hstack(list(parts.values())), channels)
+    return markers_at(t, parts)
 
 
 def turning(turn_deg):

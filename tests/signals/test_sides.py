@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from texts import says
 
-from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.signals.sides import knee_peak_percent, load_findings, marker_side_findings, sway_findings, verify_sides
@@ -55,8 +56,7 @@ TIME = np.arange(100) / 100
 
 def markers(names):
     """Someone who stands; each marker lies where the one lies whose name it is given."""
-    values = np.hstack([np.tile(PLACES[of], (100, 1)) for of in names.values()])
-    return Recording(TIME, values, tuple(Channel(f"{n}.{axis}", "marker", "m") for n in names for axis in "xyz"))
+    return markers_at(TIME, {name: np.tile(PLACES[of], (100, 1)) for name, of in names.items()})
 
 
 def exchanged(name):
