@@ -119,9 +119,8 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
         times = distance[k] / usual
         column = int(np.argmax(np.where(far[k], times, 0.0)))
         more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
-        reason = (
-            f"outlying: {recording.names[column]}{more} {times[column]:.1f} times the usual distance from the median"
-        )
+        reason = f"outlying: {recording.names[column]}{more} {times[column]:.1f} times the usual distance "
+        reason += "from the median"
         dropped.append(DroppedStride(float(strides.start[k]), float(strides.end[k]), reason))
     return replace(strides, start=strides.start[~out], end=strides.end[~out], dropped=(*strides.dropped, *dropped))
 
