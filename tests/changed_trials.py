@@ -15,6 +15,15 @@ def with_stream(trial: Trial, key: str, recording: Recording) -> Trial:
     return replace(trial, streams={**trial.streams, key: recording})
 
 
+def with_column(recording: Recording, name: str, value: ArrayLike, rows: slice | NDArray = slice(None)) -> Recording:
+    """Recording in which a channel, or each coordinate of a marker, has another value in some rows."""
+    values = np.array(recording.values)
+    for column, own in enumerate(recording.names):
+        if name in (own, own.rpartition(".")[0]):
+            values[rows, column] = value
+    return recording.with_values(values)
+
+
 def gained(trial: Trial, plate: int, gain: float) -> Trial:
     """Trial in which a plate shows so many times its force."""
     forces = trial.stream("forces")

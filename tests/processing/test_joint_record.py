@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from changed_trials import with_stream
+from changed_trials import with_column, with_stream
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.cohort.marker_trial import marker_trial
@@ -88,9 +88,8 @@ def test_a_leg_without_electrodes_is_refused(trial):
 def test_an_electrode_that_is_an_envelope_already_is_taken_as_one_beside_raw_ones(trial, record):
     """As in the EMG of a published walk, where some muscles swing about zero and others never fall below it."""
     raw = trial.stream("emg")
-    column, values = raw.index("emg_sol_r"), np.array(raw.values)
-    values[:, column] = np.interp(raw.time, record.time, record.envelopes[:, 4])
-    mixed = joint_record(with_stream(trial, "emg", replace(raw, values=values)), STUDY, "ankle_angle", None)
+    envelope = with_column(raw, "emg_sol_r", np.interp(raw.time, record.time, record.envelopes[:, 4]))
+    mixed = joint_record(with_stream(trial, "emg", envelope), STUDY, "ankle_angle", None)
     np.testing.assert_allclose(mixed.envelopes[:, 3], record.envelopes[:, 3])
     assert np.corrcoef(mixed.envelopes[:, 4], record.envelopes[:, 4])[0, 1] > 0.98
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from changed_trials import markers_at
+from changed_trials import markers_at, with_column
 from texts import says
 
 from gaitdisc.channel import vocabulary
@@ -35,9 +35,8 @@ def test_a_knee_of_the_other_sign_is_refused(made):
 
 def test_a_knee_that_bends_most_in_stance_is_stiff_where_the_other_swings(made):
     walk, contacts = made.walk(12)
-    values = walk.values.copy()
-    values[:, walk.index("knee_angle_r")] = walk["knee_angle_l"]
-    assert verify_sides(walk.with_values(values), right_strides(contacts)) == pytest.approx(20, abs=2)
+    other = with_column(walk, "knee_angle_r", walk["knee_angle_l"])
+    assert verify_sides(other, right_strides(contacts)) == pytest.approx(20, abs=2)
 
 
 def test_a_stiff_or_missing_knee_tells_nothing(made):
