@@ -82,9 +82,8 @@ def misfits(places: Points, calibration: Calibration, up: NDArray[np.float64]) -
         names = [calibration.marker_set.landmark(end, side, places) for end in ("heel", "toe")]
         heel, toe = (np.mean([places[name] for name in each] or [np.full(3, np.nan)], axis=0) for each in names)
         feet.append(np.broadcast_to(toe - heel, fits["pelvis"].pose.origin.shape))
-        found[f"foot_{side}"][np.einsum("fi,fi->f", fits[f"shank_{side}"].pose.rotation[:, :, 0], feet[-1]) < 0] = (
-            np.inf
-        )
+        backward = np.einsum("fi,fi->f", fits[f"shank_{side}"].pose.rotation[:, :, 0], feet[-1]) < 0
+        found[f"foot_{side}"][backward] = np.inf
     pelvis = fits["pelvis"].pose.rotation
     against = np.all([np.einsum("fi,fi->f", pelvis[:, :, 0], foot) < 0 for foot in feet], axis=0)
     found["pelvis"][against | (pelvis[:, :, 1] @ up < 0)] = np.inf
@@ -132,11 +131,9 @@ def exchange_findings(
         first, second = (names[name] for name in one.pair)
         order = landmark_order(calibration.marker_set, swapped(calibration.places, one.pair), up)
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
-        what = (
-            f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {int(one.frames.sum())} "
-            f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm from the static trial, not "
-            f"{f'{1000.0 * one.before_m:.0f} mm' if np.isfinite(one.before_m) else 'rotated'}"
-        )
+        before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "rotated"
+        what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "
+        what += f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm from the static trial, not {before}"
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans))
     for segment, frames in broken.items():

@@ -51,11 +51,9 @@ def functional_hips(
             findings.append(Finding("warning", "functional hip", file, what, SPOILS))
             continue
         hips[f"hip_{side}"] = found.centre
-        what = (
-            f"hip_{side} from the functional trial, {_mm(_apart(found, usual))} from the hip from the landmarks; the "
-            "thigh moves about "
-        )
-        findings.append(Finding("note", "functional hip", file, f"{what}it within {_mm(found.residual_m)} (rms)", ""))
+        what = f"hip_{side} from the functional trial, {_mm(_apart(found, usual))} from the hip from the landmarks; "
+        what += f"the thigh moves about it within {_mm(found.residual_m)} (rms)"
+        findings.append(Finding("note", "functional hip", file, what, ""))
     return hips, tuple(findings)
 
 

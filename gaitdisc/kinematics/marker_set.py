@@ -172,8 +172,8 @@ class MarkerSet:
 def sided(name: str, side: str) -> str:
     """Name of a marker on one side, from one with or without `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left).
 
-    >>> sided("{S}ASI", "l"), sided("knee_{side}", "r")
-    ('LASI', 'knee_right')
+    >>> sided("{S}ASI", "l"), sided("knee_{s}", "r"), sided("{side} knee", "r")
+    ('LASI', 'knee_r', 'right knee')
     """
     words = {"S": side.upper(), "s": side, "side": {"l": "left", "r": "right"}[side]}
     return PLACEHOLDER.sub(lambda found: words[found[1]], name)
@@ -191,8 +191,8 @@ def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
 def choices(text: str) -> list[tuple[str, ...]]:
     """Markers of each choice of a landmark.
 
-    >>> choices("SACR | LPSI + RPSI")
-    [('SACR',), ('LPSI', 'RPSI')]
+    >>> choices("SACR | LPSI + RPSI"), choices("")
+    ([('SACR',), ('LPSI', 'RPSI')], [])
     """
     return [tuple(part.strip() for part in choice.split("+")) for choice in text.split("|")] if text.strip() else []
 

@@ -188,10 +188,8 @@ def _gaps_and_shape(
     file, frames = markers.source.file or "the trial", len(markers.time)
     findings = []
     if bridged.any():
-        what = (
-            f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the other markers define it "
-            "there"
-        )
+        what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; "
+        what += "the other markers define it there"
         findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
         what = f"{segment} is unknown in {int(unknown.sum())} of {frames} frames: fewer than 3 or collinear points"

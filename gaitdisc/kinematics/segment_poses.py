@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from gaitdisc.errors import ChannelError
-from gaitdisc.kinematics.calibration import Calibration
+from gaitdisc.kinematics.calibration import Calibration, Points
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose, RigidFit, fitted_pose
@@ -23,8 +23,6 @@ SETTLED = 1e-9  # rad and m; the step after is smaller by far
 STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
 LONGEST_STEP_RAD = 0.5
 
-Points = Mapping[str, NDArray[np.float64]]
-Placed = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 Turns = dict[str, NDArray[np.float64]]
 CARRIED_STEADY_M = 0.06  # a thigh of Plug-in Gait that lost its wand has less, and may be wrong by 30 deg
 FROM_STRAIGHT_DEG = 30.0  # a shank that turns by 300 deg/s one way and back again over 0.2 s
@@ -33,7 +31,7 @@ PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 
 def held_together(
     first: Mapping[str, Pose],
-    placed: Placed,
+    placed: PlacedMarkers,
     points: Mapping[str, Points],
     plane: NDArray[np.float64] | None = None,
     steady_m: float = STEADY_M,
@@ -122,7 +120,9 @@ def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Poi
     return origins
 
 
-def _normal_equations(turns: Turns, origins: Turns, placed: Placed) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _normal_equations(
+    turns: Turns, origins: Turns, placed: PlacedMarkers
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
     frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
     gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
@@ -170,7 +170,7 @@ def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float
     return columns
 
 
-def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64]:
+def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> NDArray[np.float64]:
     """Root mean square distance of all markers from their bodies in each frame."""
     squares, count = 0.0, 0
     for segment, (body, seen) in placed.items():
@@ -218,7 +218,7 @@ def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
 
 
-def held_in_gaps(free: Mapping[str, Pose], placed: Placed, points: Mapping[str, Points]) -> dict[str, Pose]:
+def held_in_gaps(free: Mapping[str, Pose], placed: PlacedMarkers, points: Mapping[str, Points]) -> dict[str, Pose]:
     """Poses held together at the joints, in frames in which some segment is unknown and beside them; NaN in all others.
 
     free: each segment over its own points, NaN where too few; placed, points: as `held_together` takes them

@@ -112,14 +112,8 @@ class PlateStep:
         if self.clean:
             return None
         what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is excluded: {self.reason}"
-        return Finding(
-            self.doubt or "note",
-            "plate step",
-            file,
-            what,
-            "joint moments of this step",
-            spans=((self.start, self.end),),
-        )
+        spans = ((self.start, self.end),)
+        return Finding(self.doubt or "note", "plate step", file, what, "joint moments of this step", spans=spans)
 
 
 def plate_steps(
@@ -194,17 +188,9 @@ def weighed_steps(
 
 def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:
     """Say on which platforms no loading above `least_load_n` [N] is."""
-    return [
-        Finding(
-            "note",
-            "empty plate",
-            file,
-            f"nobody stepped on {platform.name}: its force never exceeds {platform.load_n.max():.0f} N",
-            "nothing; no step on it is counted",
-        )
-        for platform in found
-        if not len(platform.loadings(least_load_n))
-    ]
+    empty = [platform for platform in found if not len(platform.loadings(least_load_n))]
+    said = [f"nobody stepped on {one.name}: its force never exceeds {one.load_n.max():.0f} N" for one in empty]
+    return [Finding("note", "empty plate", file, what, "nothing; no step on it is counted") for what in said]
 
 
 def _foot(

@@ -22,9 +22,7 @@ PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR", "L.ASIS", "R.ASIS", "L.PSIS", 
 PREFERRED = ("force", "events", "markers", "angles")
 ENOUGH = 0.8  # of the strides that the most prolific detector sees
 DISAGREEMENT_MS = 50.0  # a twentieth of a stride
-EVENTS_MS = (
-    30.0  # three frames of 100 Hz; in 27 walks of ten laboratories events lie within 22 ms of the plates (median)
-)
+EVENTS_MS = 30.0  # three frames of 100 Hz; events of 27 walks, ten laboratories, lie within 22 ms of plates (median)
 OTHER_FOOT_S = 0.1  # markers are early by 21 to 74 ms, and steps are 0.4 s apart or more
 SAME_STEP_S = 0.4  # less than half a stride: events that were marked this late still belong to the plate's step
 SEEN_LATE = ("markers", "angles")  # detectors that see no ground, so that their contacts need a plate to be right
@@ -199,11 +197,8 @@ def _moved(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Conta
 def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
     """By how much contacts were moved and by what steps, in words; or that nothing shows it, and what is early then."""
     if offset_s is None:
-        what = (
-            f"contacts by {detector}, and no plate recorded a step: contacts are early by about "
-            f"{EARLY_MS[detector]:g} ms in "
-        )
-        what += f"walking ({EARLY_RANGE[detector]} with a plate)"
+        what = f"contacts by {detector}, and no plate recorded a step: contacts are early by about "
+        what += f"{EARLY_MS[detector]:g} ms in walking ({EARLY_RANGE[detector]} with a plate)"
         return Finding("note", "contact offset", file, what, spoils)
     way = "later" if offset_s >= 0 else "earlier"
     what = f"contacts by {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by} too"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,12 +35,20 @@ def filter_null(
     >>> round(filter_null([knee], Filters(), 100.0)["knee_angle_r"], 1)
     0.5
     """
-    of_angles = partial(_angles, filters=filters, rate_hz=kinematics_hz)
-    reached = {"angle": simulate_null(of_angles, round(NOISE_S * kinematics_hz), WALKS).r2}
+    rate_hz = emg_hz or kinematics_hz
+
+    def angles(noise: NDArray[np.float64]) -> Differentiated:
+        smooth = lowpassed(_recording(noise, kinematics_hz, "deg"), filters.kinematics_hz, filters.order)
+        return _differentiated(smooth.values, kinematics_hz)
+
+    def emg(noise: NDArray[np.float64]) -> Differentiated:
+        smooth = envelope_of(_recording(noise, rate_hz, "V"), filters, emg_hz is not None)
+        time = np.arange(round(len(noise) / rate_hz * kinematics_hz)) / kinematics_hz
+        return _differentiated(interpolated(smooth.time, smooth.values, time[:-1]), kinematics_hz)
+
+    reached = {"angle": simulate_null(angles, round(NOISE_S * kinematics_hz), WALKS).r2}
     if any(channel.quantity == "emg" for channel in channels):
-        rate_hz = emg_hz or kinematics_hz
-        of_emg = partial(_emg, filters=filters, rate_hz=rate_hz, base_hz=kinematics_hz, raw=emg_hz is not None)
-        reached["emg"] = simulate_null(of_emg, round(NOISE_S * rate_hz), WALKS).r2
+        reached["emg"] = simulate_null(emg, round(NOISE_S * rate_hz), WALKS).r2
     return {channel.name: reached["emg" if channel.quantity == "emg" else "angle"] for channel in channels}
 
 
@@ -50,17 +57,6 @@ def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
     emg = walk.trial.streams.get("emg")
     emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
     return filter_null(walk.state.channels, filters, walk.state.rate_hz, emg_hz)
-
-
-def _angles(noise: NDArray[np.float64], filters: Filters, rate_hz: float) -> Differentiated:
-    smooth = lowpassed(_recording(noise, rate_hz, "deg"), filters.kinematics_hz, filters.order)
-    return _differentiated(smooth.values, rate_hz)
-
-
-def _emg(noise: NDArray[np.float64], filters: Filters, rate_hz: float, base_hz: float, raw: bool) -> Differentiated:
-    smooth = envelope_of(_recording(noise, rate_hz, "V"), filters, raw)
-    time = np.arange(round(len(noise) / rate_hz * base_hz)) / base_hz
-    return _differentiated(interpolated(smooth.time, smooth.values, time[:-1]), base_hz)
 
 
 def _differentiated(values: NDArray[np.float64], rate_hz: float) -> Differentiated:

@@ -21,10 +21,8 @@ from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.processing.two_sources import MOVES_DEG, line_angles
 from gaitdisc.recording import Finding, Recording, Trial
 
-STAY = (
-    "lengths and widths of steps there; the file's own angles follow the correct labels and are kept; correct the "
-    "labels"
-)
+STAY = "lengths and widths of steps there; the file's own angles follow the correct labels and are kept; "
+STAY += "correct the labels"
 BELOW = {  # angles that hang on a segment where a model is built from the pelvis down, all of them on the pelvis
     "thigh": r"(hip|knee|ankle|foot)_\w+_{0}|{1}(Hip|Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
     "shank": r"(knee|ankle|foot)_\w+_{0}|{1}(Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
@@ -65,11 +63,9 @@ def computed_trial(
     file = moved.angles.source.file or trial.name
     typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
     worst = max(typical, key=lambda name: typical[name])
-    what = (
-        f"markers are {1000.0 * float(np.median([*typical.values()])):.1f} mm from their positions in the static "
-        "trial, "
-    )
-    what += f"the median of {len(typical)} segments; the largest distance is {worst}, {1000.0 * typical[worst]:.1f} mm"
+    median_mm, largest_mm = 1000.0 * float(np.median([*typical.values()])), 1000.0 * typical[worst]
+    what = f"markers are {median_mm:.1f} mm from their positions in the static trial, "
+    what += f"the median of {len(typical)} segments; the largest distance is {worst}, {largest_mm:.1f} mm"
     findings = [*trial.findings, *moved.findings, Finding("note", "residual", file, what, "")]
     steps = None
     if own:
@@ -100,9 +96,8 @@ def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
             said[at] = replace(said[at], spoils=STAY)
             continue
         parts = [(segment[:-2], segment[-1]) for segment in one.segments if segment != "pelvis"]
-        hang = (
-            [BELOW[part].format(side, side.upper()) for part, side in parts] if "pelvis" not in one.segments else [".*"]
-        )
+        hang = [BELOW[part].format(side, side.upper()) for part, side in parts]
+        hang = [".*"] if "pelvis" in one.segments else hang
         lost = [c.quantity == "angle" and any(re.fullmatch(name, c.name) for name in hang) for c in own.channels]
         values[np.outer(one.frames, lost)] = np.nan
     streams = {**trial.streams, "markers": moved.markers, "kinematics": own.with_values(values, own.suspect)}

@@ -42,8 +42,8 @@ SEGMENTS = (
     *((f"{side}.Knee.Lat", f"{side}.Ankle.Lat") for side in "LR"),
     *((f"{side}.Heel", f"{side}.Toe.Tip") for side in "LR"),
 )
-LIMIT = 0.035  # in two distances
-FEWEST_FRAMES = 4  # distances: fewer show nothing
+MOST_LOG_RATIO = 0.035  # between two distances
+FEWEST_DISTANCES = 4  # fewer show nothing
 
 
 def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
@@ -69,11 +69,11 @@ def person_findings(static: Recording, walk: Recording, file: str) -> list[Findi
     """
     standing, walking = segment_distances(static), segment_distances(walk)
     both = [pair for pair in standing if pair in walking and min(standing[pair], walking[pair]) > 0]
-    if len(both) < FEWEST_FRAMES:
+    if len(both) < FEWEST_DISTANCES:
         return []
     apart = {pair: abs(np.log(walking[pair] / standing[pair])) for pair in both}
     worst = sorted(both, key=lambda pair: -apart[pair])[:2]
-    if apart[worst[1]] < LIMIT:
+    if apart[worst[1]] < MOST_LOG_RATIO:
         return []
     said = " and ".join(
         f"{one} to {other} {1000.0 * standing[one, other]:.0f} mm when standing, {1000.0 * walking[one, other]:.0f} "
@@ -119,7 +119,7 @@ class Standing:
         if self.markers is None:
             return ComputedTrial(given_up)
         try:
-            calibration = self._calibration(trial.stream("markers"))
+            calibration = self._calibration(self.markers, trial.stream("markers"))
         except GaitdiscError as error:
             return ComputedTrial(self._without_angles(given_up, self.participant.id, error))
         person, findings = self._person(planned, trial)
@@ -196,7 +196,7 @@ class Standing:
         if self.markers is None or not {"markers", "kinematics"} <= set(trial.streams):
             return trial
         try:
-            found = without_exchanged_markers(trial, self._calibration(trial.stream("markers")))
+            found = without_exchanged_markers(trial, self._calibration(self.markers, trial.stream("markers")))
         except ShapeError as error:
             return self._without_angles(trial, trial.name, error)
         except GaitdiscError:  # markers of no set that is known: nothing is checked
@@ -210,22 +210,22 @@ class Standing:
         self._said.update(new)
         return new
 
-    def _calibration(self, markers: Recording) -> Calibration:
+    def _calibration(self, static: Recording, markers: Recording) -> Calibration:
         """Of the person, with the marker set that the study names or the labels are of."""
         wanted = self.study.kinematics
         named = wanted.marker_set if wanted else ""  # a file lies relative to the study's
         own = self.study.path_of(named) if named.endswith(".toml") else named or None
-        chosen = chosen_marker_set(markers, self.markers, own)
+        chosen = chosen_marker_set(markers, static, own)
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
             kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
-            self._calibrations[chosen.name] = self._calibrated(kept)
+            self._calibrations[chosen.name] = self._calibrated(static, kept)
         return self._calibrations[chosen.name]
 
-    def _calibrated(self, chosen: MarkerSet) -> Calibration:
+    def _calibrated(self, static: Recording, chosen: MarkerSet) -> Calibration:
         """Hips by function where a trial of the session shows them and the study names no others."""
         measures = self._measures(self.planned)
-        body = calibrated(self.markers, chosen, measures)
+        body = calibrated(static, chosen, measures)
         if self.circled is None or (self.study.kinematics and self.study.kinematics.hip):
             return body
         try:
@@ -234,7 +234,7 @@ class Standing:
             file = self.circled.source.file or "the functional trial"
             said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hips by 1 to 2 cm")
             return replace(body, findings=(*body.findings, said))
-        own = calibrated(self.markers, chosen, measures, hips) if hips else body
+        own = calibrated(static, chosen, measures, hips) if hips else body
         return replace(own, findings=(*own.findings, *findings))
 
     def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:

@@ -147,10 +147,8 @@ def walking_part(trial: Trial) -> Trial:
     time, walks = shown
     # half of the second that first shows walking lies behind it: the first step from standing stays, as the last one
     start, end = (float(time[at]) for at in np.flatnonzero(walks)[[0, -1]])
-    start, end = (
-        (start if start - time[0] > LEAST_CUT_S else -np.inf),
-        (end if time[-1] - end > LEAST_CUT_S else np.inf),
-    )
+    start = start if start - time[0] > LEAST_CUT_S else -np.inf
+    end = end if time[-1] - end > LEAST_CUT_S else np.inf
     cut = [f"{time[0]:.1f} to {start:.1f} s"] if np.isfinite(start) else []
     cut += [f"{end:.1f} to {time[-1]:.1f} s"] if np.isfinite(end) else []
     if not cut:

@@ -95,10 +95,9 @@ class Strides:
     def _repr_html_(self) -> str:
         rows = [("strides", str(len(self))), ("side", self.side), ("contacts by", self.detector)]
         if len(self):
-            lasting = (
-                f"{self.duration_s.min():.2f} to {self.duration_s.max():.2f} s, mean {self.duration_s.mean():.2f} s"
-            )
-            rows.append(("duration", lasting))
+            lasting = self.duration_s
+            words = f"{lasting.min():.2f} to {lasting.max():.2f} s, mean {lasting.mean():.2f} s"
+            rows.append(("duration", words))
         rows += [(f"dropped at {one.start:.2f} s", one.reason) for one in self.dropped[:4]]
         return html_of("Strides", rows)
 

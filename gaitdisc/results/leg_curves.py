@@ -15,9 +15,7 @@ from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL, PooledCycles
 FEET = ("l", "r")
 TURNED_DEG = 20.0  # by which the pelvis turns in the laboratory from contact to contact where somebody walks a curve
 LIGHTEST_N = 50.0  # mean force of both feet; below it nobody stands on the belts
-KNOWN_UNTIL = (
-    91  # points of a moment or power; after the next foot meets a plate that is not known its end may be empty
-)
+KNOWN_UNTIL = 91  # points of a moment or power; its end may be empty after the next foot meets an unknown plate
 ALONG_THE_PATH = ("pelvis_rotation", "foot_progression")  # angles about a straight line of walking
 KINEMATICS, MOMENTS, POWERS, FORCES = "kinematics", "moments", "powers", "forces"
 # The nine curves of the movement analysis profile (Baker et al. 2009), those of the pelvis first.
@@ -93,11 +91,9 @@ def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
                 whole = each[np.isfinite(each[:, :must]).all(axis=1)]
                 if len(whole):
                     cycles[variable.name] = variable.sign(side) * whole
-        turned = (
-            float(np.abs(np.ptp(cycles["pelvis_rotation"][:, [0, -1]], axis=1)).mean())
-            if "pelvis_rotation" in cycles
-            else 0.0
-        )
+        turned = 0.0
+        if "pelvis_rotation" in cycles:
+            turned = float(np.abs(np.ptp(cycles["pelvis_rotation"][:, [0, -1]], axis=1)).mean())
         if turned > TURNED_DEG:
             cycles = {name: each for name, each in cycles.items() if name not in ALONG_THE_PATH}
         values = {value: kept.loc[own, value].dropna().to_numpy(float) for value in SPATIOTEMPORAL}

@@ -76,25 +76,18 @@ def short_run_findings(
     max_gap_s: longest gap that is bridged [s]
     """
     bridged = filled(recording, None, max_gap_s)
-    need = needed_samples(cutoff_hz, recording.rate_hz, order)
+    need, file = needed_samples(cutoff_hz, recording.rate_hz, order), recording.source.file
     findings = []
     for column, channel in enumerate(recording.channels):
         short = np.zeros(len(recording.time), bool)
         for start, end in runs(np.isfinite(bridged.values[:, column])):
             short[start:end] = end - start < need
         if short.any():
-            findings.append(
-                Finding(
-                    "warning",
-                    "short run",
-                    recording.source.file,
-                    f"{len(runs(short))} segment(s) between gaps shorter than {need} samples "
-                    f"({need / recording.rate_hz:.3f} s)",
-                    f"these segments: a filter of {cutoff_hz:g} Hz needs {need} samples; they are excluded",
-                    channel.name,
-                    spans_s(recording.time, short),
-                )
-            )
+            what = f"{len(runs(short))} segment(s) between gaps shorter than {need} samples "
+            what += f"({need / recording.rate_hz:.3f} s)"
+            spoils = f"these segments: a filter of {cutoff_hz:g} Hz needs {need} samples; they are excluded"
+            spans = spans_s(recording.time, short)
+            findings.append(Finding("warning", "short run", file, what, spoils, channel.name, spans))
     return findings
 
 

@@ -54,16 +54,9 @@ def channel_findings(recording: Recording) -> list[Finding]:
         if not np.isfinite(x).any() or channel.quantity == "emg":
             continue
         if np.nanmax(x) == np.nanmin(x):
-            findings.append(
-                Finding(
-                    "note",
-                    "flat",
-                    recording.source.file,
-                    f"{np.nanmax(x):.4g} {channel.unit} throughout",
-                    "the channel as an output: the coordinate is locked, or nothing was measured",
-                    channel.name,
-                )
-            )
+            what = f"{np.nanmax(x):.4g} {channel.unit} throughout"
+            spoils = "the channel as an output: the coordinate is locked, or nothing was measured"
+            findings.append(Finding("note", "flat", recording.source.file, what, spoils, channel.name))
             continue
         rests = channel.quantity in REST_QUANTITIES
         for kind, marks in (("clipped", clipped(x, rests)), ("jump", np.zeros(len(x), bool) if rests else jumping(x))):
@@ -123,9 +116,8 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
     }
     what, spoils = words[kind]
     where = f"in {places} place{'s' if places > 1 else ''}, {seconds:.2f} s in all"
-    return Finding(
-        "warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans_s(recording.time, marks)
-    )
+    spans = spans_s(recording.time, marks)
+    return Finding("warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans)
 
 
 def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:
@@ -180,17 +172,9 @@ def drift_findings(forces: Recording) -> list[Finding]:
         what = f"reads {offset:+.1f} N when unloaded (median of {len(baseline)} swings)"
         if drifts:
             what += f" and drifts by {drift:+.1f} N in {time[-1] - time[0]:.0f} s ({60 * slope:+.1f} N per minute)"
-        findings.append(
-            Finding(
-                "warning",
-                "force drift",
-                forces.source.file,
-                what,
-                f"contacts near the threshold of {RISE_N:g} N, and moments; subtract the baseline",
-                channel.name,
-                ((float(time[0]), float(time[-1])),),
-            )
-        )
+        spoils = f"contacts near the threshold of {RISE_N:g} N, and moments; subtract the baseline"
+        spans = ((float(time[0]), float(time[-1])),)
+        findings.append(Finding("warning", "force drift", forces.source.file, what, spoils, channel.name, spans))
     return findings
 
 
@@ -248,20 +232,15 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
 
     kinematics: joint angles [deg]
     """
-    return [
-        Finding(
-            "warning",
-            "plateau",
-            kinematics.source.file,
-            f"stops at {plateau.limit:.1f} deg in {len(runs(plateau.marks))} places, "
-            f"{100 * plateau.marks.mean():.0f} % of the samples",
-            "velocity and acceleration there; widen the range of the coordinate in the model and repeat the inverse "
-            "kinematics",
-            plateau.channel,
-            spans_s(kinematics.time, plateau.marks),
-        )
-        for plateau in plateaus(kinematics)
-    ]
+    findings, file = [], kinematics.source.file
+    spoils = "velocity and acceleration there; widen the range of the coordinate in the model and repeat the inverse "
+    spoils += "kinematics"
+    for plateau in plateaus(kinematics):
+        what = f"stops at {plateau.limit:.1f} deg in {len(runs(plateau.marks))} places, "
+        what += f"{100 * plateau.marks.mean():.0f} % of the samples"
+        spans = spans_s(kinematics.time, plateau.marks)
+        findings.append(Finding("warning", "plateau", file, what, spoils, plateau.channel, spans))
+    return findings
 
 
 def plateau_marked(kinematics: Recording) -> Recording:

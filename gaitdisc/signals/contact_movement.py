@@ -12,7 +12,7 @@ strides counted from a plate; `processing.contact_choice` takes it off where a p
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -226,14 +226,7 @@ def marker_foot_off(
     needed = {f"{name}.{axis}" for name in (toe, *pelvis) for axis in "xyz"}
     bridged = filled(markers.selected([name for name in markers.names if name in needed]))
     swung = marker_position(bridged, toe) - pelvis_position(bridged, pelvis)
-    found = []
-    for start, end in windows:
-        first, last = np.searchsorted(markers.time, [start, end])
-        if last - first < 3:
-            continue
-        behind = direction.ahead(swung, (first + last) // 2)[first:last]
-        found.append(_lowest(markers.time[first:last], behind))
-    return _known(found)
+    return _lowest_in(windows, markers.time, lambda middle: direction.ahead(swung, middle))
 
 
 def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
@@ -243,12 +236,22 @@ def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[tuple[fl
     windows sequence of (float, float): from `stance_windows` [s]
     """
     smooth = lowpassed(kinematics.selected([ankle]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
-    found = []
+    return _lowest_in(windows, smooth.time, lambda _: smooth.values[:, 0])
+
+
+def _lowest_in(
+    windows: Sequence[tuple[float, float]],
+    time: NDArray[np.float64],
+    course: Callable[[int], NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """Times [s] at which a course (time,), as it is for the middle sample of a window, is lowest in each window."""
+    times = []
     for start, end in windows:
-        first, last = np.searchsorted(smooth.time, [start, end])
+        first, last = np.searchsorted(time, [start, end])
         if last - first >= 3:
-            found.append(_lowest(smooth.time[first:last], smooth.values[first:last, 0]))
-    return _known(found)
+            times.append(_lowest(time[first:last], course((first + last) // 2)[first:last]))
+    found = np.asarray(times, float)
+    return np.unique(found[np.isfinite(found)])
 
 
 def _lowest(time: NDArray[np.float64], x: NDArray[np.float64]) -> float:
@@ -262,8 +265,3 @@ def _lowest(time: NDArray[np.float64], x: NDArray[np.float64]) -> float:
     bend = left - 2 * centre + right
     share = 0.5 * (left - right) / bend if bend > 0 else 0.0
     return float(time[low] + share * (time[1] - time[0]))
-
-
-def _known(found: list[float]) -> NDArray[np.float64]:
-    times = np.asarray(found, float)
-    return np.unique(times[np.isfinite(times)])

@@ -181,17 +181,10 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
                 wrong.append((float(start), float(end)))
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
-            findings.append(
-                Finding(
-                    "warning",
-                    "crossover",
-                    file,
-                    f"{len(wrong)} of {len(one) - 1} strides of side {one.side} without one contact of side "
-                    f"{other.side} inside: at {at} s",
-                    "these strides: a contact was missed, or a foot stepped on the other plate or belt",
-                    spans=tuple(wrong),
-                )
-            )
+            what = f"{len(wrong)} of {len(one) - 1} strides of side {one.side} without one contact of side "
+            what += f"{other.side} inside: at {at} s"
+            spoils = "these strides: a contact was missed, or a foot stepped on the other plate or belt"
+            findings.append(Finding("warning", "crossover", file, what, spoils, spans=tuple(wrong)))
     return findings
 
 

@@ -159,14 +159,12 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         if ends.mean() >= RAILS_SHARE > at_rail.mean():
             at_rail, rail = ends, f"limits of this channel, {bottom:.3g} and {top:.3g} V"
         size = f"standard deviation {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
+        at_rails = f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}"
         clipped = at_rail.mean() >= CLIPPED_SHARE
         silent = 1.4826 * float(np.median(np.abs(known - np.median(known)))) / limit.volts
         if clipped and silent < SILENT_SHARE <= share:
             kind, severity = "dead", "refused"
-            what = (
-                f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}; between them is only "
-                "noise "
-            )
+            what = f"{at_rails}; between them is only noise "
             what += f"(robust standard deviation {1e3 * silent * limit.volts:.3g} mV)"
         elif share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
             limit_share = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
@@ -177,13 +175,10 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
             kind, severity, what = "unplugged", "refused", f"{size} {rail}; no muscle exceeds 50 %"
         elif at_rail.mean() >= RAILS_SHARE and burst_ratio(x, emg.rate_hz) < FLAT_BURST:
             kind, severity = "unplugged", "refused"
-            what = (
-                f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}, without bursts "
-                "between them"
-            )
+            what = f"{at_rails}, without bursts between them"
         elif clipped:
             kind, severity = "clipped", "warning"
-            what = f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}"
+            what = at_rails
         else:
             continue
         spoils = "the peaks of the envelope there" if kind == "clipped" else "the channel, which is excluded"
@@ -266,9 +261,9 @@ def other_unit_findings(
     if max(weak, strong) < AGREE:
         return []
     ratio = float(np.median(ratios))
-    how, looks, stated = (
-        (f"{1 / ratio:.0f} times weaker", "V", "mV") if ratio < 1 else (f"{ratio:.0f} times stronger", "mV", "V")
-    )
+    how, looks, stated = f"{ratio:.0f} times stronger", "mV", "V"
+    if ratio < 1:
+        how, looks, stated = f"{1 / ratio:.0f} times weaker", "V", "mV"
     what = f"EMG is {how} than in {other} (median of {len(common)} channels). The numbers look like {looks}, but "
     what += f"{stated} is stated; or those of {other} look like {stated}, but {looks} is stated"
     return [Finding("warning", "EMG unit", trial, what, "EMG; state the unit in [channels], or export the file again")]

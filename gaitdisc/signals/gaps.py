@@ -90,21 +90,14 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
         longest = max(end - start for start, end in spans)
         missing = sum(end - start for start, end in spans)
         fits = longest <= max_gap_s + 1e-9  # at an end too: a recording that begins so much later lacks nothing
+        what = f"{len(spans)} gap{'s' if len(spans) > 1 else ''}, {missing:.3f} s of {recording.duration_s:.2f} s, "
+        what += f"the longest {longest:.3f} s"
         spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {max_gap_s:g} s; these are excluded"
-        findings.append(
-            Finding(
-                "note" if fits else "warning",
-                "gap",
-                recording.source.file,
-                f"{len(spans)} gap{'s' if len(spans) > 1 else ''}, {missing:.3f} s of {recording.duration_s:.2f} s, "
-                f"the longest {longest:.3f} s",
-                "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
-                if fits
-                else spoils,
-                channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name,
-                spans,
-            )
-        )
+        if fits:
+            spoils = "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
+        name = channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name
+        severity, file = "note" if fits else "warning", recording.source.file
+        findings.append(Finding(severity, "gap", file, what, spoils, name, spans))
     return findings
 
 
@@ -209,16 +202,9 @@ def spike_findings(recording: Recording) -> list[Finding]:
         at = int(np.argmax(outside))
         places, known = len(runs(here)), np.flatnonzero(np.isfinite(rest))
         beside = rest[known[np.abs(known - at).argmin()]]
-        findings.append(
-            Finding(
-                "warning",
-                "spike",
-                recording.source.file,
-                f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) next to {beside:.4g} "
-                f"{channel.unit}; {places} place{'s' if places > 1 else ''} in all",
-                "nothing: removed before the filter, interpolated where short, and marked",
-                channel.name,
-                spans_s(recording.time, here),
-            )
-        )
+        what = f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) next to {beside:.4g} "
+        what += f"{channel.unit}; {places} place{'s' if places > 1 else ''} in all"
+        spoils = "nothing: removed before the filter, interpolated where short, and marked"
+        file, spans = recording.source.file, spans_s(recording.time, here)
+        findings.append(Finding("warning", "spike", file, what, spoils, channel.name, spans))
     return findings

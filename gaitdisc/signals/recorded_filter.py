@@ -27,9 +27,7 @@ LEAST = 1e-32  # power, of the strongest line: beyond the digits of a number
 BOUNDS = ((-90, 9), (-90, 9), (-5, 8), (-90, 9), (np.log(2e-3), np.log(0.45)))  # logarithms
 HIGHEST = 0.2  # cut-off, of the rate: one above leaves too little to be seen
 FALLEN = 1e3  # times the power just below half the rate, which there is just above the cut-off at least
-FALLING = (
-    30.0  # times the power just below half the rate, which there is at a quarter of the rate, where nothing is rounded
-)
+FALLING = 30.0  # times the power just below half the rate: power at a quarter of the rate where nothing is rounded
 ROUNDED = 100.0  # times the power of rounding, below which a floor is one of digits and not of a sensor
 SPREAD = 1e-8  # of the strongest line: what the window itself spreads, and no sensor is so quiet
 CLEARLY = 60.0  # by which the log likelihood must be better with the filter than without

@@ -85,19 +85,14 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
         if not len(rows):
             continue
         worst = rows[np.argmax(distance[rows, column])]
-        findings.append(
-            Finding(
-                "warning",
-                "outlying stride",
-                recording.source.file,
-                f"{len(rows)} of {len(strides)} strides of side {strides.side}, the worst at "
-                f"{strides.start[worst]:.2f} s: {distance[worst, column]:.3g} {channel.unit} from the median "
-                f"curve, {distance[worst, column] / np.nanmedian(distance[:, column]):.1f} times the usual distance",
-                "means and models that include these strides",
-                channel.name,
-                tuple((float(strides.start[k]), float(strides.end[k])) for k in rows),
-            )
-        )
+        times = distance[worst, column] / np.nanmedian(distance[:, column])
+        what = f"{len(rows)} of {len(strides)} strides of side {strides.side}, the worst at "
+        what += f"{strides.start[worst]:.2f} s: {distance[worst, column]:.3g} {channel.unit} from the median "
+        what += f"curve, {times:.1f} times the usual distance"
+        spoils = "means and models that include these strides"
+        spans = tuple((float(strides.start[k]), float(strides.end[k])) for k in rows)
+        file = recording.source.file
+        findings.append(Finding("warning", "outlying stride", file, what, spoils, channel.name, spans))
     return findings
 
 
@@ -124,9 +119,8 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
         times = distance[k] / usual
         column = int(np.argmax(np.where(far[k], times, 0.0)))
         more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
-        reason = (
-            f"outlying: {recording.names[column]}{more} {times[column]:.1f} times the usual distance from the median"
-        )
+        reason = f"outlying: {recording.names[column]}{more} {times[column]:.1f} times the usual distance "
+        reason += "from the median"
         dropped.append(DroppedStride(float(strides.start[k]), float(strides.end[k]), reason))
     return replace(strides, start=strides.start[~out], end=strides.end[~out], dropped=(*strides.dropped, *dropped))
 
@@ -211,17 +205,11 @@ def late_change_findings(recording: Recording, strides: Strides, alpha: float = 
     largest = sorted(change.shifts, key=lambda name: -change.shifts[name])[:3]
     units = {channel.name: channel.unit for channel in recording.channels}
     moved = ", ".join(f"{name} by {change.shifts[name]:.2g} {units[name]}" for name in largest)
-    return [
-        Finding(
-            "warning",
-            "late change" if change.size_sd >= CHANGE_SD else "drift",
-            file,
-            f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} "
-            f"stride-to-stride SD (p = {change.p:.3f}): {moved} (root mean square over the stride)",
-            "a model trained before the change and tested after it; exclude the trial, or cut it there",
-            spans=((change.time, float(strides.end[-1])),),
-        )
-    ]
+    kind, spans = "late change" if change.size_sd >= CHANGE_SD else "drift", ((change.time, float(strides.end[-1])),)
+    what = f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} "
+    what += f"stride-to-stride SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"
+    spoils = "a model trained before the change and tested after it; exclude the trial, or cut it there"
+    return [Finding("warning", kind, file, what, spoils, spans=spans)]
 
 
 def _components(curves: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column
 from manufactured_body import (
     ANKLE_WIDTH,
     DEPTH,
@@ -138,10 +139,9 @@ def test_the_person_may_stand_still_in_a_part_of_the_trial_only():
 
 def test_a_marker_with_gaps_and_one_frame_are_enough():
     static = static_of(RAJAGOPAL)
-    values = np.array(static.values)
-    values[10:, static.index("RCAL.x")] = np.nan
+    lost = with_column(static, "RCAL.x", np.nan, slice(10, None))
     expected = calibrated(static, marker_set("rajagopal")).points["foot_r"]["heel_r"]
-    for recording in (static.with_values(values), static.between(0, 0.005)):
+    for recording in (lost, static.between(0, 0.005)):
         found = calibrated(recording, marker_set("rajagopal")).points["foot_r"]["heel_r"]
         np.testing.assert_allclose(found, expected, atol=1e-9)
 
@@ -153,10 +153,8 @@ def test_a_marker_missing_in_the_static_trial_is_named():
 
 def test_a_marker_never_seen_in_the_static_trial_is_missing():
     static = static_of(RAJAGOPAL)
-    values = np.array(static.values)
-    values[:, static.index("RMFC.x")] = np.nan
     with pytest.raises(ChannelError, match=r"static\.c3d has no RMFC\."):
-        calibrated(static.with_values(values), marker_set("rajagopal"))
+        calibrated(with_column(static, "RMFC.x", np.nan), marker_set("rajagopal"))
 
 
 def test_too_few_markers_to_follow_a_segment_are_refused():

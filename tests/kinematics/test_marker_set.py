@@ -8,12 +8,10 @@ from manufactured_body import MEASURES, PLUG_IN_GAIT, known_angles, markers_of, 
 
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.marker_set import (
-    choices,
     marker_set,
     read_marker_set,
     recognised_marker_set,
     shipped_marker_sets,
-    sided,
 )
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.motion import moved_body
@@ -128,16 +126,6 @@ def test_labels_of_no_set_name_the_nearest_one():
     plain = [label for label in marker_labels(static_of(PLUG_IN_GAIT)) if label != "RTHI"]
     with pytest.raises(ChannelError, match=r"a\.c3d.*RASI.*plug_in_gait.*RTHI"):
         recognised_marker_set(plain, plain, "a.c3d")
-
-
-@pytest.mark.parametrize(("name", "right"), [("{S}ASI", "RASI"), ("knee_{s}", "knee_r"), ("{side} knee", "right knee")])
-def test_a_side_is_written_in_three_ways(name, right):
-    assert sided(name, "r") == right
-
-
-def test_choices_and_midpoints():
-    assert choices("SACR | LPSI + RPSI") == [("SACR",), ("LPSI", "RPSI")]
-    assert choices("") == []
 
 
 def test_the_first_choice_that_is_there_is_the_landmark():

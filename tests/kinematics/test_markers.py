@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from scipy.spatial.transform import Rotation
 from texts import says
 
@@ -19,8 +20,7 @@ from gaitdisc.recording import Recording
 
 
 def recording(places: np.ndarray, labels: tuple[str, ...]) -> Recording:
-    channels = tuple(Channel(f"{label}.{axis}", "marker", "m") for label in labels for axis in "xyz")
-    return Recording(np.arange(len(places)) / 100, places.reshape(len(places), -1), channels)
+    return markers_at(np.arange(len(places)) / 100, dict(zip(labels, places.swapaxes(0, 1), strict=True)))
 
 
 def test_places_are_those_of_the_channels():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from manufactured_body import (
@@ -46,13 +47,6 @@ def laboratory(seed: int) -> Laboratory:
     upwards = [np.eye(3), Rotation.from_euler("x", 90, degrees=True).as_matrix(),
                Rotation.from_euler("z", -90, degrees=True).as_matrix()][seed % 3]  # fmt: skip
     return Laboratory(upwards @ level, random.normal(size=3))
-
-
-def with_gap(recording: Recording, marker: str, first: int, last: int) -> Recording:
-    values = np.array(recording.values)
-    for axis in "xyz":
-        values[first:last, recording.index(f"{marker}.{axis}")] = np.nan
-    return recording.with_values(values)
 
 
 def check_angles(angles: Recording, known: dict[str, np.ndarray], atol: float = 1e-9) -> None:
@@ -130,7 +124,7 @@ def test_the_pelvis_is_followed_in_the_walker_s_frame():
 
 def test_missing_markers_are_bridged_and_counted():
     known = known_angles(150)
-    markers = with_gap(markers_of(known, RAJAGOPAL), "RTH2", 20, 50)
+    markers = with_column(markers_of(known, RAJAGOPAL), "RTH2", np.nan, slice(20, 50))
     found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
     check_angles(found.angles, known)
     bridged = next(finding for finding in found.findings if finding.kind == "bridged")
@@ -147,7 +141,7 @@ def test_joints_carry_a_segment_that_has_lost_its_markers():
     known = known_angles(150)
     markers = markers_of(known, RAJAGOPAL)
     for label in ("RTB1", "RTB2", "RTB3"):
-        markers = with_gap(markers, label, 60, 70)
+        markers = with_column(markers, label, np.nan, slice(60, 70))
     found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
     check_angles(found.angles, known, 1e-6)
 
@@ -156,7 +150,7 @@ def test_joints_carry_a_segment_that_has_lost_its_markers():
 def test_a_marker_of_three_on_the_pelvis_is_bridged_by_the_legs(lost):
     """Plug-in Gait has three markers there; where one is missing, both hips carry the other two."""
     known = known_angles(150)
-    markers = with_gap(markers_of(known, PLUG_IN_GAIT), lost, 20, 50)
+    markers = with_column(markers_of(known, PLUG_IN_GAIT), lost, np.nan, slice(20, 50))
     found = motion(markers, calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
     check_angles(found.angles, known, 1e-6)
     assert any(finding.kind == "bridged" and "30 of 150 frames" in finding.what for finding in found.findings)
@@ -166,7 +160,7 @@ def test_a_marker_of_three_on_the_pelvis_is_bridged_by_the_legs(lost):
 
 def test_where_too_few_markers_are_left_the_angles_are_missing_and_said():
     known = known_angles(150)
-    markers = with_gap(markers_of(known, PLUG_IN_GAIT), "RTHI", 20, 50)  # its wand alone shows how a thigh is turned
+    markers = with_column(markers_of(known, PLUG_IN_GAIT), "RTHI", np.nan, slice(20, 50))
     found = motion(markers, calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
     missing = {name: int(np.isnan(found.angles[name]).sum()) for name in found.angles.names}
     assert missing["knee_angle_r"] == missing["hip_flexion_r"] == 30

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column
 from manufactured_body import (
     MEASURES,
     PLUG_IN_GAIT,
@@ -249,9 +250,7 @@ def test_known_angles_come_back(speed):
 
 def test_frames_without_a_pose_are_empty_and_counted():
     segments = segments_of(known_angles(200))
-    values = np.array(segments.values)
-    values[20:30, [segments.index(name) for name in segments.names if name.startswith("l_shank")]] = np.nan
-    angles, findings = segment_angles(segments.with_values(values))
+    angles, findings = segment_angles(with_column(segments, "l_shank", np.nan, slice(20, 30)))
     assert np.isnan(angles["knee_angle_l"][20:30]).all() and np.isfinite(angles["knee_angle_r"]).all()
     (said,) = [finding.what for finding in findings if finding.kind == "gap"]
     assert says(said, "l_shank:", "10 of 200 frames")
@@ -261,7 +260,6 @@ def test_a_segment_that_is_missing_and_axes_that_are_none_are_refused():
     segments = segments_of(known_angles(50))
     with pytest.raises(ChannelError, match=r"theia\.c3d.*no r_foot.*l_foot, l_shank, l_thigh"):
         segment_angles(segments.selected([name for name in segments.names if not name.startswith("r_foot")]))
-    values = np.array(segments.values)
-    values[9, segments.index("l_thigh.r11")] *= 1.2
+    longer = with_column(segments, "l_thigh.r11", 1.2 * segments["l_thigh.r11"][9:10], slice(9, 10))
     with pytest.raises(ShapeError, match=r"theia\.c3d: l_thigh.*frame 10"):
-        segment_angles(segments.with_values(values))
+        segment_angles(longer)

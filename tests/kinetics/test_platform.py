@@ -5,6 +5,7 @@ from dataclasses import replace
 import ezc3d
 import numpy as np
 import pytest
+from changed_trials import with_column, with_stream
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
@@ -88,12 +89,9 @@ def test_forces_without_a_place_are_refused():
 
 def test_a_force_without_its_point_is_refused(gait_data):
     trial = read_trial(gait_data.parent / "opensim_gait10dof" / "ExperimentalData" / "subject01_walk_grf.mot")
-    forces = trial.stream("forces")
-    values = np.array(forces.values)
-    values[120:130, forces.index("ground_force_l_px")] = np.nan
-    broken = replace(trial, streams={"forces": replace(forces, values=values)})
+    broken = with_column(trial.stream("forces"), "ground_force_l_px", np.nan, slice(120, 130))
     with pytest.raises(ReadError, match=r"ground_force_l.*_grf.mot.*\d+ N.*0\.200 s.*10"):
-        platforms(broken)
+        platforms(with_stream(trial, "forces", broken))
 
 
 # Each weighs its person: mass from PROCESSING of the file; young_straight_and_turn and young_static, all of them

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from texts import says
 
 from gaitdisc.channel import Channel
@@ -100,8 +101,7 @@ def test_nothing_to_find_contacts_in(trial):
 
 
 def markers(*names):
-    channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in names for axis in "xyz")
-    return Recording(np.arange(10) / 100, np.zeros((10, len(channels))), channels)
+    return markers_at(np.arange(10) / 100, {name: np.zeros((10, 3)) for name in names})
 
 
 def test_markers_by_the_names_of_the_laboratories():

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from changed_trials import with_column
 from texts import says
 
 from gaitdisc.batch.run_study import run_study
@@ -12,10 +13,9 @@ from gaitdisc.processing.inspection import inspected_file, inspected_study
 
 @pytest.fixture
 def folder(trial, tmp_path):
-    write_storage(trial.stream("kinematics"), tmp_path / "good.mot")
-    broken = np.array(trial.stream("kinematics").values)
-    broken[500:560, 3] = np.nan
-    write_storage(trial.stream("kinematics").with_values(broken), tmp_path / "gappy.mot")
+    good = trial.stream("kinematics")
+    write_storage(good, tmp_path / "good.mot")
+    write_storage(with_column(good, good.names[3], np.nan, slice(500, 560)), tmp_path / "gappy.mot")
     (tmp_path / "empty.mot").write_text("")
     return tmp_path
 

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column, with_stream
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.cohort.marker_trial import marker_trial
@@ -57,9 +58,7 @@ def test_strides_are_those_of_the_foot(walk, record):
 def test_moments_per_kg_need_a_mass(trial, record):
     per_kg = trial.stream("moments")
     channel = Channel("ankle_angle_r_moment", "moment", "N m/kg", "r")
-    lighter = replace(
-        trial, streams={**trial.streams, "moments": replace(per_kg, values=per_kg.values / 60.0, channels=(channel,))}
-    )
+    lighter = with_stream(trial, "moments", replace(per_kg, values=per_kg.values / 60.0, channels=(channel,)))
     again = joint_record(lighter, STUDY, "ankle_angle", 60.0)
     np.testing.assert_allclose(again.moment, record.moment, atol=1e-9)
     with pytest.raises(UnitError, match=r"m/kg.*no.*mass_kg"):
@@ -75,13 +74,13 @@ def test_markers_of_the_foot_say_what_a_kilogram_there_would_add(record):
 
 def test_radians_that_say_degrees_are_refused(trial):
     angles = trial.stream("kinematics")
-    small = replace(trial, streams={**trial.streams, "kinematics": replace(angles, values=np.radians(angles.values))})
+    small = with_stream(trial, "kinematics", replace(angles, values=np.radians(angles.values)))
     with pytest.raises(UnitError, match=r"more.*2 deg.*ankle_angle_r.*0.\d+ deg.*inDegrees=no"):
         joint_record(small, STUDY, "ankle_angle", None)
 
 
 def test_a_leg_without_electrodes_is_refused(trial):
-    bare = replace(trial, streams={**trial.streams, "emg": trial.stream("emg").selected(["emg_sol_l"])})
+    bare = with_stream(trial, "emg", trial.stream("emg").selected(["emg_sol_l"]))
     with pytest.raises(ChannelError, match=r"EMG.*'r'.*none.*\[strides\]"):
         joint_record(bare, STUDY, "ankle_angle", None)
 
@@ -89,11 +88,8 @@ def test_a_leg_without_electrodes_is_refused(trial):
 def test_an_electrode_that_is_an_envelope_already_is_taken_as_one_beside_raw_ones(trial, record):
     """As in the EMG of a published walk, where some muscles swing about zero and others never fall below it."""
     raw = trial.stream("emg")
-    column, values = raw.index("emg_sol_r"), np.array(raw.values)
-    values[:, column] = np.interp(raw.time, record.time, record.envelopes[:, 4])
-    mixed = joint_record(
-        replace(trial, streams={**trial.streams, "emg": replace(raw, values=values)}), STUDY, "ankle_angle", None
-    )
+    envelope = with_column(raw, "emg_sol_r", np.interp(raw.time, record.time, record.envelopes[:, 4]))
+    mixed = joint_record(with_stream(trial, "emg", envelope), STUDY, "ankle_angle", None)
     np.testing.assert_allclose(mixed.envelopes[:, 3], record.envelopes[:, 3])
     assert np.corrcoef(mixed.envelopes[:, 4], record.envelopes[:, 4])[0, 1] > 0.98
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column, with_stream
 from texts import says
 
 from gaitdisc.channel import Channel
@@ -60,10 +61,7 @@ def test_a_trial_without_a_clean_step_says_why_it_has_no_moments(young):
 
 def test_a_heel_marker_that_is_missing_for_a_moment_costs_nothing(young):
     walk, body, _ = young
-    markers = walk.stream("markers")
-    values = np.array(markers.values)
-    values[45:53, [markers.index(f"RHEE.{axis}") for axis in "xyz"]] = np.nan
-    blind = replace(walk, streams={**walk.streams, "markers": replace(markers, values=values)})
+    blind = with_stream(walk, "markers", with_column(walk.stream("markers"), "RHEE", np.nan, slice(45, 53)))
     whole, bridged = (computed_trial(one, body, Person(45.8)).trial.stream("moments") for one in (walk, blind))
     step = np.isfinite(whole["knee_angle_r_moment"])
     assert step[45:53].all()

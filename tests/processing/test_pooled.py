@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_stream
 from texts import says
 
 from gaitdisc.channel import Channel
@@ -62,7 +63,7 @@ def test_a_child_s_foot_is_on_the_ground_at_its_own_weight():
     forces = trial.stream("forces")
     ramp = np.ones(round(0.2 * forces.rate_hz)) / round(0.2 * forces.rate_hz)
     slow = np.column_stack([np.convolve(column > 50, ramp, "same") for column in forces.values.T])
-    light = replace(trial, streams={**trial.streams, "forces": forces.with_values(140.0 * slow)})
+    light = with_stream(trial, "forces", forces.with_values(140.0 * slow))
     starts = {}
     for mass in (None, 15.0):
         person = Participant(id="P01", mass_kg=mass, trials=_planned(1))
@@ -142,7 +143,7 @@ def test_swapped_sides_are_refused(pieces):
     channels = tuple(
         replace(c, name=c.name[:-1] + swap[c.side], side=swap[c.side]) if c.side else c for c in kinematics.channels
     )
-    swapped = replace(pieces[0], streams={**pieces[0].streams, "kinematics": replace(kinematics, channels=channels)})
+    swapped = with_stream(pieces[0], "kinematics", replace(kinematics, channels=channels))
     study, person = _study(_planned(1), **OVERGROUND)
     (found,) = pooled_cycles(study, person, lambda _: swapped)
     assert "left and right are exchanged" in found.refusals[0].reason

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column, with_stream
 from scipy.signal import butter, sosfreqz
 
 from gaitdisc.channel import Channel
@@ -16,7 +17,7 @@ from gaitdisc.statistics.r2 import analytic_null
 
 
 def with_values(trial, key, values):
-    return replace(trial, streams={**trial.streams, key: trial.stream(key).with_values(values)})
+    return with_stream(trial, key, trial.stream(key).with_values(values))
 
 
 def test_a_walk_is_filtered_cut_and_differentiated(trial, study):
@@ -65,11 +66,11 @@ def test_a_missing_angle_names_the_nearest(trial, study):
 
 
 def test_a_dead_muscle_is_refused_by_name(trial, study):
-    values = np.array(trial.stream("emg").values)
-    values[:, trial.stream("emg").index("emg_sol_r")] *= 1e-9
+    emg = trial.stream("emg")
+    dead = with_column(emg, "emg_sol_r", 1e-9 * emg["emg_sol_r"])
     models = Models(emg=("emg_sol_r", "emg_ta_r"), outputs=("ankle_angle_r",))
     with pytest.raises(ChannelError, match=r"EMG.*emg_sol_r.*emg_sol_r"):
-        processed(with_values(trial, "emg", values), study.model_copy(update={"models": models}))
+        processed(with_stream(trial, "emg", dead), study.model_copy(update={"models": models}))
 
 
 def test_swapped_sides_are_refused(trial, study):
@@ -81,25 +82,22 @@ def test_swapped_sides_are_refused(trial, study):
 
 
 def test_a_plateau_is_found_and_its_accelerations_are_left_out(trial, study):
-    values = np.array(trial.stream("kinematics").values)
-    hip = trial.stream("kinematics").index("hip_flexion_r")
-    values[:, hip] = np.maximum(values[:, hip], -8.0)
-    walk = processed(with_values(trial, "kinematics", values), study)
+    free = trial.stream("kinematics")
+    held = with_column(free, "hip_flexion_r", np.maximum(free["hip_flexion_r"], -8.0))
+    walk = processed(with_stream(trial, "kinematics", held), study)
     assert any(f.kind == "plateau" and f.channel == "hip_flexion_r" for f in walk.findings)
-    assert not walk.trajectory.usable[values[:, hip] == -8.0, hip].any()
+    assert not walk.trajectory.usable[held["hip_flexion_r"] == -8.0, held.index("hip_flexion_r")].any()
 
 
 @pytest.mark.parametrize(("samples", "kept"), [(8, True), (15, True), (40, False)])
 def test_gaps_are_bridged_by_spline_then_by_the_mean_stride_then_not(trial, study, samples, kept):
-    values = np.array(trial.stream("kinematics").values)
-    hip = trial.stream("kinematics").index("hip_rotation_r")
-    true = values[2000 : 2000 + samples, hip].copy()
-    values[2000 : 2000 + samples, hip] = np.nan
-    walk = processed(with_values(trial, "kinematics", values), study)
+    whole, rows = trial.stream("kinematics"), slice(2000, 2000 + samples)
+    hip = whole.index("hip_rotation_r")
+    walk = processed(with_stream(trial, "kinematics", with_column(whole, "hip_rotation_r", np.nan, rows)), study)
     assert any(d.start < 20.0 and d.end > 20.0 for d in walk.strides["r"].dropped) != kept
-    assert not walk.trajectory.usable[2000 : 2000 + samples, hip].any()
+    assert not walk.trajectory.usable[rows, hip].any()
     if kept:
-        np.testing.assert_allclose(walk.state.values[2000 : 2000 + samples, hip], true, atol=1.0)
+        np.testing.assert_allclose(walk.state.values[rows, hip], whole.values[rows, hip], atol=1.0)
 
 
 def test_a_late_change_is_refused_or_told_as_the_study_wants(trial, study):
@@ -113,10 +111,8 @@ def test_a_late_change_is_refused_or_told_as_the_study_wants(trial, study):
 
 
 def test_quality_looks_at_what_is_asked_for(trial):
-    values = np.array(trial.stream("kinematics").values)
-    values[1000:1030, 0] = np.nan
-    gappy = with_values(trial, "kinematics", values)
     name = trial.stream("kinematics").names[0]
+    gappy = with_stream(trial, "kinematics", with_column(trial.stream("kinematics"), name, np.nan, slice(1000, 1030)))
     assert [f.channel for f in quality_findings(gappy) if f.kind == "gap"] == [name]
     assert not [f for f in quality_findings(gappy, angles=("knee_angle_l",)) if f.kind == "gap"]
 
@@ -136,7 +132,7 @@ def test_clocks_that_do_not_meet(trial, study):
     later = Recording(emg.time + 1000.0, emg.values, emg.channels)
     models = Models(emg=("emg_sol_r",), outputs=("ankle_angle_r",))
     with pytest.raises(ValueError, match="overlap in time"):
-        processed(replace(trial, streams={**trial.streams, "emg": later}), study.model_copy(update={"models": models}))
+        processed(with_stream(trial, "emg", later), study.model_copy(update={"models": models}))
 
 
 def test_summary_keeps_every_stride_and_cuts_each_side_by_its_own_foot(trial, study):
@@ -198,7 +194,7 @@ def test_raw_emg_reaches_about_half_as_well():
 def test_the_rate_of_raw_emg_is_taken_from_the_walk(trial, study):
     study = study.model_copy(update={"models": study.models.model_copy(update={"emg": ("emg_sol_r",)})})
     emg = trial.stream("emg")
-    envelopes = replace(trial, streams={**trial.streams, "emg": replace(emg, values=np.abs(emg.values))})
+    envelopes = with_stream(trial, "emg", replace(emg, values=np.abs(emg.values)))
     for given, emg_hz in ((trial, emg.rate_hz), (envelopes, None)):
         walk = replace(processed(trial, study), trial=given)
         expected = filter_null(walk.state.channels, Filters(), walk.state.rate_hz, emg_hz)

@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import gained
 from texts import says
 
 from gaitdisc.errors import UnitError
@@ -45,12 +46,6 @@ def plates(gait_data):
     """Straight walk and static trial of one person on two plates."""
     walk = gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"
     return read_trial(walk), read_trial(gait_data / "young_static" / "HC030A" / "HC030A01.c3d")
-
-
-def gained(trial, plate, gain):
-    forces = trial.stream("forces")
-    times = [gain if c.name.startswith(f"plate_{plate}_") and c.name[8] in "fm" else 1.0 for c in forces.channels]
-    return replace(trial, streams={**trial.streams, "forces": forces.with_values(forces.values * times)})
 
 
 def plate_words(trial, weight_n: float | None = 45.8 * 9.80665):

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import gained, markers_at, with_labels_exchanged, with_stream
 from texts import says
 
-from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d import C3DReader, read_c3d
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
@@ -19,7 +19,7 @@ from gaitdisc.processing.markers_to_moments import computed_trial, without_excha
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.processing.standing import person_findings, segment_distances
 from gaitdisc.processing.two_sources import line_angles
-from gaitdisc.recording import Recording, Strides
+from gaitdisc.recording import Strides
 from gaitdisc.recording.trial import BodyMeasures
 from gaitdisc.signals.butterworth import lowpassed
 
@@ -146,7 +146,7 @@ def renamed(trial):
     """Same trial with marker labels of no set."""
     markers = trial.stream("markers")
     channels = tuple(replace(channel, name=f"Q{channel.name}") for channel in markers.channels)
-    return replace(trial, streams={**trial.streams, "markers": replace(markers, channels=channels)})
+    return with_stream(trial, "markers", replace(markers, channels=channels))
 
 
 def test_markers_of_no_known_set_are_said_once_and_cost_no_cycle(files, trials):
@@ -167,9 +167,7 @@ def test_without_a_static_trial_the_file_s_own_angles_are_not_taken_for_those_of
 
 def test_emg_in_another_unit_than_that_of_the_static_trial_is_named(files, trials, from_file):
     emg = trials["straight"].stream("emg")
-    wrong = replace(
-        trials["straight"], streams={**trials["straight"].streams, "emg": emg.with_values(emg.values / 1e3)}
-    )
+    wrong = with_stream(trials["straight"], "emg", emg.with_values(emg.values / 1e3))
     assert not [one for one in from_file[1] if one.kind == "EMG unit"]
     _, findings = pooled(files, {**trials, "straight": wrong}, Kinematics(angles="file"), without=("turn",))
     (said,) = [one for one in findings if one.kind == "EMG unit"]
@@ -178,7 +176,7 @@ def test_emg_in_another_unit_than_that_of_the_static_trial_is_named(files, trial
 
 def test_without_emg_in_the_static_trial_walks_are_held_against_the_first(files, trials):
     emg = trials["turn"].stream("emg")
-    wrong = replace(trials["turn"], streams={**trials["turn"].streams, "emg": emg.with_values(emg.values * 1e3)})
+    wrong = with_stream(trials["turn"], "emg", emg.with_values(emg.values * 1e3))
     walks = {**trials, "turn": wrong, "static": bare(trials["static"], "emg")}
     (said,) = [one for one in pooled(files, walks, Kinematics(angles="file"))[1] if one.kind == "EMG unit"]
     assert said.file == "P01 turn" and says(said.what, "stronger", "P01")
@@ -202,20 +200,10 @@ def test_no_kinetics_are_drawn_of_a_plate_of_another_gain_or_of_a_mass_that_is_n
     assert any(one.kind == "body weight" and one.severity == "warning" for one in findings)
 
 
-def gained(trial, plate, gain):
-    forces = trial.stream("forces")
-    times = [gain if c.name.startswith(f"plate_{plate}_") and c.name[8] in "fm" else 1.0 for c in forces.channels]
-    return replace(trial, streams={**trial.streams, "forces": forces.with_values(forces.values * times)})
-
-
 def with_heels_exchanged(trial, pair=("LHEE", "RHEE"), seconds=(0.6, 1.1)):
     """Two labels exchanged for half a second, the heels'; nothing that the file computed changes."""
-    markers = trial.stream("markers")
-    values, frames = np.array(markers.values), slice(*(round(at * markers.rate_hz) for at in seconds))
-    for axis in "xyz":
-        one, other = (markers.index(f"{heel}.{axis}") for heel in pair)
-        values[frames, [one, other]] = values[frames, [other, one]]
-    return replace(trial, streams={**trial.streams, "markers": markers.with_values(values)}), frames
+    frames = slice(*(round(at * trial.stream("markers").rate_hz) for at in seconds))
+    return with_labels_exchanged(trial, pair, frames), frames
 
 
 def test_angles_that_follow_the_right_labels_stay_and_keep_their_cycles(files, trials, from_file):
@@ -235,7 +223,7 @@ def test_angles_of_the_wrong_labels_are_left_out_and_the_refusal_names_these(fil
     values, right = np.array(angles.values), line_angles(trials["straight"].stream("markers"))
     for name in ("ankle_angle_l", "ankle_angle_r"):
         values[frames, angles.index(name)] += (lines[name] - right[name])[frames]
-    wrong = replace(other, streams={**other.streams, "kinematics": angles.with_values(values)})
+    wrong = with_stream(other, "kinematics", angles.with_values(values))
     for trial, source in ((wrong, "file"), (other, "markers")):
         (found,), said = pooled(files, {**trials, "straight": trial}, Kinematics(angles=source), without=("turn",))
         assert any(one.kind == "exchanged markers" and one.spans == ((0.6, 1.1),) for one in said)
@@ -253,7 +241,7 @@ def test_all_that_hangs_on_a_segment_of_wrong_labels_is_missing(files, trials, p
     right, values = line_angles(trials["straight"].stream("markers")), np.array(angles.values)
     for name in set(lines) & set(angles.names):
         values[frames, angles.index(name)] += (lines[name] - right[name])[frames]
-    wrong = replace(trial, streams={**trial.streams, "kinematics": angles.with_values(values)})
+    wrong = with_stream(trial, "kinematics", angles.with_values(values))
     measures = read_body_measures(files["static"])
     calibration = calibrated(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
     found = without_exchanged_markers(wrong, calibration).stream("kinematics")
@@ -273,12 +261,11 @@ PLACES = {
 
 def _person(size=1.0, shank=1.0):
     time = np.arange(50) / 100
-    columns, channels = [], []
+    places = {}
     for name, (x, y, z) in PLACES.items():
         up = 0.08 + (z - 0.08) * shank if name == "LKNE" else z
-        columns += [size * x + time, size * y + 0 * time, size * up + 0 * time]
-        channels += [Channel(f"{name}.{axis}", "marker", "m") for axis in "xyz"]
-    return Recording(time, np.column_stack(columns), tuple(channels))
+        places[name] = size * np.array([x, y, up]) + np.outer(time, [1, 0, 0])
+    return markers_at(time, places)
 
 
 def test_distances_of_a_segment_do_not_walk():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_labels_exchanged, with_stream
 
 from gaitdisc.errors import StrideError
 from gaitdisc.ingest.c3d import C3DReader
@@ -117,7 +118,7 @@ def test_events_that_lie_apart_from_the_plates_are_moved_onto_them_and_said(walk
 def test_plates_whose_clock_is_off_are_not_believed_where_markers_speak_for_the_events(walks):
     walk = walks["HC030A05"]
     forces = walk.stream("forces")
-    off = replace(walk, streams={**walk.streams, "forces": replace(forces, time=forces.time + 0.12)})
+    off = with_stream(walk, "forces", replace(forces, time=forces.time + 0.12))
     steps = step_events(off)
     (finding,) = steps.findings
     assert "the events are used" in finding.what and "check the plates' clock" in finding.spoils
@@ -127,16 +128,8 @@ def test_plates_whose_clock_is_off_are_not_believed_where_markers_speak_for_the_
 @pytest.mark.parametrize("name", ["HC002D25", "HC030A05", "HC030A22", "HC031A06"])
 def test_heels_that_are_exchanged_for_half_a_second_do_not_outvote_the_events(walks, name):
     walk = walks[name]
-    markers = walk.stream("markers")
-    knee = walk.stream("kinematics")["knee_angle_r"]
-    first = max(2, int(np.nanargmax(knee)) - 25)
-    values, right, left = np.array(markers.values), *(markers.index(f"{heel}.x") for heel in ("RHEE", "LHEE"))
-    part = slice(first, first + 50)
-    values[part, right : right + 3], values[part, left : left + 3] = (
-        markers.values[part, left : left + 3],
-        markers.values[part, right : right + 3],
-    )
-    steps = step_events(replace(walk, streams={**walk.streams, "markers": markers.with_values(values)}))
+    first = max(2, int(np.nanargmax(walk.stream("kinematics")["knee_angle_r"])) - 25)
+    steps = step_events(with_labels_exchanged(walk, ("RHEE", "LHEE"), slice(first, first + 50)))
     assert steps.detector == "events"
     assert {finding.kind for finding in steps.findings} == {"exchanged heels"}
     assert "lands at" in steps.findings[0].what and step_events(walk).findings == ()

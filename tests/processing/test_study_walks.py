@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_stream
 from driven_walker import DrivenWalker
 from manufactured_body import RAJAGOPAL, known_angles, markers_of, static_of, without
 from texts import says
@@ -61,7 +62,7 @@ def test_models_see_the_angles_that_the_markers_show(known, trials):
 
 
 def test_angles_of_the_file_stay_unless_the_study_asks_for_markers(known, trials):
-    both = replace(trials["walk"], streams={**trials["walk"].streams, "kinematics": known.stream("kinematics")})
+    both = with_stream(trials["walk"], "kinematics", known.stream("kinematics"))
     for source, computed in ((None, False), (Kinematics(angles="file"), False), (ASKED, True)):
         found = walks({**trials, "walk": both}, source).read_walk(WALK)
         assert ("pelvis_tilt" in found.trial.stream("kinematics").names) == computed

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
@@ -92,12 +93,10 @@ def _feet(speed, turned=False):
         swing = np.clip((stride % 1.0 - 0.6) / 0.4, 0, 1)
         places[f"{side}HEE"] = (speed * (np.floor(stride) + phase + swing * swing * (3 - 2 * swing)), across, 0.05)
     places["SACR"] = (speed * time, 0.0, 0.9)
-    columns, channels = [], []
     for name, (along, across, up) in places.items():
         axes = (0 * time + across, -along) if turned else (along, 0 * time + across)
-        columns += [*axes, 0 * time + up]
-        channels += [Channel(f"{name}.{axis}", "marker", "m") for axis in "xyz"]
-    return Trial("feet", {"markers": Recording(time, np.column_stack(columns), tuple(channels))})
+        places[name] = np.column_stack([*axes, 0 * time + up])
+    return Trial("feet", {"markers": markers_at(time, places)})
 
 
 @pytest.mark.parametrize("turned", [False, True])

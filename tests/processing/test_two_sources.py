@@ -1,9 +1,8 @@
 """Faults planted into real walks: each is said and left out, and walks that are right, or only unusual, keep all."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from changed_trials import with_labels_exchanged, with_stream
 from texts import says
 
 from gaitdisc.ingest.reading import read_trial
@@ -29,7 +28,7 @@ def planted(trial: Trial, change, *names: str, stream: str = "kinematics") -> Tr
     values = np.array(old.values)
     for name in names:
         values[:, old.index(name)] = change(old[name])
-    return replace(trial, streams={**trial.streams, stream: old.with_values(values)})
+    return with_stream(trial, stream, old.with_values(values))
 
 
 def said_of(trial: Trial):
@@ -141,13 +140,7 @@ def test_an_unusual_joint_keeps_its_curves(tables, plug_in_gait):
 
 @pytest.mark.parametrize("pair", [("RHEE", "RTOE"), ("RHEE", "LHEE"), ("RKNE", "LKNE"), ("RASI", "LASI")])
 def test_labels_exchanged_for_half_a_second_cost_no_angle_of_the_file(plug_in_gait, pair):
-    markers = plug_in_gait.stream("markers")
-    values = np.array(markers.values)
-    for axis in "xyz":
-        one, other = (markers.index(f"{label}.{axis}") for label in pair)
-        values[60:110, [one, other]] = values[60:110, [other, one]]
-    streams = {**plug_in_gait.streams, "markers": markers.with_values(values)}
-    assert said_of(replace(plug_in_gait, streams=streams)) == ([], set())
+    assert said_of(with_labels_exchanged(plug_in_gait, pair, slice(60, 110))) == ([], set())
 
 
 def test_a_person_who_stands_keeps_every_channel(gait_data):

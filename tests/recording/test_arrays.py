@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides, Trial
-from gaitdisc.recording.arrays import autocorrelation_time, mean_where_known, read_only, runs, spans_s
+from gaitdisc.recording.arrays import autocorrelation_time, mean_where_known, read_only, runs
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped, wrapped
 
 
@@ -27,9 +27,6 @@ def test_a_mean_is_of_the_values_that_are_there():
     assert mean_where_known(whole) == pytest.approx(whole.mean(axis=0))
 
 
-TIME = np.arange(1000) / 100
-
-
 @given(st.lists(st.booleans(), max_size=40))
 def test_runs_give_the_mask_back(mask):
     mask = np.array(mask, bool)
@@ -38,10 +35,6 @@ def test_runs_give_the_mask_back(mask):
         assert end > start
         back[start:end] = True
     assert np.array_equal(back, mask)
-
-
-def test_spans_reach_one_step_past_the_last_sample():
-    assert spans_s(TIME, (TIME >= 1.0) & (TIME < 1.2)) == ((1.0, 1.2),)
 
 
 HEADING = Channel("pelvis_rotation", "angle", "deg")

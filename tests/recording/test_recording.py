@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -97,9 +98,7 @@ def test_tables_for_those_who_want_them():
 
 
 def test_a_channel_is_taken_by_its_name_and_one_name_is_one_channel():
-    walk = Recording(
-        np.arange(100) / 100, np.zeros((100, 3)), tuple(Channel(f"RHEE.{axis}", "marker", "m") for axis in "xyz")
-    )
+    walk = markers_at(np.arange(100) / 100, {"RHEE": np.zeros((100, 3))})
     assert walk.selected("RHEE.y").names == ("RHEE.y",)
     assert "RHEE.z" in walk and "RHEE" not in walk and 0 not in walk
     with pytest.raises(ChannelError, match=r"marker.*RHEE.x, RHEE.y, RHEE.z"):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from scipy.signal import lfilter
 
 from gaitdisc.channel import Channel, vocabulary
@@ -46,8 +47,7 @@ def c3d_points(c3d) -> tuple[list[str], np.ndarray, np.ndarray]:
 def c3d_markers(c3d, wanted) -> Recording:
     labels, time, points = c3d_points(c3d)
     kept = [name for name in wanted if name in labels]
-    values = np.concatenate([points[:, labels.index(name)].T / 1000 for name in kept], axis=1)
-    return Recording(time, values, tuple(Channel(f"{n}.{axis}", "marker", "m") for n in kept for axis in "xyz"))
+    return markers_at(time, {name: points[:, labels.index(name)].T / 1000 for name in kept})
 
 
 def c3d_plates(c3d) -> Recording:

@@ -12,7 +12,7 @@ from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source, Strides
 from gaitdisc.signals.butterworth import effective_cutoff_hz, highpassed, lowpassed, needed_samples, short_run_findings
-from gaitdisc.signals.gaps import filled, gap_findings, gap_spans
+from gaitdisc.signals.gaps import filled, gap_findings
 from gaitdisc.signals.recorded_filter import recorded_filter, spectrum_of
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
@@ -136,10 +136,6 @@ def broken(x, start, length):
     x = x.copy()
     x[start : start + length] = np.nan
     return knee(x)
-
-
-def test_gap_spans_are_in_seconds():
-    assert gap_spans(broken(TIME, 100, 5), "knee_angle_r") == ((1.0, 1.05),)
 
 
 @settings(deadline=None, max_examples=30)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from changed_trials import markers_at, with_column
 from texts import says
 
 from gaitdisc.channel import Channel
@@ -33,8 +34,7 @@ def walker(speed=0.0, noise=0.0):
     rng = np.random.default_rng(0)
     heel = np.stack([speed * t + ahead + noise * rng.normal(size=len(t)), 0 * t, 0 * t + 0.05], axis=1)
     pelvis = np.stack([speed * t, 0 * t, 0 * t + 0.95], axis=1)
-    channels = tuple(Channel(f"{n}.{a}", "marker", "m") for n in ("RHEE", "SACR") for a in "xyz")
-    return Recording(t, np.hstack([heel, pelvis]), channels)
+    return markers_at(t, {"RHEE": heel, "SACR": pelvis})
 
 
 @pytest.mark.parametrize("speed", [0.0, 1.3])
@@ -88,10 +88,8 @@ def test_noise_makes_no_contacts():
 
 
 def test_a_gap_at_contact_gives_none():
-    walk = walker()
-    values = walk.values.copy()
-    values[290:305, 0] = np.nan
-    found = marker_contacts(walk.with_values(values), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    walk = with_column(walker(), "RHEE.x", np.nan, slice(290, 305))
+    found = marker_contacts(walk, {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
     assert len(found) == len(CONTACTS) - 1
 
 
@@ -113,12 +111,10 @@ def _dips(at, depth=0.4):
 def _toe(speed=1.2):
     toe = np.column_stack([speed * TIME + _dips(OFFS), 0 * TIME, 0 * TIME])
     pelvis = np.column_stack([speed * TIME, 0 * TIME, 0 * TIME + 0.9])
-    channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in ("RTOE", "SACR") for axis in "xyz")
-    return Recording(TIME, np.hstack([toe, pelvis]), channels)
+    return markers_at(TIME, {"RTOE": toe, "SACR": pelvis})
 
 
 def test_a_window_lies_in_the_stance_after_each_contact_and_before_the_first():
-    assert stance_windows(np.array([1.0, 2.0]), 1.0) == [(0.25, 0.85), (1.25, 1.85), (2.25, 2.85)]
     assert np.array(stance_windows(np.array([0.0, 2.0]), 2.0)) == pytest.approx(
         np.array([(-1.5, -0.3), (0.5, 1.7), (2.5, 3.7)])
     )
@@ -138,11 +134,9 @@ def test_walking_the_other_way_has_no_such_time():
 
 
 def test_a_gap_in_the_window_gives_none():
-    toe = _toe()
-    values = toe.values.copy()
-    values[140:200] = np.nan
+    toe = with_column(with_column(_toe(), "RTOE", np.nan, slice(140, 200)), "SACR", np.nan, slice(140, 200))
     windows = stance_windows(np.array([1.0, 2.0]), 1.0)
-    found = marker_foot_off(toe.with_values(values), "RTOE", ["SACR"], given_direction((1, 0, 0)), windows)
+    found = marker_foot_off(toe, "RTOE", ["SACR"], given_direction((1, 0, 0)), windows)
     assert found == pytest.approx(OFFS[[0, 2]], abs=0.002)
 
 
@@ -172,10 +166,9 @@ def test_stationary_strides_raise_an_alarm_in_at_most_1_in_20(made):
 
 def test_an_angle_that_no_stride_has_at_some_phase_is_left_out_in_silence(made, recwarn):
     recording, strides = made.wandering(40, 0.3, 1)
-    values, phi = np.array(recording.values), strides.phi(recording.time)
-    values[(phi > 40) & (phi < 60), 0] = np.nan
-    found = late_change(recording.with_values(values), strides, 1)
-    assert recording.names[0] not in found.shifts and len(found.shifts) > 0
+    name, phi = recording.names[0], strides.phi(recording.time)
+    found = late_change(with_column(recording, name, np.nan, (phi > 40) & (phi < 60)), strides, 1)
+    assert name not in found.shifts and len(found.shifts) > 0
     assert [str(one.message) for one in recwarn] == []
 
 
@@ -218,9 +211,7 @@ def test_same_seed_same_p(made):
 
 def test_a_constant_channel_does_not_count(made):
     recording, strides = made.wandering(60, 0.3, 0)
-    values = recording.values.copy()
-    values[:, 2] = 1.0
-    assert "ankle_angle_r" not in late_change(recording.with_values(values), strides).shifts
+    assert "ankle_angle_r" not in late_change(with_column(recording, "ankle_angle_r", 1.0), strides).shifts
 
 
 @pytest.mark.parametrize("file", ["natural2", "exotendon3"])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from changed_trials import markers_at
 from hypothesis import given
 from hypothesis import strategies as st
 from texts import says
@@ -260,16 +261,14 @@ def test_the_leading_heel_tells_the_foot():
         t, np.stack([first, second], axis=1), tuple(Channel(f"plate{k}", "vertical_force", "N") for k in (1, 2))
     )
     slow = np.arange(300) / 100
-    heels = np.zeros((300, 6))
-    heels[:, 0], heels[:, 3] = np.where(slow < 1.3, 0.6, 0.6), np.where(slow < 1.3, 0.0, 1.2)
-    channels = tuple(Channel(f"{n}.{a}", "marker", "m") for n in ("RHEE", "LHEE") for a in "xyz")
-    marked = Recording(slow, heels, channels)
+    right, left = (np.outer(ahead, [1, 0, 0]) for ahead in (np.full(300, 0.6), np.where(slow < 1.3, 0.0, 1.2)))
+    marked = markers_at(slow, {"RHEE": right, "LHEE": left})
     found = plate_contacts(plates, marked, {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
     assert found["r"].time == pytest.approx([1.005], abs=1e-3)
     assert found["l"].time == pytest.approx([1.605], abs=1e-3)
-    heels[:, 3] = np.nan
+    blind = markers_at(slow, {"RHEE": right, "LHEE": left * [np.nan, 1, 1]})
     with pytest.raises(StrideError, match=r"plate1.*1\.005 s"):
-        plate_contacts(plates, Recording(slow, heels, channels), {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
+        plate_contacts(plates, blind, {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
 
 
 @pytest.mark.parametrize("missing", ["RHEE", "LHEE"])
@@ -280,15 +279,13 @@ def test_one_heel_in_front_of_the_pelvis_or_behind_it_tells_the_foot(missing):
     slow = np.arange(300) / 100
     ahead = {"RHEE": np.full(300, 0.6), "LHEE": np.where(slow < 1.3, 0.0, 1.2), "SACR": np.where(slow < 1.3, 0.3, 0.9)}
     ahead[missing] = np.full(300, np.nan)
-    zero = np.zeros(300)
-    names = tuple(Channel(f"{n}.{a}", "marker", "m") for n in ahead for a in "xyz")
     given = {"heels": {"r": "RHEE", "l": "LHEE"}, "direction": given_direction((1, 0, 0)), "pelvis": ("SACR",)}
-    marked = Recording(slow, np.stack([x for one in ahead.values() for x in (one, zero, zero)], axis=1), names)
+    marked = markers_at(slow, {name: np.outer(one, [1, 0, 0]) for name, one in ahead.items()})
     found = plate_contacts(forces_, marked, **given)
     assert found["r"].time == pytest.approx([1.005], abs=1e-3)
     assert found["l"].time == pytest.approx([1.605], abs=1e-3)
     ahead["SACR"] = np.where(slow < 1.3, 0.55, 0.05) if missing == "LHEE" else np.where(slow < 1.3, 0.05, 1.15)
-    near = Recording(slow, np.stack([x for one in ahead.values() for x in (one, zero, zero)], axis=1), names)
+    near = markers_at(slow, {name: np.outer(one, [1, 0, 0]) for name, one in ahead.items()})
     with pytest.raises(StrideError, match="heel marker is missing"):
         plate_contacts(forces_, near, **given)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from changed_trials import with_column
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import savgol_filter as of_scipy
@@ -51,10 +52,9 @@ def test_the_unit_becomes_a_rate(made):
 
 def test_a_trajectory_knows_what_is_usable(made):
     walk, contacts = made.walk(10)
-    values = walk.values.copy()
-    values[500:504, 1] = np.nan
+    gappy = with_column(walk, "knee_angle_r", np.nan, slice(500, 504))
     strides = Strides(contacts[:-1], contacts[1:], "r", "force")
-    path = trajectory(lowpassed(walk.with_values(values)), strides)
+    path = trajectory(lowpassed(gappy), strides)
     assert path.usable[32:-32, 0].all()
     assert not path.usable[:32].any()
     assert not path.usable[-32:].any()

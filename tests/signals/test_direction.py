@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
+from changed_trials import markers_at, with_column
 
-from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
-from gaitdisc.recording import Recording
 from gaitdisc.signals.direction import given_direction, marker_position, pelvis_position, walking_direction
 
 HEELS, PELVIS = {"r": "RHEE", "l": "LHEE"}, ("SACR",)
@@ -18,8 +17,7 @@ def walker(forward, up=(0.0, 0.0, 1.0), speed=0.0):
         phase = (t + late) % 1.0
         ahead = np.where(phase < 0.62, 0.3 - 0.6 * phase / 0.62, -0.3 + 0.6 * (phase - 0.62) / 0.38)
         parts[f"{side}HEE"] = (speed * t + ahead)[:, None] * forward + 0.05 * up
-    channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in parts for axis in "xyz")
-    return Recording(t, np.hstack(list(parts.values())), channels)
+    return markers_at(t, parts)
 
 
 def turning(turn_deg):
@@ -68,10 +66,8 @@ def test_the_direction_is_held_where_the_person_stands():
 
 def test_markers_that_are_never_there_are_named():
     walk = walker((1, 0, 0))
-    values = walk.values.copy()
-    values[:, walk.index("SACR.x")] = np.nan
     with pytest.raises(StrideError, match=r"RHEE, LHEE.*SACR"):
-        walking_direction(walk.with_values(values), HEELS, PELVIS)
+        walking_direction(with_column(walk, "SACR.x", np.nan), HEELS, PELVIS)
 
 
 def test_the_vertical_need_not_be_z():
@@ -82,11 +78,10 @@ def test_the_vertical_need_not_be_z():
 def test_a_swing_without_a_direction_is_refused():
     t = np.arange(1000) / 100
     still = walker((1, 0, 0))
-    values = still.values.copy()
-    values[:, still.index("RHEE.x")] = 0.3 * np.sin(2 * np.pi * t)
-    values[:, still.index("LHEE.x")] = -0.3 * np.sin(2 * np.pi * t)
+    swing = 0.3 * np.sin(2 * np.pi * t)
+    even = with_column(with_column(still, "RHEE.x", swing), "LHEE.x", -swing)
     with pytest.raises(StrideError, match=r"0\.2.*[+-]0\.0"):
-        walking_direction(still.with_values(values), HEELS, PELVIS)
+        walking_direction(even, HEELS, PELVIS)
 
 
 def test_a_given_direction_is_made_a_unit_vector():

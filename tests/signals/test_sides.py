@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from changed_trials import markers_at, with_column
 from texts import says
 
-from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.signals.sides import knee_peak_percent, load_findings, marker_side_findings, sway_findings, verify_sides
@@ -34,9 +35,8 @@ def test_a_knee_of_the_other_sign_is_refused(made):
 
 def test_a_knee_that_bends_most_in_stance_is_stiff_where_the_other_swings(made):
     walk, contacts = made.walk(12)
-    values = walk.values.copy()
-    values[:, walk.index("knee_angle_r")] = walk["knee_angle_l"]
-    assert verify_sides(walk.with_values(values), right_strides(contacts)) == pytest.approx(20, abs=2)
+    other = with_column(walk, "knee_angle_r", walk["knee_angle_l"])
+    assert verify_sides(other, right_strides(contacts)) == pytest.approx(20, abs=2)
 
 
 def test_a_stiff_or_missing_knee_tells_nothing(made):
@@ -55,8 +55,7 @@ TIME = np.arange(100) / 100
 
 def markers(names):
     """Someone who stands; each marker lies where the one lies whose name it is given."""
-    values = np.hstack([np.tile(PLACES[of], (100, 1)) for of in names.values()])
-    return Recording(TIME, values, tuple(Channel(f"{n}.{axis}", "marker", "m") for n in names for axis in "xyz"))
+    return markers_at(TIME, {name: np.tile(PLACES[of], (100, 1)) for name, of in names.items()})
 
 
 def exchanged(name):

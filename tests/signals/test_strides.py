@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_trials import with_column
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from texts import says
@@ -56,22 +57,17 @@ def test_natural_variability_drops_nothing():
 
 def test_a_gap_in_the_data_drops_its_stride(made):
     walk, at = made.walk(12)
-    values = walk.values.copy()
     first = int(np.searchsorted(walk.time, at[4] + 0.3))
-    values[first : first + 25, 1] = np.nan
-    strides = cut_strides(Contacts(at, "r", "force"), walk.with_values(values))
+    long, short = (with_column(walk, "knee_angle_r", np.nan, slice(first, first + length)) for length in (25, 8))
+    strides = cut_strides(Contacts(at, "r", "force"), long)
     assert len(strides) == 11
     assert strides.dropped[0].reason == "knee_angle_r missing for 0.25 s"
-    values[first : first + 25, 1] = walk.values[first : first + 25, 1]
-    values[first : first + 8, 1] = np.nan  # short enough to be filled
-    assert cut_strides(Contacts(at, "r", "force"), walk.with_values(values)).dropped == ()
+    assert cut_strides(Contacts(at, "r", "force"), short).dropped == ()  # short enough to be filled
 
 
 def test_a_channel_without_any_value_drops_nothing(made):
     walk, at = made.walk(12)
-    values = walk.values.copy()
-    values[:, 3] = np.nan
-    assert len(cut_strides(Contacts(at, "r", "force"), walk.with_values(values))) == 12
+    assert len(cut_strides(Contacts(at, "r", "force"), with_column(walk, "hip_flexion_l", np.nan))) == 12
 
 
 def test_strides_beyond_the_recording_are_dropped(made):
@@ -93,10 +89,9 @@ def test_no_stride_left_is_refused_with_the_first_reason():
 
 def walk_with_fault(made, size_deg, seed=0):
     walk, contacts = made.walk(30, seed=seed)
-    values = walk.values.copy()
     rows = (walk.time > contacts[12] + 0.2) & (walk.time < contacts[12] + 0.7)
-    values[rows, 1] += size_deg
-    return walk.with_values(values), Strides(contacts[:-1], contacts[1:], "r", "force")
+    faulty = with_column(walk, "knee_angle_r", walk["knee_angle_r"][rows] + size_deg, rows)
+    return faulty, Strides(contacts[:-1], contacts[1:], "r", "force")
 
 
 def test_distances_are_in_the_channels_unit(made):
@@ -138,9 +133,7 @@ def test_gaps_and_few_strides_have_no_outliers(made):
     walk, strides = walk_with_fault(made, 15.0)
     few = replace(strides, start=strides.start[8:15], end=strides.end[8:15])
     assert not outlying(walk, few).any()
-    values = walk.values.copy()
-    values[:, 2] = np.nan
-    assert outlying(walk.with_values(values), strides)[:, 2].sum() == 0
+    assert outlying(with_column(walk, "ankle_angle_r", np.nan), strides)[:, 2].sum() == 0
 
 
 def test_every_real_stumble_is_seen(gait_data, real):
@@ -155,11 +148,9 @@ def test_every_real_stumble_is_seen(gait_data, real):
 
 def test_a_channel_without_a_whole_stride_prints_no_warning(made):
     walk, strides = walk_with_fault(made, 15.0)
-    values = walk.values.copy()
-    values[:, 3] = np.nan
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert len(without_outlying(walk.with_values(values), strides).dropped) == 1
+        assert len(without_outlying(with_column(walk, "hip_flexion_l", np.nan), strides).dropped) == 1
 
 
 def strides_of(contacts):
@@ -174,9 +165,8 @@ def test_a_made_walk_is_walking(made):
     assert found.coverage > 0.95
     assert found.regularity > 0.95
     assert found.knee_deg > 45
-    values = walk.values.copy()
-    values[:, walk.index("knee_angle_l")] *= 0.3  # a stiff knee walks too
-    assert verify_walking(walk.with_values(values), strides_of(contacts)).knee_deg > 45
+    stiff = with_column(walk, "knee_angle_l", 0.3 * walk["knee_angle_l"])  # a stiff knee walks too
+    assert verify_walking(stiff, strides_of(contacts)).knee_deg > 45
 
 
 def test_what_is_not_walking_is_refused_with_its_numbers(made):
