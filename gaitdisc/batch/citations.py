@@ -88,6 +88,7 @@ SENSED = (
 )
 TESTED = ("Wilcoxon's signed-rank test", "Holm-Sidak corrections")
 SEARCHED = ("multiple shooting", "damped least squares", "information criterion")
+CONTACTS = ("contacts from markers",)
 LEFT_OUT = "intervals from models fitted without part of the data"
 OF_CHAPTERS = {3: DISCREPANCIES, 4: (*RESPONSES, *TESTED), 5: SENSED}
 BAGS = ("bagged optimised dynamic mode decomposition",)
@@ -118,10 +119,17 @@ class Cited(NamedTuple):
 
 def citations_of(folder: Path) -> list[Cited]:
     """Literature of the methods that the result in a folder used, in the order of the table."""
-    used = {
-        "this program",
-        *(_of_part(folder) if (folder / CHAPTER).is_file() else methods_of(find_kind(folder, drawn=True).load(folder))),
-    }
+    if (folder / CHAPTER).is_file():
+        part = read_sealed(folder / CHAPTER).get("part")
+        if part not in OF_PARTS:
+            raise SchemaError(
+                f"the part of a chapter must be one of {', '.join(OF_PARTS)}",
+                f"{folder.name}/{CHAPTER} names {str(part)[:40]!r}",
+                "Another version of gaitdisc wrote it. Cite with that version.",
+            )
+        used = {"this program", *OF_PARTS[part]}
+    else:
+        used = {"this program", *methods_of(find_kind(folder, drawn=True).load(folder))}
     by_key: dict[str, list[str]] = {}
     for method, keys in MENTIONED.items():
         for key in keys if method in used else ():
@@ -138,10 +146,16 @@ def methods_of(result: Any) -> Iterator[str]:
         yield from TESTED if len(result.tests) else ()
     elif isinstance(result, PooledCycles):
         yield from _of_files(result.files)
-        yield from _of_contacts(result.detectors)
+        yield from CONTACTS if "markers" in result.detectors else ()
         yield from _of_markers(result.findings, None)
     elif isinstance(result, Discovery):
-        yield from _of_discovery(result)
+        yield from SEARCHED
+        if result.held_out.p == result.held_out.p:  # a test was made
+            yield TESTED[0]
+        if any(one.reads_as for one in (*result.effects, *result.rivals)):
+            yield "a term read by regression on a library"
+        if any("spike" in finding.kind for finding in result.findings):
+            yield "spiked samples"
     elif isinstance(result, Mismatch):
         yield "permutation test over the stride"
         yield from _of_files(result.provenance.files)
@@ -152,17 +166,6 @@ def methods_of(result: Any) -> Iterator[str]:
         if result.split.startswith("subject"):  # each person was left out in turn
             yield LEFT_OUT
         yield from _of_files(result.provenance.files)
-
-
-def _of_part(folder: Path) -> tuple[str, ...]:
-    part = read_sealed(folder / CHAPTER).get("part")
-    if part not in OF_PARTS:
-        raise SchemaError(
-            f"the part of a chapter must be one of {', '.join(OF_PARTS)}",
-            f"{folder.name}/{CHAPTER} names {str(part)[:40]!r}",
-            "Another version of gaitdisc wrote it. Cite with that version.",
-        )
-    return OF_PARTS[part]
 
 
 def _of_run(run: ResponseRun) -> Iterator[str]:
@@ -178,33 +181,17 @@ def _of_run(run: ResponseRun) -> Iterator[str]:
     if run.over is not None and run.over.responders["silhouette"].notna().any():
         yield "sub-groups of people"
     yield from _of_files(run.provenance.files)
-    yield from _of_contacts([walk.detector for walk in run.walks])
+    detectors = {*(walk.detector for walk in run.walks), *(name for one in run.cycles for name in one.detectors)}
+    yield from CONTACTS if "markers" in detectors else ()
     kinematics = run.provenance.settings.get("kinematics") or {}
     for one in (*run.walks, *run.cycles):
         yield from _of_markers(one.findings, kinematics.get("hip"))
-    for one in run.cycles:
-        yield from _of_contacts(one.detectors)
-
-
-def _of_discovery(found: Discovery) -> Iterator[str]:
-    yield from SEARCHED
-    if found.held_out.p == found.held_out.p:  # a test was made
-        yield "Wilcoxon's signed-rank test"
-    if any(one.reads_as for one in (*found.effects, *found.rivals)):
-        yield "a term read by regression on a library"
-    if any("spike" in finding.kind for finding in found.findings):
-        yield "spiked samples"
 
 
 def _of_files(files: Iterable[str]) -> Iterator[str]:
     """Of files named by person and walk the ending is not kept: they may be C3D."""
     if any(name.lower().endswith(".c3d") or re.search(r", file \d+$", name) for name in files):
         yield "C3D files, where some were read"
-
-
-def _of_contacts(detectors: Iterable[str]) -> Iterator[str]:
-    if "markers" in detectors:
-        yield "contacts from markers"
 
 
 def _of_markers(findings: Iterable[Finding], hip: str | None) -> Iterator[str]:

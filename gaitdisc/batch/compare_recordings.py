@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,18 +30,16 @@ def compare_files(
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two recordings, second minus first; `cutoff_hz` [Hz]: -3 dB of one pass, angles and moments."""
-    one, other = (
-        "_".join(word for word in re.split(r"[\W_]+", path.stem) if _public(word)) for path in (first, second)
+    one, other = _apart(
+        [word for word in re.split(r"[\W_]+", path.stem) if word.isalpha() and word.lower() in package_words()]
+        for path in (first, second)
     )
-    one, other = _apart(one, other)
     names = (one, other) if one and other and one != other else ("first walk", "second walk")
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
-    trials = [
-        public.known_channels(
-            replace(public, files={path.name: name}).trial(replace(read_trial(path), name=name)), COMPARED
-        )
-        for path, name in zip((first, second), names, strict=True)
-    ]
+    trials = []
+    for path, name in zip((first, second), names, strict=True):
+        trial = replace(public, files={path.name: name}).trial(replace(read_trial(path), name=name))
+        trials.append(public.known_channels(trial, COMPARED))
     walks = walk_pair(trials[0], trials[1], cutoff_hz, detector)
     if walks[0].files and set(walks[0].files.values()) == set(walks[1].files.values()):
         raise SchemaError(
@@ -95,17 +94,13 @@ def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary]
     return walks[nominal].summary(), walks[device].summary()
 
 
-def _public(word: str) -> bool:
-    return word.isalpha() and word.lower() in package_words()
-
-
-def _apart(first: str, second: str) -> tuple[str, str]:
+def _apart(names: Iterable[list[str]]) -> tuple[str, str]:
     """Names without the words that both begin or end with."""
-    words = [first.split("_"), second.split("_")]
-    while min(map(len, words)) > 1 and words[0][0] == words[1][0]:
-        words = [one[1:] for one in words]
-    while min(map(len, words)) > 1 and words[0][-1] == words[1][-1]:
-        words = [one[:-1] for one in words]
+    words = list(names)
+    for end in (0, -1):
+        while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
+            for one in words:
+                del one[end]
     return "_".join(words[0]), "_".join(words[1])
 
 

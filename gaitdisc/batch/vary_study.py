@@ -52,7 +52,6 @@ def vary_study(
 
     question: `modalities`, without one family of inputs at a time, or `sensitivity`, other cut-offs and lengths; its
         result also lies in a folder of that name in the run's
-    progress: called with a pseudonym and the fraction of that participant's work that is done
     """
     if question not in QUESTIONS:
         raise SchemaError(f"questions are {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")

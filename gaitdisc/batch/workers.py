@@ -75,9 +75,6 @@ def computed_units(
 ) -> Iterator[Unit]:
     """Compute one unit a participant where it shall be done, in order.
 
-    A process beside this one that is killed costs its own participant's time: that participant is tried once more, and
-    if its process is killed again, refused.
-
     compute: takes `participant` and `progress`, which is called with the fraction done; can be sent to another process
     progress: called with a participant's pseudonym and the fraction done; progress within a participant is reported
         only where everything is done in this process
@@ -102,8 +99,6 @@ def computed_side_by_side(
     workers: Workers, compute: Callable[[Person], Unit], people: Sequence[Person]
 ) -> Iterator[tuple[Person, Unit | Lost]]:
     """Compute one unit a person on other processes or machines, and give them back in order as they are ready.
-
-    A worker that dies is replaced by another: its person is computed again.
 
     returns (person, unit): `Lost` in the place of a unit whose process on this machine was killed each time
     """

@@ -51,7 +51,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
         what = f"{', '.join(named)}: excluded; name one with --channel to compare it nevertheless"
         findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these channels"))
         shared = [c for c in shared if c.name not in spoiled]
-    by_channel = {c.name: _near_each_other([_whole(walk, c.name) for walk in walks], c) for c in shared}
+    by_channel = {c.name: _whole_strides(walks, c) for c in shared}
     shared = [c for c in shared if _usable(c, by_channel[c.name], walks, findings)]
     shared = _moving(shared, by_channel, walks, findings)
     if not shared:
@@ -108,15 +108,12 @@ def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[
     return kept
 
 
-def _whole(walk: WalkSummary, name: str) -> NDArray[np.float64]:
-    """Strides of one channel without a gap, (stride, phase)."""
-    column = [channel.name for channel in walk.channels].index(name)
-    curves = walk.curves[:, :, column]
-    return curves[np.isfinite(curves).all(axis=1)]
-
-
-def _near_each_other(parts: list[NDArray[np.float64]], channel: Channel) -> list[NDArray[np.float64]]:
-    """Curves of a heading moved by whole turns to those of the first walk; other channels as they are."""
+def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[NDArray[np.float64]]:
+    """Strides of one channel without a gap, (stride, phase) a walk; headings by whole turns near the first walk's."""
+    parts = []
+    for walk in walks:
+        curves = walk.curves[:, :, [one.name for one in walk.channels].index(channel.name)]
+        parts.append(curves[np.isfinite(curves).all(axis=1)])
     turn = turn_of(channel)
     if turn is None or not len(parts[0]):
         return parts

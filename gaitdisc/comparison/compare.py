@@ -119,8 +119,7 @@ def compare_people(
 ) -> Mismatch:
     """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
 
-    pairs sequence of (WalkSummary, WalkSummary): both walks of each person, in the same order of conditions; second
-        minus first
+    pairs: both walks of each person; second minus first
     wanted: only these channels; by default all that every walk has
     smallest: difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves
     returns: its standard deviations are those from stride to stride, root mean square over people

@@ -40,7 +40,17 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
         axes.set_title(GROUPS[group])
     row[0].set_ylabel("R² on the held-out device walk [1]")
     legend(drawn, models_key(ms=3.5))
-    return Figure("quantity", _caption(run, low), _alt(run), numbers, drawn)
+    alt = f"R² of three models against the training length, for {counted(len(run.quantities), 'participant')}."
+    parts = sorted({quantity.part for quantity in run.quantities})
+    edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
+    caption = (
+        f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
+        f"length of the training part (its {' or '.join(parts)} seconds), n = "
+        f"{counted(len(run.quantities), 'participant')}; split: last {held_out_text(run)} s of each walk held out for "
+        f"all lengths. Thick: median over participants; thin: each participant; networks only.{edge} After Fig. 4.4 "
+        "of the dissertation."
+    )
+    return Figure("quantity", caption, alt, numbers, drawn)
 
 
 def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
@@ -109,22 +119,6 @@ def _draw(axes: Axes, rows: pd.DataFrame, low: float) -> None:
     axes.minorticks_off()
     axes.set_ylim(low, 1.0)
     axes.set_xlabel("training length [s]")
-
-
-def _caption(run: ResponseRun, low: float) -> str:
-    parts = {quantity.part for quantity in run.quantities}
-    edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
-    return (
-        f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
-        f"length of the training part (its {' or '.join(sorted(parts))} seconds), n = "
-        f"{counted(len(run.quantities), 'participant')}; split: last {held_out_text(run)} s of each walk held out for "
-        f"all lengths. Thick: median over participants; thin: each participant; networks only.{edge} After Fig. 4.4 "
-        "of the dissertation."
-    )
-
-
-def _alt(run: ResponseRun) -> str:
-    return f"R² of three models against the training length, for {counted(len(run.quantities), 'participant')}."
 
 
 def length_table(run: ResponseRun) -> Table | None:

@@ -207,7 +207,29 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
             fontweight="bold",
             color=MODELS[model].colour,
         )
-    return Figure(name, _residual_caption(response, numbers), _residual_alt(response, numbers), numbers, drawn)
+    interval = (
+        f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
+        "correlation of neighbouring strides)"
+        if len(each) >= LEAST_STRIDES
+        else f"no interval, which needs {LEAST_STRIDES} complete strides"
+    )
+    caption = (
+        f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
+        f"held-out device walk, n = {counted(len(each), 'stride')}; split: last {response.held_out_s:.4g} s held out. "
+        f"Black: mean; {interval}; faint: every stride. A perfect model has a mean of zero. Each row has one scale "
+        "and one unit. Titles in red: left; in blue: right."
+    )
+    parts = [
+        f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"
+        for model, curves in numbers.groupby("model", sort=False)
+    ]
+    shares = f"Share of the stride where the interval of the mean excludes zero: {', '.join(parts)}."
+    few = "There are too few strides for an interval of the mean."
+    alt = (
+        f"Residuals over the stride of {response.participant}, {counted(len(names), 'variable')}. "
+        f"{shares if numbers['low'].notna().any() else few}"
+    )
+    return Figure(name, caption, alt, numbers, drawn)
 
 
 def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str, as_pixels: bool) -> None:
@@ -219,31 +241,3 @@ def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
     axes.fill_between(percent, curves["low"], curves["high"], color=look.colour, alpha=0.35, linewidth=0, zorder=2)
     axes.plot(percent, curves["mean"], color="#111111", linewidth=1.2, zorder=3)
-
-
-def _residual_caption(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
-    count = len([column for column in numbers.columns if column.startswith("stride_")])
-    interval = (
-        f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
-        "correlation of neighbouring strides)"
-        if count >= LEAST_STRIDES
-        else f"no interval, which needs {LEAST_STRIDES} complete strides"
-    )
-    return (
-        f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
-        f"held-out device walk, n = {counted(count, 'stride')}; split: last {response.held_out_s:.4g} s held out. "
-        f"Black: mean; {interval}; faint: every stride. A perfect model has a mean of zero. Each row has one scale "
-        "and one unit. Titles in red: left; in blue: right."
-    )
-
-
-def _residual_alt(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
-    variables = counted(numbers["variable"].nunique(), "variable")
-    start = f"Residuals over the stride of {response.participant}, {variables}. "
-    if not numbers["low"].notna().any():
-        return f"{start}There are too few strides for an interval of the mean."
-    parts = [
-        f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"
-        for model, curves in numbers.groupby("model", sort=False)
-    ]
-    return f"{start}Share of the stride where the interval of the mean excludes zero: {', '.join(parts)}."

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import side_of
@@ -56,9 +55,13 @@ def mismatch_numbers(mismatch: Mismatch, names: list[str]) -> pd.DataFrame:
 def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Draw) -> Figure:
     drawn, cells = panels_for(len(names), COLUMNS, 1.3, Room(left=0.6, across=0.62, down=0.46))
     numbers = mismatch_numbers(mismatch, names)
+    said = []
     for axes, channel in zip(cells, names, strict=True):
-        curves = numbers[numbers["channel"] == channel]
-        draw(axes, curves, mismatch.regions_of(channel), SIDES[side_of(channel)].colour)
+        curves, regions = numbers[numbers["channel"] == channel], mismatch.regions_of(channel)
+        draw(axes, curves, regions, SIDES[side_of(channel)].colour)
+        spans = ", ".join(f"{row['from_percent']:.0f}-{row['to_percent']:.0f} %" for row in regions)
+        largest = f"{spoken(channel)} {curves['gap'].iloc[int(curves['gap'].abs().argmax())]:.3g}"
+        said.append(f"{largest}, differs at {spans}" if spans else f"{largest}, no significant gap")
         axes.set_title(label(channel), color=SIDES[side_of(channel)].colour, fontsize=7.6)
         up = upwards(channel)
         unit = unit_text(str(curves["unit"].iloc[0]))
@@ -68,7 +71,8 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, mismatch_key(mismatch, kind))
-    return Figure(name, _caption(mismatch, kind, len(names)), _alt(mismatch, names), numbers, drawn)
+    alt = f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(said)}."
+    return Figure(name, _caption(mismatch, kind, len(names)), alt, numbers, drawn)
 
 
 def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
@@ -148,17 +152,6 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
         f"standard deviation over strides; solid: {mismatch.first} (red: left, blue: right, black: no side). 0 %: "
         f"initial contact of the channel's own foot. {shaded}"
     )
-
-
-def _alt(mismatch: Mismatch, names: list[str]) -> str:
-    parts = []
-    for name in names:
-        regions = mismatch.regions_of(name)
-        spans = ", ".join(f"{row['from_percent']:.0f}-{row['to_percent']:.0f} %" for row in regions)
-        largest = mismatch.curves["gap"][:, mismatch.names.index(name)]
-        size = f"{largest[np.argmax(np.abs(largest))]:.3g}"
-        parts.append(f"{spoken(name)} {size}" + (f", differs at {spans}" if spans else ", no significant gap"))
-    return f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(parts)}."
 
 
 def regions_table(mismatch: Mismatch) -> Table:

@@ -20,11 +20,27 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     moved = alignment_sentences(mismatch)
     small = [name for name in mismatch.names if mismatch.summary_of(name)["too_small"]]
     unseen = [name for name in mismatch.names if name not in ordered and name not in small]
+    agreeing = [_agreeing(mismatch, unseen)] if unseen else []
+    walks, done = f"{mismatch.first} and {mismatch.second}", mismatch.exchange
     if not ordered and not small:
-        return [_no_gap(mismatch), *moved, _visible(mismatch, list(mismatch.names))]
+        strides = f"{done.strides_first} and {done.strides_second} strides"
+        n = counted(done.first, "participant") if done.unit == "participant" else strides
+        return [
+            f"There is no significant gap: {walks} cannot be distinguished in "
+            f"{counted(len(mismatch.channels), 'channel')} ({n}, {p_words(float(mismatch.summary['p'].min()))}).",
+            *moved,
+            "This does not prove equality: four of five such comparisons would detect a gap from "
+            f"{_by_unit(mismatch, unseen, 'visible', smallest=True)} on, and gaps of up to "
+            f"{_by_unit(mismatch, unseen, 'within')} at some point are not excluded.",
+        ]
     if not ordered:
-        return [_nothing_named(mismatch, small), *moved, *([_agreeing(mismatch, unseen)] if unseen else [])]
-    if 1 / mismatch.exchange.permutations >= P_PRINTED:
+        return [
+            f"No difference exceeds the smallest one that is named: {walks} differ significantly in "
+            f"{_shortened(small)}, but by less than {_by_unit(mismatch, small, 'limit')} at every such point.",
+            *moved,
+            *agreeing,
+        ]
+    if 1 / done.permutations >= P_PRINTED:
         moved = [*moved, smallest_p_sentence(mismatch)]
     sentences = [_gap(mismatch, ordered[0]), *moved]
     sentences += [_gap(mismatch, name, further=True) for name in ordered[1:MOST_NAMED]]
@@ -33,8 +49,10 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
         others = _shortened(ordered[MOST_NAMED:])
         sentences.append(f"{counted(more, 'further channel')} {'differs' if more == 1 else 'differ'} too: {others}.")
     sentences += [timing] if (timing := _timing(mismatch, ordered[0])) else []
-    sentences += [_too_small(mismatch, small)] if small else []
-    return [*sentences, _agreeing(mismatch, unseen)] if unseen else sentences
+    if small:
+        less = _by_unit(mismatch, small, "limit")
+        sentences.append(f"Significant, but less than {less} and not named: {_shortened(small)}.")
+    return [*sentences, *agreeing]
 
 
 def alignment_sentences(mismatch: Mismatch) -> list[str]:
@@ -67,18 +85,6 @@ def smallest_p_sentence(mismatch: Mismatch) -> str:
     of = counted(units, done.unit.split()[0]) if done.exact else f"{done.permutations} permutations"
     have = f"{int((p * done.permutations < 1.5).sum())} of {counted(len(p), 'region')}"
     return f"p = {1 / done.permutations:.2g} is the smallest value that {of} can give; {have} have it."
-
-
-def _nothing_named(mismatch: Mismatch, small: list[str]) -> str:
-    limits = _by_unit(mismatch, small, "limit")
-    return (
-        f"No difference exceeds the smallest one that is named: {mismatch.first} and {mismatch.second} differ "
-        f"significantly in {_shortened(small)}, but by less than {limits} at every such point."
-    )
-
-
-def _too_small(mismatch: Mismatch, small: list[str]) -> str:
-    return f"Significant, but less than {_by_unit(mismatch, small, 'limit')} and not named: {_shortened(small)}."
 
 
 def _kind(mismatch: Mismatch, name: str) -> str:
@@ -184,29 +190,6 @@ def _agreeing(mismatch: Mismatch, names: list[str]) -> str:
     bounds = _by_unit(mismatch, names, "within")
     sure = f"{100 * (1 - mismatch.exchange.alpha):g} %"
     return f"No significant gap in {words}: with {sure} confidence they agree to within {bounds} at every point."
-
-
-def _no_gap(mismatch: Mismatch) -> str:
-    count = counted(len(mismatch.channels), "channel")
-    p = float(mismatch.summary["p"].min())
-    done = mismatch.exchange
-    n = (
-        counted(done.first, "participant")
-        if done.unit == "participant"
-        else f"{done.strides_first} and {done.strides_second} strides"
-    )
-    return (
-        f"There is no significant gap: {mismatch.first} and {mismatch.second} cannot be distinguished in {count} "
-        f"({n}, {p_words(p)})."
-    )
-
-
-def _visible(mismatch: Mismatch, names: list[str]) -> str:
-    seen = _by_unit(mismatch, names, "visible", smallest=True)
-    return (
-        f"This does not prove equality: four of five such comparisons would detect a gap from {seen} on, and gaps of "
-        f"up to {_by_unit(mismatch, names, 'within')} at some point are not excluded."
-    )
 
 
 def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool = False) -> str:

@@ -8,16 +8,13 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from gaitdisc._version import __version__
 from gaitdisc.own_files import under_this_guard
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, as_markdown, save_tables
 from gaitdisc.whole_file import write_whole
-
-if TYPE_CHECKING:
-    import jinja2
 
 Result = TypeVar("Result")
 MOST_PROCESSES = 4  # that draw; each holds some 400 MB
@@ -30,27 +27,18 @@ def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
 
 def page_text(template: str, shown: Mapping[str, Any]) -> str:
     """Page of a template and what it shows."""
-    return _templates().get_template(f"{template}.html.j2").render(version=__version__, **shown)
-
-
-def _templates() -> jinja2.Environment:
-    """Templates of the pages, with the filter that binds numbers to their units."""
     import jinja2
 
-    found = jinja2.Environment(
+    templates = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters["bound"] = _bound
-    return found
-
-
-def _bound(text: str) -> str:
-    """Bind numbers to their units, so that no line breaks between them."""
-    return re.sub(r"(?<=\d) (?=(?:s|%|Hz)(?!\w))", "\u00a0", text)
+    # numbers are bound to their units, so that no line breaks between them
+    templates.filters["bound"] = lambda text: re.sub(r"(?<=\d) (?=(?:s|%|Hz)(?!\w))", "\u00a0", text)
+    return templates.get_template(f"{template}.html.j2").render(version=__version__, **shown)
 
 
 @dataclass(frozen=True, eq=False)

@@ -228,11 +228,14 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
     drawn, [[axes]] = panels(1, 1, HEIGHT, Room(left=0.6, bottom=0.75))
     low = lowest_drawn(numbers)
     step = 0.05 * (1 - low)
+    different = {}
+    for pair in BARS:
+        rows = tests.of_pair(*pair)
+        different[pair] = set(rows.loc[rows["different"].astype(bool), "variable"]) & set(names)
     for place, variable in enumerate(names):
         _draw_boxes(axes, numbers[numbers["variable"] == variable], place)
         for height, pair in enumerate(BARS):
-            row = tests.of_pair(*pair)
-            if bool(row.loc[row["variable"] == variable, "different"].any()):
+            if variable in different[pair]:
                 left, right = (place + PLACES[model] for model in pair)
                 y = 1 + (height + 0.7) * step
                 across, up = [left, left, right, right], [y - 0.2 * step, y, y, y - 0.2 * step]
@@ -250,7 +253,18 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
         axes.axvline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
     bar = Line2D([], [], color="#111111", linewidth=0.9, label="different")
     legend(drawn, [*models_key(linestyle="-", ms=4, mew=0), bar])
-    return Figure(name, _caption(run, tests, numbers, low), _alt(tests, names), numbers, drawn)
+    hidden = int((numbers["r2"] < low).sum())
+    below = f" {counted(hidden, 'value')} below {number(low)} {'is' if hidden == 1 else 'are'} cut off."
+    caption = (
+        f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}) over participants, "
+        f"n = {counted(tests.participants, 'participant')}; split: last {held_out_text(run)} s of the walk held out. "
+        "Boxes: quartiles, thick line: median, whiskers: range, marks: participants; networks only. A bar joins two "
+        "models that differ: exact two-sided Wilcoxon signed-rank test, Holm-Sidak over the variables of the pair, "
+        f"alpha = {tests.alpha:g}.{below if hidden else ''} After Fig. 4.2 of the dissertation."
+    )
+    said = [f"{MODEL_WORDS[a]} and {MODEL_WORDS[b]} differ in {len(which)}" for (a, b), which in different.items()]
+    alt = f"Boxes of R² of three models for {counted(len(names), 'variable')}: {', '.join(said)}."
+    return Figure(name, caption, alt, numbers, drawn)
 
 
 def _draw_boxes(axes: Axes, rows: pd.DataFrame, place: int) -> None:
@@ -261,26 +275,3 @@ def _draw_boxes(axes: Axes, rows: pd.DataFrame, place: int) -> None:
             continue
         draw_box(axes, values, x, look.colour)
         axes.plot(np.full(len(values), x), values, look.mark, color=look.colour, ms=2.0, mew=0, zorder=3)
-
-
-def _caption(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, low: float) -> str:
-    hidden = int((numbers["r2"] < low).sum())
-    below = (
-        f" {counted(hidden, 'value')} below {number(low)} {'is' if hidden == 1 else 'are'} cut off." if hidden else ""
-    )
-    return (
-        f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}) over participants, "
-        f"n = {counted(tests.participants, 'participant')}; split: last {held_out_text(run)} s of the walk held out. "
-        "Boxes: quartiles, thick line: median, whiskers: range, marks: participants; networks only. A bar joins two "
-        "models that differ: exact two-sided Wilcoxon signed-rank test, Holm-Sidak over the variables of the pair, "
-        f"alpha = {tests.alpha:g}.{below} After Fig. 4.2 of the dissertation."
-    )
-
-
-def _alt(tests: PairTests, names: list[str]) -> str:
-    said = []
-    for first, second in BARS:
-        rows = tests.of_pair(first, second)
-        count = int(rows.loc[rows["variable"].isin(names), "different"].sum())
-        said.append(f"{MODEL_WORDS[first]} and {MODEL_WORDS[second]} differ in {count}")
-    return f"Boxes of R² of three models for {counted(len(names), 'variable')}: {', '.join(said)}."

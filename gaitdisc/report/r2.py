@@ -130,9 +130,14 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
     row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
     drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
     draw_r2(axes, numbers)
+    parts = [
+        f"{MODEL_WORDS[str(model)]} from {number(values.min())} to {number(values.max())}"
+        for model, values in numbers[numbers["kind"] == "network"].groupby("model", sort=False)["r2"]
+    ]
+    said = f"R² of {counted(len(names), 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
     null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
     legend(drawn, r2_key(len(run.responses), null))
-    return Figure(name, _caption(run, low, null), _alt(run, numbers), numbers, drawn)
+    return Figure(name, _caption(run, low, null), said, numbers, drawn)
 
 
 def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
@@ -221,34 +226,18 @@ def _caption(run: ResponseRun, low: float, null: bool) -> str:
         "participants on (thick line: median, whiskers: range); hollow marks: median of ridge regression with "
         "phase harmonics"
     )
-    samples = _samples(run)
+    counts = run.r2_table()
+    counts = counts.loc[(counts["walk"] == "exo") & (counts["kind"] == "network"), "n"]
+    fewest, most = int(counts.min()), int(counts.max())
+    samples = f"{fewest} samples" if fewest == most else f"{fewest} to {most} samples each"
     noise = "dashed: R² of band-limited noise alone" if null else "R² of band-limited noise was not computed"
     edge = f" R² below {number(low)} is shown at the left edge with its value." if low == LOWEST else ""
     start = f" The axis starts at {number(low, 1)}." if low > 0 else ""
     return (
         f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}), "
-        f"n = {counted(people, 'participant')}{samples}; split: last {held_out_text(run)} s of the walk held "
+        f"n = {counted(people, 'participant')}, {samples}; split: last {held_out_text(run)} s of the walk held "
         f"out. {marks}; {noise}.{start}{edge}"
     )
-
-
-def _samples(run: ResponseRun) -> str:
-    counts = run.r2_table()
-    counts = counts.loc[(counts["walk"] == "exo") & (counts["kind"] == "network"), "n"]
-    if not len(counts):
-        return ""
-    low, high = int(counts.min()), int(counts.max())
-    return f", {low} samples" if low == high else f", {low} to {high} samples each"
-
-
-def _alt(run: ResponseRun, numbers: pd.DataFrame) -> str:
-    network = numbers[numbers["kind"] == "network"]
-    parts = [
-        f"{MODEL_WORDS[str(model)]} from {number(values.min())} to {number(values.max())}"
-        for model, values in network.groupby("model", sort=False)["r2"]
-    ]
-    count = numbers["variable"].nunique()
-    return f"R² of {counted(count, 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
 
 
 def r2_table(response: ParticipantResponse, name: str) -> Table:

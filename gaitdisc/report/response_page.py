@@ -57,7 +57,12 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
     names = file_names(people)
     limit = largest_inline(FIGURES_A_PERSON * len(run.responses))
-    alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
+    alone = []
+    for person, name in names.items():
+        walks = tuple(walk for walk in run.walks if walk.subject == person)
+        responses = tuple(response for response in run.responses if response.participant == person)
+        own = replace(run, units={WALK.file: walks, RESPONSE.file: responses})
+        alone.append((own, person, name, folder, limit))
     sections = drawn_side_by_side(_section, alone, MOST_OPEN)  # drawing takes seconds a participant
     overview = save_figures(r2_figures(run) if run.responses else [], folder)
     compared = save_figures(comparison_figures(run), folder)
@@ -90,12 +95,6 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     return write_page("report", shown, folder)
 
 
-def _of_one(run: ResponseRun, person: str) -> ResponseRun:
-    walks = tuple(walk for walk in run.walks if walk.subject == person)
-    responses = tuple(response for response in run.responses if response.participant == person)
-    return replace(run, units={WALK.file: walks, RESPONSE.file: responses})
-
-
 def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> Section:
     response = next(iter(run.responses), None)
     strides = strides_figure(run, person, name)
@@ -120,9 +119,17 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
 
 def method_sentences(run: ResponseRun) -> list[str]:
     """State, where angles come from markers, models, discrepancy, judgement, filters, a sentence each."""
-    held_out = held_out_text(run)
+    held_out, markers = held_out_text(run), []
+    computed = sum(any(finding.kind == "marker set" for finding in walk.findings) for walk in run.walks)
+    if computed:
+        walks = "the one walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
+        markers.append(
+            f"Joint angles of {walks} are computed from markers, calibrated with the person's static trial, before "
+            "they are filtered. “Findings” lists the marker set, the distance of the markers from their static "
+            "positions and bridged gaps."
+        )
     return [
-        *_markers_sentence(run),
+        *markers,
         "The state X contains joint angles and, if available, EMG envelopes (Eq. 4.1). Each model uses X, its first "
         "derivative and percent stride φ, and predicts second derivatives of the outputs.",
         f"The Nominal model f is fitted to the walk without the device effect ({run.nominal}; Eq. 4.2). The Exo model "
@@ -134,18 +141,6 @@ def method_sentences(run: ResponseRun) -> list[str]:
         "better than the mean, and a negative number worse.",
         f"{_filter_sentence(run)} A filter alone makes part of a second derivative predictable from the signal "
         "itself. The null gives this part: R² of band-limited noise that was filtered in the same way.",
-    ]
-
-
-def _markers_sentence(run: ResponseRun) -> list[str]:
-    computed = sum(any(finding.kind == "marker set" for finding in walk.findings) for walk in run.walks)
-    if not computed:
-        return []
-    walks = "the one walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
-    return [
-        f"Joint angles of {walks} are computed from markers, calibrated with the person's static trial, before they "
-        "are filtered. “Findings” lists the marker set, the distance of the markers from their static positions and "
-        "bridged gaps."
     ]
 
 

@@ -66,8 +66,13 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     if whole == 1:
         over = "the only variable"
     nominal, augmented, exo = (middle[column] for column in _ON_EXO.values())
+    explains = f"explains {number(nominal)}"
+    if not np.isfinite(nominal):
+        explains = "explains a share that was not computed"
+    elif nominal < 0:
+        explains = f"is worse than the mean and explains nothing (R² {number(nominal)})"
     sentences = [
-        f"In {response.participant}, the Nominal model {_explains(nominal)} of the device walk's variance "
+        f"In {response.participant}, the Nominal model {explains} of the device walk's variance "
         f"(R², median over {over}, held-out last {response.held_out_s:.4g} s, n = {sample_counts(response)} samples), "
         f"the Augmented model {number(augmented)}, the Exo model {number(exo)}."
     ]
@@ -81,14 +86,6 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
         if sentence:
             sentences.append(sentence)
     return sentences
-
-
-def _explains(r2: float) -> str:
-    if not np.isfinite(r2):
-        return "explains a share that was not computed"
-    if r2 < 0:
-        return f"is worse than the mean and explains nothing (R² {number(r2)})"
-    return f"explains {number(r2)}"
 
 
 def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:

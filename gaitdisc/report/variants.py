@@ -26,6 +26,8 @@ TITLES = {"modalities": "Effect of the inputs", "sensitivity": "Other cut-offs a
 @in_style
 def modalities_figure(run: VariantRun) -> Figure | None:
     """Fall of R2, median over the variables of a group, by family of inputs; None where nobody has numbers."""
+    from matplotlib.lines import Line2D
+
     numbers = falls(run)
     if not len(numbers):
         return None
@@ -51,15 +53,27 @@ def modalities_figure(run: VariantRun) -> Figure | None:
         axes.minorticks_off()
         axes.set_xlabel("fall of R² [1]")
         axes.set_title(GROUPS[group])
-    legend(drawn, _key())
-    return Figure("modalities", _caption(run), _alt(numbers), numbers, drawn)
+    mark = {"linestyle": "", "ms": 5}
+    looks = [(MODELS[model], f"{MODEL_WORDS[model]}, median") for model in SHOWN]
+    legend(drawn, [Line2D([], [], color=look.colour, marker=look.mark, label=words, **mark) for look, words in looks])
+    low, high = run.held_out_s
+    held = f"{low:.1f}" + (f" to {high:.1f}" if high - low >= 0.05 else "")
+    caption = (
+        f"Fall of R² [1] on the held-out device walk ({run.exo}) when a family of inputs (both sides; a joint or "
+        "muscle with its velocity) is left out, median over variables; n = "
+        f"{counted(len(run.people), 'participant')}; split: last {held} s of the walk held out. Augmented: only the "
+        "Discrepancy model lacks the inputs. Small marks: participants. Linear within 0.01, logarithmic beyond. "
+        "Networks only. For section 6.2.2 of the dissertation."
+    )
+    most = numbers[numbers["model"] == "augmented"].groupby("without", sort=False)["fall"].median()
+    alt = f"Fall of R² without each of {len(most)} families of inputs; the largest fall is without {most.idxmax()}."
+    return Figure("modalities", caption, alt, numbers, drawn)
 
 
 def falls(run: VariantRun) -> pd.DataFrame:
     """Variables (`angles` or `EMG`), family left out, network, participant, median fall of R2 over the variables."""
-    table = run.r2_table()
+    table = _grouped(run)
     table = table[table["kind"] == "network"]
-    table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
     keys = ["variables", "model", "participant", "variable"]
     whole = table[table["variant"] == ALL].set_index(keys)["r2"]
     others = table[table["variant"] != ALL]
@@ -68,23 +82,25 @@ def falls(run: VariantRun) -> pd.DataFrame:
     return grouped.median().reset_index().rename(columns={"variant": "without"})
 
 
+def _grouped(run: VariantRun) -> pd.DataFrame:
+    """R2 of every participant, with the group of each variable: `angles` or `EMG`."""
+    table = run.r2_table()
+    return table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
+
+
 def modalities_table(run: VariantRun) -> Table:
     """Shift of R2 of the Augmented model without each family, by variable; a star where it is shown to differ."""
     own = run.tests[run.tests["model"] == "augmented"]
-    variables = list(dict.fromkeys(own["variable"]))
-    rows = []
-    for family, tested in own.groupby("variant", sort=False):
-        shifts = dict(zip(tested["variable"], tested["shift"].to_numpy(float), strict=True))
-        stars = dict(zip(tested["variable"], tested["different"].to_numpy(bool), strict=True))
-        shown = [number(shifts[name], 3) + ("*" if stars[name] else "") for name in variables]
-        rows.append((family_words(str(family)), *shown))
+    cells = [number(float(str(row.shift)), 3) + ("*" if row.different else "") for row in own.itertuples()]
+    shown = own.assign(cell=cells).pivot_table("cell", "variant", "variable", aggfunc="first", sort=False)
+    rows = tuple((family_words(str(family)), *row) for family, row in zip(shown.index, shown.to_numpy(), strict=True))
     caption = (
         f"Hodges-Lehmann shift of R² [1] of the Augmented model on the held-out device walk ({run.exo}) when the "
         f"Discrepancy model lacks a family of inputs, n = {counted(len(run.people), 'participant')}; negative: R² "
         "falls. Star: exact two-sided signed rank test, Holm-Sidak over the variables of a row, alpha = 0.05. The "
         "CSV contains both models, W, p, adjusted p and intervals."
     )
-    return Table("modalities", caption, ("without", *map(label, variables)), tuple(rows), run.tests)
+    return Table("modalities", caption, ("without", *map(label, shown.columns)), rows, run.tests)
 
 
 def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
@@ -120,52 +136,22 @@ def family_words(family: str) -> str:
     return label(f"{family}_r").removesuffix(", right") if "_" in family else family
 
 
-def _key() -> list:
-    from matplotlib.lines import Line2D
-
-    looks = [(MODEL_WORDS[model], MODELS[model]) for model in SHOWN]
-    return [
-        Line2D([], [], color=look.colour, marker=look.mark, linestyle="", ms=5, label=f"{word}, median")
-        for word, look in looks
-    ]
-
-
-def _caption(run: VariantRun) -> str:
-    low, high = run.held_out_s
-    held = f"{low:.1f}" + (f" to {high:.1f}" if high - low >= 0.05 else "")
-    return (
-        f"Fall of R² [1] on the held-out device walk ({run.exo}) when a family of inputs (both sides; a joint or "
-        "muscle with its velocity) is left out, median over variables; n = "
-        f"{counted(len(run.people), 'participant')}; split: last {held} s of the walk held out. Augmented: only the "
-        "Discrepancy model lacks the inputs. Small marks: participants. Linear within 0.01, logarithmic beyond. "
-        "Networks only. For section 6.2.2 of the dissertation."
-    )
-
-
-def _alt(numbers: pd.DataFrame) -> str:
-    own = numbers[numbers["model"] == "augmented"].groupby("without", sort=False)["fall"].median()
-    return f"Fall of R² without each of {len(own)} families of inputs; the largest fall is without {own.idxmax()}."
-
-
 def setting_medians(run: VariantRun) -> pd.DataFrame:
     """Medians over participants of medians over variables, by setting, group of variables and model."""
-    table = run.r2_table()
-    table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
-    keys = ["variant", "variables", "model", "kind"]
-    people = table.groupby([*keys, "participant"], sort=False)["r2"].median().reset_index()
-    over = people.pivot_table(index=keys[:2], columns=keys[2:], values="r2", aggfunc="median", sort=False)
-    count = people.groupby(keys[:2], sort=False)["participant"].nunique()
-    wanted = {
-        "nominal": ("nominal", "network"),
-        "augmented": ("augmented", "network"),
-        "exo": ("exo", "network"),
-        "ridge_augmented": ("augmented", "ridge"),
-        "null": ("nominal", "null"),
+    columns = {
+        ("nominal", "network"): "nominal",
+        ("augmented", "network"): "augmented",
+        ("exo", "network"): "exo",
+        ("augmented", "ridge"): "ridge_augmented",
+        ("nominal", "null"): "null",
     }
-    found = pd.DataFrame(
-        {name: over[key] if key in over.columns else np.nan for name, key in wanted.items()}, index=over.index
-    )
-    return found.assign(participants=count.reindex(found.index)).reset_index()
+    table = _grouped(run)
+    table["column"] = [columns.get(key, "") for key in zip(table["model"], table["kind"], strict=True)]
+    people = table.pivot_table(
+        "r2", ["variant", "variables", "participant"], "column", aggfunc="median", sort=False
+    ).reindex(columns=list(columns.values()))
+    over = people.groupby(level=["variant", "variables"], sort=False)
+    return over.median().assign(participants=over.size()).rename_axis(columns=None).reset_index()
 
 
 def orders(run: VariantRun) -> pd.DataFrame:

@@ -17,7 +17,6 @@ from gaitdisc.results.participant_response import ResponseRun
 from gaitdisc.words import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 COLUMNS = ("participant", "condition", "side", "start_s", "end_s", "duration_s", "kept", "code", "reason")
@@ -55,6 +54,9 @@ def reason_kind(reason: str) -> str:
 @in_style
 def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | None:
     """Every stride as a bar, and stride durations over time, for each walk; None where there is no stride."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
     numbers = stride_numbers(run, participant)
     if not len(numbers):
         return None
@@ -70,8 +72,20 @@ def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | No
             axes.set_xlim(0, max(walk.duration_s, float(strides["end_s"].max())))
         strip.tick_params(labelbottom=False)
     grid[-1][0].set_xlabel("time in the trial [s]")
-    legend(drawn, _key())
-    return Figure(f"strides-{name}", _caption(participant, numbers), _alt(participant, numbers), numbers, drawn)
+    looks = {"left": SIDES["l"], "right": SIDES["r"], "dropped": DROPPED}
+    marks = [
+        Line2D([], [], marker=look.mark, color=look.colour, linestyle="", ms=4, label=word)
+        for word, look in looks.items()
+    ]
+    bars = {"kept": KEPT, "dropped, with the letter of its reason": DROPPED}
+    legend(drawn, [*(Patch(facecolor=look.colour, label=words) for words, look in bars.items()), *marks])
+    parts = [
+        f"{condition}: {int(rows['kept'].sum())} of {len(rows)} strides kept, median duration "
+        f"{rows['duration_s'].median():.2f} s"
+        for condition, rows in groups
+    ]
+    alt = f"Strides of {participant}. {listed(parts)}."
+    return Figure(f"strides-{name}", _caption(participant, numbers), alt, numbers, drawn)
 
 
 def _draw_strip(axes: Axes, strides: pd.DataFrame) -> None:
@@ -104,19 +118,6 @@ def _draw_durations(axes: Axes, strides: pd.DataFrame) -> None:
     axes.set_ylim(max(0.0, middle - reach), middle + reach)
 
 
-def _key() -> list[Artist]:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-    marks = [(look.mark, look.colour, word) for look, word in ((SIDES["l"], "left"), (SIDES["r"], "right"))]
-    marks.append((DROPPED.mark, DROPPED.colour, "dropped"))
-    return [
-        Patch(facecolor=KEPT.colour, label="kept"),
-        Patch(facecolor=DROPPED.colour, label="dropped, with the letter of its reason"),
-        *(Line2D([], [], marker=mark, color=colour, linestyle="", ms=4, label=word) for mark, colour, word in marks),
-    ]
-
-
 def _caption(participant: str, numbers: pd.DataFrame) -> str:
     parts = [
         f"{counted(len(rows), 'stride')} ({condition}: {int(rows['kept'].sum())} kept, {int((~rows['kept']).sum())} "
@@ -129,15 +130,6 @@ def _caption(participant: str, numbers: pd.DataFrame) -> str:
         "reason in the table below. Under each strip: duration of every stride [s] over time; left red triangles, "
         "right blue discs, dropped crosses."
     )
-
-
-def _alt(participant: str, numbers: pd.DataFrame) -> str:
-    parts = [
-        f"{condition}: {int(rows['kept'].sum())} of {len(rows)} strides kept, median duration "
-        f"{rows['duration_s'].median():.2f} s"
-        for condition, rows in numbers.groupby("condition", sort=False)
-    ]
-    return f"Strides of {participant}. {listed(parts)}."
 
 
 def walks_table(run: ResponseRun) -> Table:

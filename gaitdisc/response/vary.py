@@ -175,8 +175,7 @@ def fit_data_quantity(
     lengths_s: lengths of the training part [s]; its whole length is always added
     part: `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to
         what is held out. The text does not say which; the two differ where gait drifts
-    whole: what the whole training part gave, fitted to the same walks with the same settings; it is then not fitted
-        again
+    whole: what the whole training part gave with the same settings; it is then not fitted again
     Source: Ebers 2023, section 4.2.4 and Fig. 4.4.
     """
     if part not in ("first", "last"):

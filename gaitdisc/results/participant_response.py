@@ -69,7 +69,6 @@ class ParticipantResponse:
         """Check shapes once, before they are saved."""
         if lies_on_disk(self, "held_out"):
             return
-        count = len(self.outputs)
         columns = {
             "units": len(self.units),
             "held_out.measured": self.held_out.measured.shape[1],
@@ -77,6 +76,7 @@ class ParticipantResponse:
             **{f"held_out.bands[{k}]": v.shape[2] for k, v in self.held_out.bands.items()},
             **{f"residuals[{k}]": v.shape[2] for k, v in self.residuals.items()},
         }
+        count = len(self.outputs)
         for name, found in columns.items():
             if found != count:
                 raise ShapeError(
@@ -219,15 +219,13 @@ class ResponseRun(StudyRun):
         names = [response.participant for response in self.responses]
         return tuple(dict.fromkeys([*names, *(one.subject for one in self.cycles if len(one.kept))]))
 
-    def r2_table(self) -> pd.DataFrame:
+    def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""
         tables = [r.r2.assign(participant=r.participant) for r in self.responses]
         columns = ["participant", "variable", "model", "kind", "walk", "r2", "n"]
         return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
 
-    def to_frame(self) -> pd.DataFrame:
-        """R2 of every participant, variable, model, kind and walk, one row each."""
-        return self.r2_table()
+    r2_table = to_frame
 
     def __repr__(self) -> str:
         counts = f"{len(self.responses)} responses, {len(self.cycles)} sets of cycles, {len(self.refusals)} refusals"

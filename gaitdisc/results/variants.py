@@ -54,15 +54,13 @@ class VariantRun(Saved, file="variant_run.json"):
     held_out_s: tuple[float, float]  # shortest and longest held-out part [s]
     renewed: tuple[str, ...] = ()
 
-    def r2_table(self) -> pd.DataFrame:
+    def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variant, variable, model and kind, one row each."""
         tables = [each.table.assign(participant=each.participant) for each in self.people]
         columns = ["participant", *VARIANT_COLUMNS]
         return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
 
-    def to_frame(self) -> pd.DataFrame:
-        """R2 of every participant, variant, variable, model and kind, one row each."""
-        return self.r2_table()
+    r2_table = to_frame
 
 
 VARIANTS = Kind(
