@@ -10,8 +10,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.batch.public_words import public_settings, public_title
-from gaitdisc.batch.sensed_walks import SensedWalk, SensedWalks, sensed_walks
-from gaitdisc.batch.target_walks import STATES
+from gaitdisc.batch.sensed_walks import STATES, SensedWalk, SensedWalks, sensed_walks
 from gaitdisc.errors import GaitdiscError, SamplingError, SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
@@ -20,9 +19,9 @@ from gaitdisc.recording import Recording, Samples
 from gaitdisc.results.provenance import Refusal, made_now
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.model_folder import SensingModel, load_model
+from gaitdisc.sensing.model_folder import load_model
 from gaitdisc.sensing.reconstruct import BASELINES, Fits, PersonReconstruction, reconstruct
-from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Reconstructor, Sensing, fitting_device, sensing
+from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, fitting_device, sensing
 from gaitdisc.sensing.sensor_search import search_sensors
 from gaitdisc.sensing.state_errors import INTERVAL_LEVEL, coverage
 from gaitdisc.sensing.windows import RULES, Lags, Parts, split_by_subject, split_by_trial, split_within, windows_of
@@ -47,7 +46,7 @@ class ReconstructionSettings:
     kinds: tuple[str, ...] = tuple(KINDS)
     # walks of this condition alone, of both where it is empty; with the split `condition`, those that are tested
     condition: str = ""
-    targets: str = STATES  # what is reconstructed: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`
+    targets: str = STATES  # what is reconstructed: `states`, or a word of `gaitdisc.batch.sensed_walks.TARGETS`
     ahead_s: float = 0.0  # how far ahead of the last reading the states are forecast [s]; 0 is the present
     seed: int = 0
     device: str = "auto"  # that networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
@@ -214,9 +213,13 @@ def reconstruct_recording(
     missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.windows.WAYS`
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
-    if calibration is not None:
-        saved = replace(saved, reconstructor=_for_person(saved, calibration, cutoff_hz))
     what = saved.reconstructor.sensing
+    if calibration is not None:
+        same = read_trial(calibration).stream("kinematics")
+        walk = lowpassed(same.selected([*what.sensors, *what.states]), cutoff_hz)
+        saved(walk)  # refuses another rate or unit
+        strides = what.windows(walk, np.zeros(len(walk.time)))
+        saved = replace(saved, reconstructor=calibrated(saved.reconstructor, strides))
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
     filtered = lowpassed(kinematics.selected(names), cutoff_hz)
     states = saved(filtered, missing)
@@ -238,10 +241,3 @@ def reconstruct_recording(
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
     return ReconstructedRecording(kept, out, rmse, inside, INTERVAL_LEVEL)
-
-
-def _for_person(saved: SensingModel, calibration: Path, cutoff_hz: float) -> Reconstructor:
-    what, kinematics = saved.reconstructor.sensing, read_trial(calibration).stream("kinematics")
-    walk = lowpassed(kinematics.selected([*what.sensors, *what.states]), cutoff_hz)
-    saved(walk)  # refuses another rate or unit
-    return calibrated(saved.reconstructor, what.windows(walk, np.zeros(len(walk.time))))

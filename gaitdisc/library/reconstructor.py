@@ -19,14 +19,13 @@ from gaitdisc.results.kind import Kind, Saved
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
 from gaitdisc.sensing.state_errors import half_widths
-from gaitdisc.sensing.windows import Lags, stacked, windows_of
+from gaitdisc.sensing.windows import SEAM_S, Lags, stacked, windows_of
 from gaitdisc.statistics.r2 import r2
 
 if TYPE_CHECKING:
     import pandas as pd
 
 CHECKED = 0.15  # of each trial, its last part: penalties, epochs and the interval are chosen on it
-SEAM_S = 0.3  # zero-lag filters look ahead and back over the border
 Readings: TypeAlias = Union[ArrayLike, Recording, "pd.DataFrame", "pd.Series[Any]"]
 Trials: TypeAlias = Readings | Sequence[Readings]
 SETTINGS = ("kind", "rate_hz", "history_s", "spacing_s", "ahead_s", "seed")
@@ -288,11 +287,6 @@ class Reconstructor(Saved, file="model.json"):
         return windows_of(both, what.sensors, what.states, what.lags, np.zeros(len(read.time)))
 
 
-def save_reconstructor(fitted: Reconstructor, folder: Path) -> None:
-    """Save the fitted model."""
-    save_model(fitted.model, folder)
-
-
 def load_reconstructor(folder: Path) -> Reconstructor:
     """Load a reconstructor.
 
@@ -307,7 +301,9 @@ def load_reconstructor(folder: Path) -> Reconstructor:
     return done
 
 
-RECONSTRUCTOR = Kind(Reconstructor, "model.json", write=save_reconstructor, read=load_reconstructor)
+RECONSTRUCTOR = Kind(
+    Reconstructor, "model.json", write=lambda fitted, folder: save_model(fitted.model, folder), read=load_reconstructor
+)
 
 
 def _array(given: Any, words: str) -> NDArray[np.float64]:

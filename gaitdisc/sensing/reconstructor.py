@@ -19,7 +19,6 @@ from gaitdisc.sensing.windows import Lags, hidden, present, thinned, windows_of
 
 if TYPE_CHECKING:
     from gaitdisc.networks.trained_network import TrainedNetwork
-    from gaitdisc.networks.training_settings import TrainingSettings
 
 FEATURES = 1000
 MOST_FITTED = 20_000  # windows; beyond it every k-th is fitted
@@ -218,7 +217,13 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
         text = TrainingSettings(
             batch=64, learning_rate=1e-3, falling=False, decays=(0.0,), solved=False, seed=seed, device=device
         )
-        return lambda training, check: train(training, build, _as_long(text, len(training)), check=check).network
+
+        def fit(training: Samples, check: Samples) -> ScaledModel:
+            each = math.ceil(len(training) / text.batch)  # steps of an epoch
+            long = replace(text, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))
+            return train(training, build, long, check=check).network
+
+        return fit
     if kind == ENSEMBLE:
         each = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
         return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in each))
@@ -234,12 +239,6 @@ def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     if kind == OF_TEXT:
         return partial(Shred, sensors=sensors, layers=2, cell="lstm", decoder=(350, 400))
     return partial(Shred, sensors=sensors, masked=kind == MASKED)
-
-
-def _as_long(settings: TrainingSettings, windows: int) -> TrainingSettings:
-    """As many epochs as the steps of the dissertation's code make of so many windows."""
-    each = math.ceil(windows / settings.batch)
-    return replace(settings, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))
 
 
 def latent_states(done: Reconstructor, windows: Samples) -> NDArray[np.float64]:
