@@ -124,15 +124,14 @@ def _walks(
     study: Study, person: Participant, condition: str, reader: C3DReader, public: PublicWords, refusals: list[Refusal]
 ) -> list[ReadWalk]:
     found = []
+    streams = [stream for stream, _ in TARGETS.values()]
     own = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
     for planned in person.trials:
         if not is_walk(study, planned) or (condition and planned.condition != condition):
             continue
         try:
             read = own.read_walk(planned)
-            trial = of_trial(public, person, planned).known_channels(
-                read.trial, [stream for stream, _ in TARGETS.values()]
-            )
+            trial = of_trial(public, person, planned).known_channels(read.trial, streams)
             found.append(replace(read, trial=trial))
         except GaitdiscError as error:
             refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
@@ -224,11 +223,9 @@ def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, li
         Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle, which is excluded", name)
         for name, finding in dead.items()
     ]
-    if key == "emg":
-        raw = is_raw(found)
-        smooth = enveloped(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order) if raw else found
-        return (smooth if raw else lowpassed(found, filters.emg_lowpass_hz, filters.order, filters.gap_s)), findings
-    cutoff_hz = FORCE_HZ if key == "forces" else filters.kinematics_hz
+    if key == "emg" and is_raw(found):
+        return enveloped(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
+    cutoff_hz = {"emg": filters.emg_lowpass_hz, "forces": FORCE_HZ}.get(key, filters.kinematics_hz)
     return lowpassed(found, cutoff_hz, filters.order, filters.gap_s), findings
 
 
