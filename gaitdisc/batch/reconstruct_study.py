@@ -157,10 +157,7 @@ def _result(
 
 
 def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
-    """Find the best sets of sensors among the states of a study, for all participants together.
-
-    returns: as of `gaitdisc.sensing.sensor_search.search_sensors`
-    """
+    """Find the best sets of sensors among the states of a study, for all participants; as of `search_sensors`."""
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(

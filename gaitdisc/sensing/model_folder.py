@@ -29,8 +29,8 @@ from gaitdisc.sensing.reconstructor import (
     STATIC,
     WITHOUT_NETWORK,
     Ensemble,
-    Reconstructor,
     Sensing,
+    WindowModel,
     network_of,
 )
 from gaitdisc.sensing.windows import Lags, filled, refuse_unknown_way, windows_of
@@ -50,7 +50,7 @@ RATE_TOLERANCE = 1e-3
 class SensingModel:
     """A reconstructor with the channels it was fitted to."""
 
-    reconstructor: Reconstructor
+    reconstructor: WindowModel
     channels: tuple[Channel, ...]  # of the sensors, then of the states
     # (state,) [each state's unit], half width of the 90 % interval, from the windows that the model was chosen by
     half_widths: NDArray[np.float64]
@@ -146,7 +146,7 @@ def load_model(folder: Path) -> SensingModel:
             f"has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files must come from one model. Copy them together, or run `gaitdisc reconstruct` again.",
         )
-    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
+    return SensingModel(WindowModel(kind, what, weights, *numbers), tuple(channels), half)
 
 
 def _places(kind: str, folder: Path) -> list[Path]:
@@ -202,7 +202,7 @@ class Stream:
     missing: a word of `gaitdisc.sensing.windows.WAYS` for a missing reading, unless the model is a masked one
     """
 
-    def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
+    def __init__(self, reconstructor: WindowModel, missing: str = "none") -> None:
         refuse_unknown_way(missing)
         self._sensors = reconstructor.sensing.sensors
         self._members = _stepwise(reconstructor)
@@ -235,7 +235,7 @@ class Stream:
 class _LastReadings:
     """The last readings, and what a model reconstructs from them."""
 
-    def __init__(self, reconstructor: Reconstructor) -> None:
+    def __init__(self, reconstructor: WindowModel) -> None:
         what = reconstructor.sensing
         lags = what.lags.static() if reconstructor.kind in STATIC else what.lags
         self._model = reconstructor.model
@@ -248,7 +248,7 @@ class _LastReadings:
         return self._model(self._readings[self._rows].reshape(1, -1))[0]
 
 
-def _stepwise(reconstructor: Reconstructor) -> list[CarriedWindows] | list[_LastReadings]:
+def _stepwise(reconstructor: WindowModel) -> list[CarriedWindows] | list[_LastReadings]:
     """What reads along; the mean of what it reconstructs is that of the model."""
     lags, model = reconstructor.sensing.lags, reconstructor.model
     if reconstructor.kind in ("shred", MASKED, ENSEMBLE, OF_TEXT) and not isinstance(model, Corrected):

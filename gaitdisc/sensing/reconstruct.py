@@ -15,7 +15,7 @@ from gaitdisc.recording import Samples
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS
 from gaitdisc.sensing.calibration import calibrated, first_strides, rehearsed
 from gaitdisc.sensing.model_folder import SensingModel
-from gaitdisc.sensing.reconstructor import KINDS, WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import KINDS, WITHOUT_NETWORK, Sensing, WindowModel, fit_reconstructor
 from gaitdisc.sensing.state_errors import (
     Reconstructed,
     angle_columns,
@@ -202,7 +202,7 @@ class _Prediction:
     seconds: float = 0.0
 
 
-Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and the half widths of its interval
+Fitted = tuple[WindowModel, NDArray[np.float64]]  # and the half widths of its interval
 
 
 def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Prediction], NDArray[np.bool_]]:

@@ -144,7 +144,7 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
 
 
 @dataclass(frozen=True, eq=False)
-class Reconstructor:
+class WindowModel:
     """A fitted model that reconstructs states from windows."""
 
     kind: str
@@ -180,7 +180,7 @@ def fitting_device(kinds: Sequence[str], wanted: str) -> str:
 
 def fit_reconstructor(
     kind: str, what: Sensing, training: Samples, check: Samples, seed: int = 0, device: str = "auto"
-) -> Reconstructor:
+) -> WindowModel:
     """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the test part.
 
     training, check: windows to fit, and windows to choose by; readings may be missing for `masked shred`
@@ -198,7 +198,7 @@ def fit_reconstructor(
         training, check = hidden(training, len(what.sensors), seed), hidden(check, len(what.sensors), seed + 1)
     begun = time.process_time()
     model = fit(training, check)
-    return Reconstructor(kind, what, model, len(training), time.process_time() - begun, device)
+    return WindowModel(kind, what, model, len(training), time.process_time() - begun, device)
 
 
 def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samples, Samples], ScaledModel]:
@@ -241,7 +241,7 @@ def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     return partial(Shred, sensors=sensors, masked=kind == MASKED)
 
 
-def latent_states(done: Reconstructor, windows: Samples) -> NDArray[np.float64]:
+def latent_states(done: WindowModel, windows: Samples) -> NDArray[np.float64]:
     """Latent state of a fitted SHRED at the last reading of each window, (window, node) [1]."""
     from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trained_network import TrainedNetwork

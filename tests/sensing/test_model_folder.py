@@ -17,7 +17,7 @@ from gaitdisc.recording import Recording, scale_of
 from gaitdisc.results.unit_folder import file_sha256
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.onnx_file import write_onnx
-from gaitdisc.sensing.reconstructor import Reconstructor, fit_reconstructor
+from gaitdisc.sensing.reconstructor import WindowModel, fit_reconstructor
 
 
 @pytest.fixture(scope="module")
@@ -189,7 +189,7 @@ def test_other_networks(pair, tmp_path, build):
     network = TrainedNetwork(tuple("abcdefgh"), tuple("xyz"), scale_of(x), scale_of(y), build())
     two = pair.what.__class__(("a", "late"), ("late",), pair.what.lags, 100.0)
     write_onnx(
-        SensingModel(Reconstructor("shred", two, network, 0, 0.0), pair.channels * 2, np.ones(1)), tmp_path / "m.onnx"
+        SensingModel(WindowModel("shred", two, network, 0, 0.0), pair.channels * 2, np.ones(1)), tmp_path / "m.onnx"
     )
     np.testing.assert_allclose(run(tmp_path / "m.onnx", x), network(x), atol=1e-5)
 
