@@ -20,10 +20,14 @@ from gaitdisc.sensing.onnx_file import write_onnx
 from gaitdisc.sensing.reconstructor import WindowModel, fit_reconstructor
 
 
+def as_saved(done, pair):
+    return SensingModel(done, pair.channels, np.array([0.5]))
+
+
 @pytest.fixture(scope="module")
 def saved(pair):
     fitted = fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
-    return SensingModel(fitted, pair.channels, np.array([0.5]))
+    return as_saved(fitted, pair)
 
 
 def test_a_loaded_model_tells_the_same_of_a_new_recording(pair, saved, tmp_path):
@@ -45,7 +49,7 @@ def test_where_it_was_fitted_is_kept(saved, tmp_path):
 
 def test_a_network_is_loaded_with_its_kind(pair, tmp_path):
     fitted = fit_reconstructor("shallow decoder", pair.what, pair.parts.fitted(), pair.parts.checked())
-    save_model(SensingModel(fitted, pair.channels, np.ones(1)), tmp_path)
+    save_model(as_saved(fitted, pair), tmp_path)
     test = pair.parts.tested()
     np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), fitted(test))
 
@@ -70,7 +74,7 @@ def test_refusals(pair, saved, tmp_path):
 @pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble", "shred-text"])
 def test_every_recurrent_network_is_loaded_as_it_was(pair, untrained, tmp_path, kind):
     done = untrained(kind)
-    save_model(SensingModel(done, pair.channels, np.ones(1)), tmp_path)
+    save_model(as_saved(done, pair), tmp_path)
     test = pair.parts.tested()
     np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), done(test))
     files = {f"weights_{k}.npz" for k in range(1, 6)} if kind == "shred ensemble" else {"weights.npz"}
@@ -92,7 +96,7 @@ def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
     with pytest.raises(SchemaError, match=r"gaitdisc.*weights\.npz.*missing"):
         load_model(tmp_path)
     static = fit_reconstructor("linear", pair.what, pair.parts.fitted(), pair.parts.checked())
-    save_model(SensingModel(static, pair.channels, np.ones(1)), tmp_path / "static")
+    save_model(as_saved(static, pair), tmp_path / "static")
     (tmp_path / "weights.npz").write_bytes((tmp_path / "static" / "weights.npz").read_bytes())
     sha256 = file_sha256(tmp_path / "weights.npz")
     resealed(tmp_path / "model.json", lambda data: data["sha256"].update({"weights.npz": sha256}))
@@ -142,10 +146,6 @@ def run(path, windows):
     return runtime.InferenceSession(path, providers=["CPUExecutionProvider"]).run(
         None, {"window": np.float32(windows)}
     )[0]
-
-
-def as_saved(done, pair):
-    return SensingModel(done, pair.channels, np.array([0.5]))
 
 
 @pytest.mark.parametrize("kind", ["linear", "delay ridge", "fourier ridge"])
