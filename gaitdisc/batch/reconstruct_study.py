@@ -136,23 +136,24 @@ def _result(
     if what.lags.ahead:
         models |= BASELINES
     used = {**public_settings(study, {"filters", "strides", "conditions"}), "reconstruct": asdict(settings)}
+    when = f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at"
+    errors, summary, curves = (
+        pd.concat([getattr(each, name) for each in done], ignore_index=True) for name in ("errors", "summary", "curves")
+    )
     return Reconstruction(
-        public_title(study),
-        walks.named(what.sensors),
-        walks.named(what.states),
-        f"{settings.split}: {rule}",
-        f"{what.lags.count} samples of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model "
-        "estimates "
-        + (f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at")
-        + " the last of them",
-        models,
-        *(
-            pd.concat([getattr(each, name) for each in done], ignore_index=True)
-            for name in ("errors", "summary", "curves")
-        ),
-        tuple(refusals),
-        walks.findings,
-        made_now(used, settings.seed, walks.files, SECTION),
+        title=public_title(study),
+        sensors=walks.named(what.sensors),
+        states=walks.named(what.states),
+        split=f"{settings.split}: {rule}",
+        history=f"{what.lags.count} samples of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model "
+        f"estimates {when} the last of them",
+        models=models,
+        errors=errors,
+        summary=summary,
+        curves=curves,
+        refusals=tuple(refusals),
+        findings=walks.findings,
+        provenance=made_now(used, settings.seed, walks.files, SECTION),
     )
 
 

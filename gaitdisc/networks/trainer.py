@@ -16,8 +16,7 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.networks.descent import Descent, descend
-from gaitdisc.networks.threads import pinned_threads
-from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.networks.trained_network import TrainedNetwork, pinned_threads
 from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
 from gaitdisc.recording import Samples, Scale, scale_of
 
@@ -86,16 +85,16 @@ def train(
             solve_readout(best.network, whole, best.penalty)
     progress(1.0)
     return Training(
-        TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
-        best.decay,
-        best.penalty,
-        len(best.descent.losses),
-        best.descent.best_epoch,
-        best.descent.losses,
-        len(samples),
-        len(inner),
-        time.perf_counter() - begun,
-        best.descent.arithmetic,
+        network=TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
+        decay=best.decay,
+        penalty=best.penalty,
+        epochs=len(best.descent.losses),
+        best_epoch=best.descent.best_epoch,
+        losses=best.descent.losses,
+        n_training=len(samples),
+        n_inner=len(inner),
+        seconds=time.perf_counter() - begun,
+        arithmetic=best.descent.arithmetic,
     )
 
 
