@@ -24,7 +24,7 @@ import torch
 
 from gaitdisc.networks.descent import TorchSteps
 from gaitdisc.networks.shred import Shred
-from gaitdisc.networks.threads import torch_threads
+from gaitdisc.networks.trained_network import torch_threads
 from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings, schedule_of
 
 STEPS, TRIES = 3, 6

@@ -36,7 +36,7 @@ from sensing_walks import Person, chosen_walks
 
 from gaitdisc.recording import Samples
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.sensing.reconstructor import FEATURES, MASKED, Reconstructor, fit_reconstructor
+from gaitdisc.sensing.reconstructor import FEATURES, MASKED, WindowModel, fit_reconstructor
 from gaitdisc.sensing.windows import Parts, filled, hidden, split_within, with_missing
 
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
@@ -80,7 +80,7 @@ def curves(person: Person, seed: int) -> NDArray[np.float64]:
 
 
 def parts(
-    person: Person, share: float, run_s: float, seed: int, filling: tuple[Reconstructor, str] | None = None
+    person: Person, share: float, run_s: float, seed: int, filling: tuple[WindowModel, str] | None = None
 ) -> Parts:
     """Windows of all walks that have lost readings, filled or not, and parted in time."""
     what, windows = person.what, []

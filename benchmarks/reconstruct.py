@@ -52,7 +52,7 @@ from sensing_walks import SENSORS, Person, cohort_walks
 from torch import Tensor, nn
 from torch.utils.data import DataLoader, TensorDataset
 
-from gaitdisc.networks.threads import pinned_threads
+from gaitdisc.networks.trained_network import pinned_threads
 from gaitdisc.recording import Samples
 from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
 from gaitdisc.sensing.windows import Lags, Parts, split_by_subject

@@ -56,7 +56,7 @@ from torch import nn
 from torch.utils.data import DataLoader, TensorDataset
 
 from gaitdisc.networks import trainer
-from gaitdisc.networks.threads import pinned_threads
+from gaitdisc.networks.trained_network import pinned_threads
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Samples
 from gaitdisc.response.fit_response import fit_models, fit_network

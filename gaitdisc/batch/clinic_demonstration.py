@@ -22,10 +22,8 @@ from gaitdisc.recording import Trial
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 16.0
-CONTROLS_SEED, WEEK_SEED = (
-    52_000,
-    60_000,
-)  # twenty whose spreads are those of a hundred; 50_000: a third less at the knee
+CONTROLS_SEED = 52_000  # twenty whose spreads are those of a hundred; 50_000: a third less at the knee
+WEEK_SEED = 60_000
 CONDITION = "walking"
 # between healthy people, of the mean [deg] (Kadaba 1990, about); the feet point outwards by some 7 deg
 PELVIS_SD = {"pelvis_tilt": 4.0, "pelvis_obliquity": 1.0, "pelvis_rotation": 1.5}

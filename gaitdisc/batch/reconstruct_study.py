@@ -10,8 +10,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.batch.public_words import public_settings, public_title
-from gaitdisc.batch.sensed_walks import SensedWalk, SensedWalks, sensed_walks
-from gaitdisc.batch.target_walks import STATES
+from gaitdisc.batch.sensed_walks import STATES, SensedWalk, SensedWalks, sensed_walks
 from gaitdisc.errors import GaitdiscError, SamplingError, SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
@@ -20,9 +19,9 @@ from gaitdisc.recording import Recording, Samples
 from gaitdisc.results.provenance import Refusal, made_now
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.model_folder import SensingModel, load_model
+from gaitdisc.sensing.model_folder import load_model
 from gaitdisc.sensing.reconstruct import BASELINES, Fits, PersonReconstruction, reconstruct
-from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Reconstructor, Sensing, fitting_device, sensing
+from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, fitting_device, sensing
 from gaitdisc.sensing.sensor_search import search_sensors
 from gaitdisc.sensing.state_errors import INTERVAL_LEVEL, coverage
 from gaitdisc.sensing.windows import RULES, Lags, Parts, split_by_subject, split_by_trial, split_within, windows_of
@@ -47,7 +46,7 @@ class ReconstructionSettings:
     kinds: tuple[str, ...] = tuple(KINDS)
     # walks of this condition alone, of both where it is empty; with the split `condition`, those that are tested
     condition: str = ""
-    targets: str = STATES  # what is reconstructed: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`
+    targets: str = STATES  # what is reconstructed: `states`, or a word of `gaitdisc.batch.sensed_walks.TARGETS`
     ahead_s: float = 0.0  # how far ahead of the last reading the states are forecast [s]; 0 is the present
     seed: int = 0
     device: str = "auto"  # that networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
@@ -137,31 +136,29 @@ def _result(
     if what.lags.ahead:
         models |= BASELINES
     used = {**public_settings(study, {"filters", "strides", "conditions"}), "reconstruct": asdict(settings)}
+    when = f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at"
+    errors, summary, curves = (
+        pd.concat([getattr(each, name) for each in done], ignore_index=True) for name in ("errors", "summary", "curves")
+    )
     return Reconstruction(
-        public_title(study),
-        walks.named(what.sensors),
-        walks.named(what.states),
-        f"{settings.split}: {rule}",
-        f"{what.lags.count} samples of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model "
-        "estimates "
-        + (f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at")
-        + " the last of them",
-        models,
-        *(
-            pd.concat([getattr(each, name) for each in done], ignore_index=True)
-            for name in ("errors", "summary", "curves")
-        ),
-        tuple(refusals),
-        walks.findings,
-        made_now(used, settings.seed, walks.files, SECTION),
+        title=public_title(study),
+        sensors=walks.named(what.sensors),
+        states=walks.named(what.states),
+        split=f"{settings.split}: {rule}",
+        history=f"{what.lags.count} samples of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model "
+        f"estimates {when} the last of them",
+        models=models,
+        errors=errors,
+        summary=summary,
+        curves=curves,
+        refusals=tuple(refusals),
+        findings=walks.findings,
+        provenance=made_now(used, settings.seed, walks.files, SECTION),
     )
 
 
 def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
-    """Find the best sets of sensors among the states of a study, for all participants together.
-
-    returns: as of `gaitdisc.sensing.sensor_search.search_sensors`
-    """
+    """Find the best sets of sensors among the states of a study, for all participants; as of `search_sensors`."""
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
@@ -214,9 +211,13 @@ def reconstruct_recording(
     missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.windows.WAYS`
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
-    if calibration is not None:
-        saved = replace(saved, reconstructor=_for_person(saved, calibration, cutoff_hz))
     what = saved.reconstructor.sensing
+    if calibration is not None:
+        same = read_trial(calibration).stream("kinematics")
+        walk = lowpassed(same.selected([*what.sensors, *what.states]), cutoff_hz)
+        saved(walk)  # refuses another rate or unit
+        strides = what.windows(walk, np.zeros(len(walk.time)))
+        saved = replace(saved, reconstructor=calibrated(saved.reconstructor, strides))
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
     filtered = lowpassed(kinematics.selected(names), cutoff_hz)
     states = saved(filtered, missing)
@@ -238,10 +239,3 @@ def reconstruct_recording(
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
     return ReconstructedRecording(kept, out, rmse, inside, INTERVAL_LEVEL)
-
-
-def _for_person(saved: SensingModel, calibration: Path, cutoff_hz: float) -> Reconstructor:
-    what, kinematics = saved.reconstructor.sensing, read_trial(calibration).stream("kinematics")
-    walk = lowpassed(kinematics.selected([*what.sensors, *what.states]), cutoff_hz)
-    saved(walk)  # refuses another rate or unit
-    return calibrated(saved.reconstructor, what.windows(walk, np.zeros(len(walk.time))))

@@ -1,4 +1,4 @@
-"""The walks of a study as sensing needs them: filtered states on one rate, percent stride, one recording a trial."""
+"""The walks of a study as sensing needs them: sensors and what is reconstructed from them, filtered, on one rate."""
 
 from __future__ import annotations
 
@@ -11,19 +11,23 @@ from numpy.typing import NDArray
 
 from gaitdisc.batch.processed_walks import public_trial
 from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
-from gaitdisc.batch.target_walks import STATES as STATE_TARGETS
-from gaitdisc.batch.target_walks import TARGETS, refuse_unknown_targets, target_walk
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
+from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, SchemaError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Models, Participant, Study
 from gaitdisc.ingest.trial_sets import is_walk
-from gaitdisc.processing.process import ReadWalk, StudyWalks
-from gaitdisc.recording import Finding, Recording
+from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.process import ReadWalk, StudyWalks, is_raw
+from gaitdisc.processing.walk_pair import FORCE_HZ
+from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.recording.strides import interpolated
 from gaitdisc.results.provenance import Refusal
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.emg import emg_findings, enveloped
+from gaitdisc.signals.strides import cut_strides
 
 EDGE_S = 0.3  # where a zero-lag filter lacks one side
-STATES = (
+WHOLE_STATE = (
     *(f"pelvis_{word}" for word in ("tilt", "list", "rotation", "tx", "ty", "tz")),
     "lumbar_extension",
     "lumbar_bending",
@@ -33,7 +37,13 @@ STATES = (
         for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
     ),
 )  # the 18 of section 5.3.3
-TARGET_STREAMS = tuple(stream for stream, _ in TARGETS.values())
+STATES = "states"
+TARGETS = {
+    "emg": ("emg", ("emg",)),
+    "forces": ("forces", ("force", "vertical_force")),
+    "moments": ("moments", ("moment",)),
+}  # word -> stream of a trial, and its quantities
+SENSED = ("kinematics", "markers")  # streams that hold sensors
 STILL = {"deg": 1e-3, "m": 1e-3}  # a channel that varies less was locked
 STILL_OTHERWISE = 1e-9
 
@@ -67,9 +77,7 @@ class SensedWalks:
         return tuple(by_name[name] for name in names)
 
 
-def sensed_walks(
-    study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATE_TARGETS
-) -> SensedWalks:
+def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATES) -> SensedWalks:
     """Read and process every walk of a study for reconstruction.
 
     sensors: channels of the kinematics that are read; they may be others than the 18 states
@@ -116,13 +124,14 @@ def _walks(
     study: Study, person: Participant, condition: str, reader: C3DReader, public: PublicWords, refusals: list[Refusal]
 ) -> list[ReadWalk]:
     found = []
+    streams = [stream for stream, _ in TARGETS.values()]
     own = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
     for planned in person.trials:
         if not is_walk(study, planned) or (condition and planned.condition != condition):
             continue
         try:
             read = own.read_walk(planned)
-            trial = of_trial(public, person, planned).known_channels(read.trial, TARGET_STREAMS)
+            trial = of_trial(public, person, planned).known_channels(read.trial, streams)
             found.append(replace(read, trial=trial))
         except GaitdiscError as error:
             refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
@@ -131,14 +140,14 @@ def _walks(
 
 def _sensed(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
     trial = read.trial
-    if targets != STATE_TARGETS:
+    if targets != STATES:
         both, strides, seen = target_walk(trial, study, sensors, targets)
         kept = both.between(both.time[0] + EDGE_S, both.time[-1] - EDGE_S)
         return SensedWalk(kept, strides.phi(kept.time)), seen
     kinematics = trial.stream("kinematics")
     for name in sensors:
         kinematics.index(name)  # refuses a sensor that was not recorded, and names the nearest
-    wanted = dict.fromkeys([*(name for name in STATES if name in kinematics.names), *sensors])
+    wanted = dict.fromkeys([*(name for name in WHOLE_STATE if name in kinematics.names), *sensors])
     legs = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
     needed = tuple(dict.fromkeys([*wanted, *(name for name in legs if name in kinematics.names)]))
     walk = read.processed(study.model_copy(update={"models": Models().model_copy(update={"angles": needed})}))
@@ -146,6 +155,78 @@ def _sensed(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) 
     inner = state.between(state.time[0] + EDGE_S, state.time[-1] - EDGE_S)
     phi = walk.strides[walk.side].phi(inner.time)
     return SensedWalk(inner, phi), [finding for finding in walk.findings if finding.severity != "note"]
+
+
+def target_walk(
+    trial: Trial, study: Study, sensors: Sequence[str], targets: str
+) -> tuple[Recording, Strides, list[Finding]]:
+    """Sensors of one trial and what is to be reconstructed from them, on the time base of the sensors.
+
+    Sensors are low-passed as kinematics; EMG becomes its envelope; forces are low-passed at 20 Hz, moments as
+    kinematics. The centre of pressure and the free moment are no targets: they mean nothing while the foot is in the
+    air.
+
+    trial: with kinematics or markers, and the stream of the targets
+    returns strides: of the study's side, or of the one whose contacts are found
+    """
+    refuse_unknown_targets(targets)
+    filters = study.filters
+    there = [key for key in SENSED if key in trial.streams] or [SENSED[0]]
+    stream = next((key for key in there if set(sensors) <= set(trial.stream(key).names)), there[0])
+    read = trial.stream(stream).selected(sensors)  # refuses, and names the nearest
+    read = lowpassed(read, filters.kinematics_hz, filters.order, filters.gap_s)
+    wanted, findings = _targets_of(trial, study, targets)
+    choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
+    side = study.strides.side if study.strides.side in choice.contacts else next(iter(choice.contacts))
+    strides = cut_strides(choice.contacts[side], None, study.strides.min_s, study.strides.max_s)
+    values = interpolated(wanted.time, wanted.values, read.time)
+    if not np.isfinite(values).any():
+        raise SamplingError(
+            f"trial {trial.name}: {targets} and sensors must overlap in time",
+            f"sensors last from {read.time[0]:.2f} to {read.time[-1]:.2f} s, "
+            f"{targets} from {wanted.time[0]:.2f} to {wanted.time[-1]:.2f} s",
+            "Check that the files belong to the same trial and clock.",
+        )
+    both = replace(
+        read,
+        values=np.hstack([read.values, values]),
+        channels=(*read.channels, *wanted.channels),
+        suspect=None,
+        subject=trial.subject,
+        condition=trial.condition,
+    )
+    return both, strides, findings
+
+
+def refuse_unknown_targets(targets: str) -> None:
+    """Refuse what cannot be reconstructed."""
+    if targets not in (STATES, *TARGETS):
+        known = ", ".join((STATES, *TARGETS))
+        raise SchemaError("the kind of quantity is unknown", f"{targets!r} does not exist", f"Use: {known}.")
+
+
+def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:
+    key, quantities = TARGETS[targets]
+    found = trial.stream(key).selected_by(lambda channel: channel.quantity in quantities)
+    filters = study.filters
+    dead: dict[str, Finding] = {}
+    if key == "emg" and is_raw(found):
+        dead = {finding.channel: finding for finding in emg_findings(found) if finding.severity == "refused"}
+        found = found.selected([name for name in found.names if name not in dead])
+    if not found.names:
+        raise ChannelError(
+            f"trial {trial.name} must have {targets}",
+            f"none is usable: {', '.join(dead)}" if dead else f"it has no {' or '.join(quantities)}",
+            "Exclude the trial, or reconstruct another quantity.",
+        )
+    findings = [
+        Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle, which is excluded", name)
+        for name, finding in dead.items()
+    ]
+    if key == "emg" and is_raw(found):
+        return enveloped(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
+    cutoff_hz = {"emg": filters.emg_lowpass_hz, "forces": FORCE_HZ}.get(key, filters.kinematics_hz)
+    return lowpassed(found, cutoff_hz, filters.order, filters.gap_s), findings
 
 
 def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[Channel, ...], list[Finding]]:

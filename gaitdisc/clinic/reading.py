@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +27,11 @@ from gaitdisc.results.clinical_reference import (
 from gaitdisc.results.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, legs_of
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
+from gaitdisc.words import SIDE_WORDS
 
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
 NO_CYCLE = "no cycle is kept"
 NO_LEGS = "a published reference has means and spreads, no single legs to take limits from"
-SIDES = {"l": "left", "r": "right"}
 FEATURES = 15
 FEWEST_PEOPLE = 30  # twice the features; below it directions are those of single people
 FEWEST = 2  # people without whom the reference has no spread of its own
@@ -42,8 +43,25 @@ PLAN = PermutationPlan(alpha=ALPHA)
 def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> ClinicalReading:
     """Read the cycles of one person, session and condition beside the controls who walked so."""
     legs = legs_of(pooled)
-    if reference is not None and reference.published and legs:
-        return _beside_published(pooled, legs, reference)
+    light, reasons = light_of(pooled, legs)
+    consistency = {
+        (name, side): multiple_correlation(curves) for side, leg in legs.items() for name, curves in leg.cycles.items()
+    }
+    reading = partial(ClinicalReading, pooled=pooled, legs=legs, light=light, reasons=reasons, consistency=consistency)
+    if reference is not None and reference.published and legs:  # means and spreads alone: bands and scores, no limits
+        group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
+        profile, no_profile = profile_of(legs, (), group.bands)
+        return reading(
+            numbers=(),
+            silent=NO_LEGS,
+            profile=profile,
+            no_profile=no_profile,
+            deviation_index={},
+            no_index=NO_LEGS,
+            bands=group.bands,
+            spatiotemporal={},
+            beside=(f"Published: {reference.title}.", words),
+        )
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
@@ -54,41 +72,17 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     profile, no_profile = (None, why) if why else profile_of(legs, like.curves)
     numbers, silent = ((), why) if why else outstanding(legs, like.curves, None, like.values, profile)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
-    light, reasons = light_of(pooled, legs)
-    return ClinicalReading(
-        pooled,
-        legs,
-        light,
-        reasons,
-        numbers,
-        silent,
-        profile,
-        no_profile,
-        index,
-        no_index,
-        consistency_of(legs),
-        bands(like.curves),
-        spatiotemporal_limits(like.values),
-        () if why else (*like.words, *speed_words(legs, like.values)),
+    return reading(
+        numbers=numbers,
+        silent=silent,
+        profile=profile,
+        no_profile=no_profile,
+        deviation_index=index,
+        no_index=no_index,
+        bands=bands(like.curves),
+        spatiotemporal=spatiotemporal_limits(like.values),
+        beside=() if why else (*like.words, *speed_words(legs, like.values)),
     )
-
-
-def _beside_published(
-    pooled: PooledCycles, legs: dict[str, LegCurves], reference: ClinicalReference
-) -> ClinicalReading:
-    """Reading beside means and spreads alone: bands and scores, no limits."""
-    group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
-    profile, no_profile = profile_of(legs, (), group.bands)
-    known, lights = (profile, no_profile, {}, NO_LEGS), light_of(pooled, legs)
-    shown = (consistency_of(legs), group.bands, {}, (f"Published: {reference.title}.", words))
-    return ClinicalReading(pooled, legs, *lights, (), NO_LEGS, *known, *shown)
-
-
-def consistency_of(legs: dict[str, LegCurves]) -> dict[tuple[str, str], float]:
-    """Coefficient of multiple correlation of every variable and leg."""
-    return {
-        (name, side): multiple_correlation(curves) for side, leg in legs.items() for name, curves in leg.cycles.items()
-    }
 
 
 def multiple_correlation(curves: NDArray[np.float64]) -> float:
@@ -119,7 +113,7 @@ def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tup
     if not legs:
         return "red", tuple(refusal.reason for refusal in pooled.refusals) or (NO_CYCLE,)
     reasons = []
-    few = [f"{pooled.counted(side)} {SIDES[side]}" for side in FEET if pooled.counted(side) < FEW]
+    few = [f"{pooled.counted(side)} {SIDE_WORDS[side]}" for side in FEET if pooled.counted(side) < FEW]
     if few:
         gone = len({refusal.condition for refusal in pooled.refusals})
         words = f" ({gone} {'trial is' if gone == 1 else 'trials are'} left out)" if gone else ""
@@ -128,18 +122,14 @@ def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tup
     for one in pooled.findings:
         if one.severity == "refused" and one.channel:
             lost.setdefault(one.channel, []).append(one)
-    loose = [name for name in lost if name.startswith("emg_") and not _is_absent(lost[name], pooled.trials)]
-    if loose:
+    # lost in every trial: never plugged in, which is no fault
+    partly = [name for name, own in lost.items() if len({one.file for one in own}) < pooled.trials]
+    if loose := [name for name in partly if name.startswith("emg_")]:
         reasons.append(f"EMG lost in some trials, {', '.join(loose)}: fasten the electrodes")
     reasons += [f"{name} left out: {_remedy(own[0])}" for name, own in lost.items() if not name.startswith("emg_")]
     kinds = {one.kind: one for one in reversed(pooled.findings) if one.severity == "warning"}
     reasons += [f"{kind}: {_remedy(one)}" for kind, one in reversed(kinds.items())]
     return ("amber" if reasons else "green"), tuple(reasons)
-
-
-def _is_absent(own: Sequence[Finding], trials: int) -> bool:
-    """Whether an electrode was never plugged in: nothing came from it in any trial, which is no fault."""
-    return len({one.file for one in own}) >= trials
 
 
 def _remedy(one: Finding) -> str:
@@ -257,21 +247,21 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
             {},
             f"its {FEATURES} features need {FEWEST_PEOPLE} controls with all nine curves; the reference has {people}",
         )
-    controls = np.array([_gait_vector(leg.curves) for leg in whole])
+
+    def vector_of(curves: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        return np.concatenate([curves[name][::2] for name in PROFILE])
+
+    controls = np.array([vector_of(leg.curves) for leg in whole])
     features = np.linalg.svd(controls, full_matrices=False)[2][:FEATURES]
     middle = (controls @ features.T).mean(axis=0)
     own = np.log(np.linalg.norm(controls @ features.T - middle, axis=1))
     found = {}
     for side, leg in legs.items():
         if all(name in leg.cycles for name in PROFILE):
-            vector = _gait_vector({name: leg.mean(name) for name in PROFILE})
+            vector = vector_of({name: leg.mean(name) for name in PROFILE})
             raw = np.log(np.linalg.norm(vector @ features.T - middle))
             found[side] = float(100 - 10 * (raw - own.mean()) / own.std(ddof=1))
     return found, "" if found else "the recording lacks one of its nine curves"
-
-
-def _gait_vector(curves: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
-    return np.concatenate([curves[name][::2] for name in PROFILE])
 
 
 def contrast_of(first: ClinicalReading, second: ClinicalReading) -> Contrast:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.clinic.reference import FARTHEST, FEWEST, Sample, limits_about
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reference import FEW, SCORE_LEAST, Limits, Noted, Profile, ReferenceLeg, Score
+from gaitdisc.results.clinical_reference import FEW, SCORE_LEAST, Limits, Noted, Profile, ReferenceLeg
 from gaitdisc.results.leg_curves import BY_NAME, LegCurves
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
 
@@ -172,7 +172,9 @@ def outstanding(
         count = len(leg.cycles[rule.variable]) if rule.variable else len(leg.values[rule.value])
         found.append(_note(rule, leg.side, number, sample.limits(tests, own_speed), count))
     if score is not None:
-        found.append(_note_score(score, legs, tests))
+        limits = limits_about(score.reference_mean, score.reference_sd, score.people, tests)
+        rule = Rule(SCORE, "", "profile_deg", "", "", SCORE_LEAST, "", SCORE_WORDS)
+        found.append(_note(rule, "", score.value, limits, min(leg.count for leg in legs.values())))
     return tuple(sorted(found, key=lambda one: (-one.tier, -one.excess))), ""
 
 
@@ -202,13 +204,6 @@ def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> N
     group = f"{rule.group or rule.variable or rule.value} {'more' if above else 'less'}"
     shown = (number, rule.unit, rule.digits, limits, count, excess, tier, group)
     return Noted(rule.name, words if tier else "", side, *shown)
-
-
-def _note_score(score: Score, legs: Mapping[str, LegCurves], tests: int) -> Noted:
-    """Gait profile score of both legs, read as a number of the page."""
-    limits = limits_about(score.reference_mean, score.reference_sd, score.people, tests)
-    rule = Rule(SCORE, "", "profile_deg", "", "", SCORE_LEAST, "", SCORE_WORDS)
-    return _note(rule, "", score.value, limits, min(leg.count for leg in legs.values()))
 
 
 def _sample(rule: Rule, reference: Sequence[ReferenceLeg]) -> Sample | None:

@@ -19,14 +19,13 @@ from gaitdisc.results.kind import Kind, Saved
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
 from gaitdisc.sensing.state_errors import half_widths
-from gaitdisc.sensing.windows import Lags, stacked, windows_of
+from gaitdisc.sensing.windows import SEAM_S, Lags, stacked, windows_of
 from gaitdisc.statistics.r2 import r2
 
 if TYPE_CHECKING:
     import pandas as pd
 
 CHECKED = 0.15  # of each trial, its last part: penalties, epochs and the interval are chosen on it
-SEAM_S = 0.3  # zero-lag filters look ahead and back over the border
 Readings: TypeAlias = Union[ArrayLike, Recording, "pd.DataFrame", "pd.Series[Any]"]
 Trials: TypeAlias = Readings | Sequence[Readings]
 SETTINGS = ("kind", "rate_hz", "history_s", "spacing_s", "ahead_s", "seed")
@@ -113,10 +112,10 @@ class Reconstructor(Saved, file="model.json"):
             If too few windows remain, or a state does not vary.
         """
         many = isinstance(x, list | tuple) and (isinstance(x[0], Recording) or np.ndim(x[0]) > 1)
-        given = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
-        for one, other in zip(*given, strict=False):
+        readings, states = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
+        for one, other in zip(readings, states, strict=False):
             _check_same_times(one, other, self.rate_hz)
-        readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in given)
+        readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in (readings, states))
         if len(readings) != len(states):
             raise ShapeError(
                 "a model needs as many trials of states as of readings",
@@ -137,12 +136,11 @@ class Reconstructor(Saved, file="model.json"):
             round(self.ahead_s * self.rate_hz),
         )
         what = Sensing(sensors, targets, lags, self.rate_hz)
-        channels = tuple(Channel(name, "signal", "1") for name in (*sensors, *targets))
         windows = [self._windows(one, other, what) for one, other in zip(readings, states, strict=True)]
         parts = [each.last_block(CHECKED, what.reach_s + SEAM_S) for each in windows]
         training, check = (stacked([part[k] for part in parts]) for k in (0, 1))
         done = fit_reconstructor(self.kind, what, training, check, self.seed)
-        self._model = SensingModel(done, channels, half_widths(done(check) - check.y))
+        self._model = SensingModel(done, _signals((*sensors, *targets)), half_widths(done(check) - check.y))
         return self
 
     def predict(self, x: Readings) -> NDArray[np.float64]:
@@ -269,8 +267,7 @@ class Reconstructor(Saved, file="model.json"):
                 f"the array has {values.shape[1]} columns",
                 "Give the sensors of fit, in the same order.",
             )
-        time = np.arange(len(values)) / self.rate_hz
-        return Recording(time, values, tuple(Channel(name, "signal", "1") for name in sensors))
+        return Recording(np.arange(len(values)) / self.rate_hz, values, _signals(sensors))
 
     def _windows(self, x: Any, y: Any, what: Sensing) -> Samples:
         read, states = self._recording(x, what.sensors), _array(y, "states")
@@ -280,25 +277,12 @@ class Reconstructor(Saved, file="model.json"):
                 f"the readings have shape {read.values.shape}, the states {states.shape}",
                 "Give one row per time in both.",
             )
-        both = Recording(
-            read.time,
-            np.hstack([read.values, states]),
-            (*read.channels, *(Channel(name, "signal", "1") for name in what.states)),
-        )
-        return windows_of(both, what.sensors, what.states, what.lags, np.zeros(len(read.time)))
-
-
-def save_reconstructor(fitted: Reconstructor, folder: Path) -> None:
-    """Save the fitted model."""
-    save_model(fitted.model, folder)
+        both = Recording(read.time, np.hstack([read.values, states]), _signals((*what.sensors, *what.states)))
+        return what.windows(both, np.zeros(len(read.time)))
 
 
 def load_reconstructor(folder: Path) -> Reconstructor:
-    """Load a reconstructor.
-
-    folder: that `Reconstructor.save` or `gaitdisc reconstruct` wrote
-    raises SchemaError if a file is missing, damaged, or of another version
-    """
+    """Load what `Reconstructor.save` or `gaitdisc reconstruct` wrote; a damaged file is refused."""
     model = load_model(folder)
     what = model.reconstructor.sensing
     lags, rate = what.lags, what.rate_hz
@@ -307,7 +291,13 @@ def load_reconstructor(folder: Path) -> Reconstructor:
     return done
 
 
-RECONSTRUCTOR = Kind(Reconstructor, "model.json", write=save_reconstructor, read=load_reconstructor)
+RECONSTRUCTOR = Kind(
+    Reconstructor, "model.json", write=lambda fitted, folder: save_model(fitted.model, folder), read=load_reconstructor
+)
+
+
+def _signals(names: tuple[str, ...]) -> tuple[Channel, ...]:
+    return tuple(Channel(name, "signal", "1") for name in names)
 
 
 def _array(given: Any, words: str) -> NDArray[np.float64]:
@@ -321,14 +311,6 @@ def _array(given: Any, words: str) -> NDArray[np.float64]:
             "Put time first, with one column per sensor or state: x[:, None] for a single one.",
         )
     return values
-
-
-def _named(given: Any) -> tuple[str, ...]:
-    """Names of the columns of a table or a recording; none of an array."""
-    if isinstance(given, Recording):
-        return given.names
-    names = (given.name,) if hasattr(given, "to_frame") else getattr(given, "columns", ())
-    return tuple(str(name) for name in names if name is not None)
 
 
 def _timeless(given: Any, rate_hz: float) -> Any:
@@ -373,6 +355,14 @@ def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
             f"the {what} has {found_hz:g}",
             "Resample it, or state its rate: Reconstructor(rate_hz=...).",
         )
+
+
+def _named(given: Any) -> tuple[str, ...]:
+    """Names of the columns of a table or a recording; none of an array."""
+    if isinstance(given, Recording):
+        return given.names
+    names = (given.name,) if hasattr(given, "to_frame") else getattr(given, "columns", ())
+    return tuple(str(name) for name in names if name is not None)
 
 
 def _names(given: Any, word: str) -> tuple[str, ...]:

@@ -53,10 +53,7 @@ class CarriedWindows:
         self._phase = 0
 
     def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Outputs (output,) of the window that ends with a new reading; NaN until there is a whole one.
-
-        reading (sensor,) [each sensor's unit]: taken one sample after the one before
-        """
+        """Outputs (output,) of the window that ends with a reading (sensor,), one sample on; NaN until it is whole."""
         read = (reading - self._mean) / self._sd
         if self._masked:
             missing = np.isnan(read)

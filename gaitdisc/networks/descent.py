@@ -51,11 +51,7 @@ class TorchSteps:
         self._adam = torch.optim.AdamW(groups, fused=True)
 
     def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
-        """Step through all samples once.
-
-        order Tensor (sample,): in which the samples are seen
-        rates (step,): learning rate of each step
-        """
+        """Step through all samples once, in an order (sample,), at the learning rate of each step (step,)."""
         self._network.train()
         x, y = (values[order.to(values.device)] for values in self._part)
         for step, rate in enumerate(rates.tolist()):

@@ -26,16 +26,10 @@ class FeedForward(nn.Module):
         self.readout = nn.Linear(nodes, outputs)
 
     def features(self, x: Tensor) -> Tensor:
-        """Return what the linear layer reads, (sample, node).
-
-        x Tensor (sample, input): scaled inputs
-        """
+        """What the linear layer reads, (sample, node), of scaled inputs (sample, input)."""
         n = self.radial(torch.sigmoid(self.sigmoid(x)))
         return torch.exp(-n * n)
 
     def forward(self, x: Tensor) -> Tensor:
-        """Scaled outputs, (sample, output).
-
-        x Tensor (sample, input): scaled inputs
-        """
+        """Scaled outputs (sample, output) of scaled inputs (sample, input)."""
         return self.readout(self.features(x))

@@ -57,29 +57,19 @@ class Shred(nn.Module):
         return cast(nn.Linear, self.decoder.readout)
 
     def latent(self, x: Tensor) -> Tensor:
-        """Last hidden state of the recurrent layers (Eq. 5.3), (window, node).
-
-        x Tensor (window, reading * sensor): scaled windows
-        """
+        """Last hidden state (window, node) of the recurrent layers (Eq. 5.3), of windows (window, reading * sensor)."""
         history = x.reshape(len(x), -1, self.sensors)
         if self.masked:
             missing = history.isnan()
             history = torch.cat([history.masked_fill(missing, 0.0), missing.to(history.dtype)], dim=2)
-        latest = [self.recurrent(part)[0][:, -1] for part in history.split(AT_ONCE)]
-        return torch.cat(latest)
+        return torch.cat([self.recurrent(part)[0][:, -1] for part in history.split(AT_ONCE)])
 
     def features(self, x: Tensor) -> Tensor:
-        """Return what the linear layer reads, (window, node).
-
-        x Tensor (window, reading * sensor): scaled windows
-        """
+        """What the linear layer reads, (window, node), of scaled windows (window, reading * sensor)."""
         return self.decoder.features(self.latent(x))
 
     def forward(self, x: Tensor) -> Tensor:
-        """Scaled states, (window, state).
-
-        x Tensor (window, reading * sensor): scaled windows
-        """
+        """Scaled states (window, state) of scaled windows (window, reading * sensor)."""
         return self.decoder.readout(self.features(x))
 
 
@@ -100,15 +90,9 @@ class ShallowDecoder(nn.Module):
         self.readout = nn.Linear(second, outputs)
 
     def features(self, x: Tensor) -> Tensor:
-        """Return what the linear layer reads, (sample, node).
-
-        x Tensor (sample, input): scaled inputs
-        """
+        """What the linear layer reads, (sample, node), of scaled inputs (sample, input)."""
         return torch.relu(self.second(torch.relu(self.first(x))))
 
     def forward(self, x: Tensor) -> Tensor:
-        """Scaled states, (sample, state).
-
-        x Tensor (sample, input): scaled inputs
-        """
+        """Scaled states (sample, state) of scaled inputs (sample, input)."""
         return self.readout(self.features(x))

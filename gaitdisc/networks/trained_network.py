@@ -1,17 +1,19 @@
-"""A trained network: a model with its names, its scales and its weights."""
+"""A trained network: a model with its names, scales and weights; and how many threads it and its training take."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.linalg.blas  # noqa: F401 numba multiplies with scipy's BLAS: what is to be limited must be loaded
 import torch
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 from torch import nn
 
-from gaitdisc.networks.threads import torch_threads
 from gaitdisc.recording import Scale
 
 
@@ -59,3 +61,34 @@ def with_weights(network: nn.Module, weights: Mapping[str, NDArray[Any]]) -> nn.
     except RuntimeError as error:
         raise ValueError(f"its weights do not fit a {type(network).__name__}") from error
     return network.eval()
+
+
+@contextmanager
+def torch_threads(count: int) -> Iterator[None]:
+    """Let torch use that many threads on the CPU, and as many as before when the block ends.
+
+    >>> with torch_threads(1):
+    ...     torch.get_num_threads()
+    1
+    """
+    before = torch.get_num_threads()
+    torch.set_num_threads(count)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+@contextmanager
+def pinned_threads(count: int) -> Iterator[None]:
+    """Let torch and every BLAS use that many threads on the CPU, and as many as before when the block ends.
+
+    Matrices of 64 columns are slower on two threads than on one, and two trainings beside each other slower still.
+
+    >>> from threadpoolctl import threadpool_info
+    >>> with pinned_threads(1):
+    ...     {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+    {1}
+    """
+    with torch_threads(count), threadpool_limits(count, user_api="blas"):
+        yield

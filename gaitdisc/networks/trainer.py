@@ -16,8 +16,7 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.networks.descent import Descent, descend
-from gaitdisc.networks.threads import pinned_threads
-from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.networks.trained_network import TrainedNetwork, pinned_threads
 from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
 from gaitdisc.recording import Samples, Scale, scale_of
 
@@ -86,16 +85,16 @@ def train(
             solve_readout(best.network, whole, best.penalty)
     progress(1.0)
     return Training(
-        TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
-        best.decay,
-        best.penalty,
-        len(best.descent.losses),
-        best.descent.best_epoch,
-        best.descent.losses,
-        len(samples),
-        len(inner),
-        time.perf_counter() - begun,
-        best.descent.arithmetic,
+        network=TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
+        decay=best.decay,
+        penalty=best.penalty,
+        epochs=len(best.descent.losses),
+        best_epoch=best.descent.best_epoch,
+        losses=best.descent.losses,
+        n_training=len(samples),
+        n_inner=len(inner),
+        seconds=time.perf_counter() - begun,
+        arithmetic=best.descent.arithmetic,
     )
 
 
@@ -133,7 +132,7 @@ def _best_candidate(
     schedule = schedule_of(len(part[0]), settings.decays[0], settings)
     best = None
     for number, decay in enumerate(settings.decays):
-        shared = partial(_share, progress, number, count)
+        shared = partial(lambda number, fraction: progress((number + fraction) / count), number)
         steps = schedule if number == 0 else schedule.continued(decay)
         descent = descend(network, part, check, steps, settings, shared)
         scored = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
@@ -143,10 +142,6 @@ def _best_candidate(
         best, network = candidate, copy.deepcopy(network)
     assert best is not None  # settings refuse to be without a decay
     return best
-
-
-def _share(progress: Callable[[float], None], number: int, count: int, fraction: float) -> None:
-    progress((number + fraction) / count)
 
 
 def chosen_device(wanted: str) -> torch.device:
@@ -170,11 +165,8 @@ def chosen_device(wanted: str) -> torch.device:
 
 
 def _tensors(samples: Samples, x_scale: Scale, y_scale: Scale, device: torch.device) -> tuple[Tensor, Tensor]:
-    return _tensor(x_scale.scaled(samples.x), device), _tensor(y_scale.scaled(samples.y), device)
-
-
-def _tensor(values: NDArray[np.float64], device: torch.device) -> Tensor:
-    return torch.from_numpy(values.astype(np.float32)).to(device)
+    x, y = x_scale.scaled(samples.x), y_scale.scaled(samples.y)
+    return torch.from_numpy(x.astype(np.float32)).to(device), torch.from_numpy(y.astype(np.float32)).to(device)
 
 
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)

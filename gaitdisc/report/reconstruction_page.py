@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,18 +37,17 @@ def models_table(done: Reconstruction) -> Table:
     """Every model, over the participants."""
     numbers: Any = done.over_participants().rename_axis("model").reset_index()
     angles = _has_angles(done)
-    rows = tuple(
-        (
-            f"{row['model']}{' *' if row['model'] == done.recommended else ''}",
-            *((_spread(row, "rmse_deg", 2),) if angles else ()),
-            _spread(row, "relative_l2", 3),
-            *((_plain(row["relative_l2_whole"], 3),) if angles else ()),
-            _spread(row, "r2", 3),
-            f"{100 * row['coverage']:.0f}",
-            f"{row['seconds']:.2f}",
-        )
-        for _, row in numbers.iterrows()
-    )
+    columns: dict[str, Callable[[Any], str]] = {
+        "model": lambda row: f"{row['model']}{' *' if row['model'] == done.recommended else ''}",
+        "RMSE [deg]": lambda row: _spread(row, "rmse_deg", 2),
+        "relative L2 [1]": lambda row: _spread(row, "relative_l2", 3),
+        WITH_SENSORS: lambda row: _plain(row["relative_l2_whole"], 3),
+        "R² [1]": lambda row: _spread(row, "r2", 3),
+        COVERAGE: lambda row: f"{100 * row['coverage']:.0f}",
+        "fit [s]": lambda row: f"{row['seconds']:.2f}",
+    }
+    shown = [column for column in columns if angles or column not in ("RMSE [deg]", WITH_SENSORS)]
+    rows = tuple(tuple(columns[column](row) for column in shown) for _, row in numbers.iterrows())
     with_sensors = "“with sensors”: sensors are included as states without error, as in Table 5.2; " if angles else ""
     people = counted(len(done.participants), "participant")
     caption = (
@@ -57,16 +57,7 @@ def models_table(done: Reconstruction) -> Table:
         "processor time of a fit. * recommended: the cheapest within 2 % of the smallest error on the validation "
         "windows."
     )
-    columns = (
-        "model",
-        *(("RMSE [deg]",) if angles else ()),
-        "relative L2 [1]",
-        *((WITH_SENSORS,) if angles else ()),
-        "R² [1]",
-        COVERAGE,
-        "fit [s]",
-    )
-    return Table("models", caption, columns, rows, numbers)
+    return Table("models", caption, tuple(shown), rows, numbers)
 
 
 def states_table(done: Reconstruction) -> Table:
@@ -214,8 +205,7 @@ def reconstruction_figures(done: Reconstruction, participant: str, name: str) ->
 
 def shown_curves(done: Reconstruction, participant: str) -> pd.DataFrame:
     """Curves of one person, of the models that are drawn: linear, the recommended one, SHRED."""
-    shown = [kind for kind in ("linear", done.recommended, "shred") if kind in done.models]
-    shown = list(dict.fromkeys(shown))
+    shown = {"linear", done.recommended, "shred"}
     return done.curves[(done.curves["participant"] == participant) & done.curves["model"].isin(shown)]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -126,7 +127,7 @@ def save_reference(reference: ClinicalReference, folder: Path) -> Path:
         "created": reference.created,
         "settings": dict(reference.settings),
         "versions": dict(reference.versions),
-        "legs": {word: [_leg_data(leg) for leg in own] for word, own in reference.legs.items()},
+        "legs": {word: [_rounded(vars(leg)) for leg in own] for word, own in reference.legs.items()},
     }
     return write_whole(folder / FILE, sealed_text(data))
 
@@ -158,33 +159,36 @@ def load_reference(place: Path) -> ClinicalReference:
         ) from error
 
 
-def _leg_data(leg: ReferenceLeg) -> dict[str, object]:
-    return {
-        "person": leg.person,
-        "side": leg.side,
-        "cycles": leg.cycles,
-        "stance_percent": None if np.isnan(leg.stance_percent) else round(leg.stance_percent, DIGITS),
-        "curves": {
-            name: [round(float(value), DIGITS) if np.isfinite(value) else None for value in curve]  # as JSON has them
-            for name, curve in leg.curves.items()
-        },
-        "values": {name: round(value, DIGITS) for name, value in leg.values.items()},
-        "leg_m": None if leg.leg_m is None else round(leg.leg_m, DIGITS),
-        "age_years": leg.age_years,
-    }
+def _rounded(value: Any) -> Any:
+    """What JSON holds of a leg: four digits, and null for what is not known."""
+    if isinstance(value, Mapping):
+        return {name: _rounded(one) for name, one in value.items()}
+    if isinstance(value, np.ndarray):
+        return [_rounded(float(one)) for one in value]
+    if isinstance(value, float):
+        return round(value, DIGITS) if np.isfinite(value) else None
+    return value
 
 
-def _leg(data: Mapping[str, object]) -> ReferenceLeg:
-    curves = {str(name): np.array(curve, float) for name, curve in dict(data["curves"]).items()}  # type: ignore[call-overload]
+def _leg(data: Mapping[str, Any]) -> ReferenceLeg:
+    curves = {str(name): np.array(curve, float) for name, curve in data["curves"].items()}
     if any(curve.shape != (101,) for curve in curves.values()):
         raise ValueError("a curve has not 101 points")
-    stance = float("nan") if data["stance_percent"] is None else float(data["stance_percent"])  # type: ignore[arg-type]
-    values = {str(name): float(value) for name, value in dict(data["values"]).items()}  # type: ignore[call-overload]
+    stance = float("nan") if data["stance_percent"] is None else float(data["stance_percent"])
+    values = {str(name): float(value) for name, value in data["values"].items()}
     leg_m, age = data.get("leg_m"), data.get("age_years")  # absent in older references
     if not (leg_m is None or isinstance(leg_m, float)) or not (age is None or isinstance(age, int)):
         raise ValueError(f"leg length {leg_m!r} and age {age!r} are no numbers")
-    own = (str(data["side"]), int(data["cycles"]), stance, curves, values, leg_m, age)  # type: ignore[call-overload]
-    return ReferenceLeg(int(data["person"]), *own)  # type: ignore[call-overload]
+    return ReferenceLeg(
+        person=int(data["person"]),
+        side=str(data["side"]),
+        cycles=int(data["cycles"]),
+        stance_percent=stance,
+        curves=curves,
+        values=values,
+        leg_m=leg_m,
+        age_years=age,
+    )
 
 
 @dataclass(frozen=True)

@@ -47,19 +47,6 @@ class DamagedError(SchemaError):
 
 
 @dataclass(frozen=True)
-class OnDisk(Generic[T]):
-    """Something made of the arrays of one file each time it is used."""
-
-    path: Path
-    sha256: str  # hash it had when it was saved
-    made: Callable[[Arrays], T]
-
-    def __call__(self) -> T:
-        """Read the file, or take what was just read of it."""
-        return self.made(_arrays(self.path, self.sha256))
-
-
-@dataclass(frozen=True)
 class StoredArrays(Mapping[str, NDArray[np.float64]]):
     """Arrays of one file by name, read when one of them is used."""
 
@@ -77,10 +64,18 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
 
     def later(self, made: Callable[[Arrays], T]) -> Any:
         """Return what shall be made of the arrays when it is looked at, for a field that `may_lie_on_disk`."""
-        return OnDisk(self.path, self.sha256, made)
+        return OnDisk(self, made)
 
     def _read(self) -> Arrays:
         return _arrays(self.path, self.sha256) if self.sha256 else {}
+
+
+@dataclass(frozen=True)
+class OnDisk(Generic[T]):
+    """Something made of the arrays of one file each time it is looked at."""
+
+    arrays: StoredArrays
+    made: Callable[[Arrays], T]
 
 
 def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
@@ -132,7 +127,7 @@ class _Field:
         if thing is None:
             raise AttributeError(self._name)
         value = vars(thing)[self._name]
-        return value() if isinstance(value, OnDisk) else value
+        return value.made(value.arrays) if isinstance(value, OnDisk) else value
 
     def __set__(self, thing: object, value: object) -> None:
         vars(thing)[self._name] = value
@@ -247,7 +242,12 @@ def load_unit(
     """Read a unit after comparing hashes; `columns` that tables must have, `words` whose cells are no numbers."""
     data = read_json(folder / name)
     check_files(folder, data["sha256"])
-    tables = {file: _read_table(folder / file, words) for file in data["sha256"] if file.endswith(".csv")}
+    tables: dict[str, pd.DataFrame] = {}
+    for file in (name for name in data["sha256"] if name.endswith(".csv")):
+        try:
+            tables[file] = read_csv(folder / file, words).rename(columns=EARLIER)
+        except (OSError, ValueError) as error:  # what pandas cannot parse is a ValueError
+            raise damaged(folder / file, f"not readable as a table ({error})") from error
     for file, wanted in (columns or {}).items():
         if file not in tables:
             raise damaged(folder / file, f"not among the files that {name} names")
@@ -297,13 +297,6 @@ def read_json(path: Path) -> dict[str, Any]:
     if wrong is not None:
         raise damaged(path, f"not in the expected form at {wrong.json_path}: {wrong.message[:200]}")
     return data
-
-
-def _read_table(path: Path, words: Sequence[str]) -> pd.DataFrame:
-    try:
-        return read_csv(path, words).rename(columns=EARLIER)
-    except (OSError, ValueError) as error:  # what pandas cannot parse is a ValueError
-        raise damaged(path, f"not readable as a table ({error})") from error
 
 
 @cache

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.reconstructor import STATIC, OfOne, Reconstructor, ScaledModel
+from gaitdisc.sensing.reconstructor import STATIC, OfOne, ScaledModel, WindowModel
 from gaitdisc.sensing.state_errors import stride_numbers
 from gaitdisc.sensing.windows import SEAM_S, present, stacked
 
@@ -64,7 +64,7 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
     return FirstStrides(windows.rows(first), rest & ~near)
 
 
-def calibrated(done: Reconstructor, strides: Samples, penalty: float = USUAL_PENALTY) -> Reconstructor:
+def calibrated(done: WindowModel, strides: Samples, penalty: float = USUAL_PENALTY) -> WindowModel:
     """Correct a model for one person by ridge regression of its error, shrunk towards the model as it is.
 
     Minimises sum (y - f(x) - b - W h)^2 / windows + penalty sum W^2, where h holds the scaled readings with their
@@ -83,7 +83,7 @@ class Rehearsal:
     missed: NDArray[np.float64]  # (window, state) [each state's unit], errors on that person's further strides
 
 
-def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Rehearsal:
+def rehearsed(done: WindowModel, trials: Sequence[Samples], count: int) -> Rehearsal:
     """Calibrate for the person models are chosen by, never the one they are tested on, and see which penalty serves."""
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)
@@ -92,7 +92,7 @@ def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Reh
     return Rehearsal(PENALTIES[best], missed[best])
 
 
-def _calibrated(done: Reconstructor, strides: Samples, penalties: Sequence[float]) -> list[Reconstructor]:
+def _calibrated(done: WindowModel, strides: Samples, penalties: Sequence[float]) -> list[WindowModel]:
     x = present(strides, done.sensing.sensors).x if done.kind in STATIC else strides.x
     states = done.model(x)
     columns, missed = _columns(done.model, x, states), strides.y - states

@@ -18,6 +18,7 @@ from gaitdisc.recording import Recording, Scale
 from gaitdisc.recording.arrays import real_array
 from gaitdisc.regression.fourier_ridge import FourierRidge
 from gaitdisc.results.unit_folder import DamagedError, check_files, file_sha256, read_sealed, sealed_text
+from gaitdisc.sensing.calibration import Corrected
 from gaitdisc.sensing.reconstructor import (
     ENSEMBLE,
     KINDS,
@@ -28,8 +29,8 @@ from gaitdisc.sensing.reconstructor import (
     STATIC,
     WITHOUT_NETWORK,
     Ensemble,
-    Reconstructor,
     Sensing,
+    WindowModel,
     network_of,
 )
 from gaitdisc.sensing.windows import Lags, filled, refuse_unknown_way, windows_of
@@ -49,7 +50,7 @@ RATE_TOLERANCE = 1e-3
 class SensingModel:
     """A reconstructor with the channels it was fitted to."""
 
-    reconstructor: Reconstructor
+    reconstructor: WindowModel
     channels: tuple[Channel, ...]  # of the sensors, then of the states
     # (state,) [each state's unit], half width of the 90 % interval, from the windows that the model was chosen by
     half_widths: NDArray[np.float64]
@@ -145,7 +146,7 @@ def load_model(folder: Path) -> SensingModel:
             f"has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files must come from one model. Copy them together, or run `gaitdisc reconstruct` again.",
         )
-    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
+    return SensingModel(WindowModel(kind, what, weights, *numbers), tuple(channels), half)
 
 
 def _places(kind: str, folder: Path) -> list[Path]:
@@ -201,10 +202,10 @@ class Stream:
     missing: a word of `gaitdisc.sensing.windows.WAYS` for a missing reading, unless the model is a masked one
     """
 
-    def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
+    def __init__(self, reconstructor: WindowModel, missing: str = "none") -> None:
         refuse_unknown_way(missing)
         self._sensors = reconstructor.sensing.sensors
-        self._model = _stepwise(reconstructor)
+        self._members = _stepwise(reconstructor)
         self._missing = missing
         self._stands = reconstructor.sensor_means
 
@@ -228,13 +229,13 @@ class Stream:
             new = np.where(np.isfinite(new), new, self._stands)
         if self._missing == "last":
             self._stands = new
-        return self._model.update(new)
+        return np.mean([member.update(new) for member in self._members], axis=0)
 
 
 class _LastReadings:
     """The last readings, and what a model reconstructs from them."""
 
-    def __init__(self, reconstructor: Reconstructor) -> None:
+    def __init__(self, reconstructor: WindowModel) -> None:
         what = reconstructor.sensing
         lags = what.lags.static() if reconstructor.kind in STATIC else what.lags
         self._model = reconstructor.model
@@ -247,25 +248,12 @@ class _LastReadings:
         return self._model(self._readings[self._rows].reshape(1, -1))[0]
 
 
-class _Mean:
-    """Mean of what several carried networks reconstruct."""
-
-    def __init__(self, members: Sequence[CarriedWindows]) -> None:
-        self._members = members
-
-    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.mean([member.update(reading) for member in self._members], axis=0)
-
-
-def _stepwise(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWindows:
-    if reconstructor.kind not in ("shred", MASKED, ENSEMBLE, OF_TEXT):
-        return _LastReadings(reconstructor)
-    from gaitdisc.networks.carried_windows import CarriedWindows
-    from gaitdisc.networks.trained_network import TrainedNetwork
-
+def _stepwise(reconstructor: WindowModel) -> list[CarriedWindows] | list[_LastReadings]:
+    """What reads along; the mean of what it reconstructs is that of the model."""
     lags, model = reconstructor.sensing.lags, reconstructor.model
-    if isinstance(model, Ensemble):
-        return _Mean([CarriedWindows(member, lags.count, lags.spacing) for member in model.members])
-    if isinstance(model, TrainedNetwork):
-        return CarriedWindows(model, lags.count, lags.spacing)
-    return _LastReadings(reconstructor)  # corrected for a person by what the windows hold
+    if reconstructor.kind in ("shred", MASKED, ENSEMBLE, OF_TEXT) and not isinstance(model, Corrected):
+        from gaitdisc.networks.carried_windows import CarriedWindows
+
+        members: Any = model.members if isinstance(model, Ensemble) else (model,)
+        return [CarriedWindows(member, lags.count, lags.spacing) for member in members]
+    return [_LastReadings(reconstructor)]  # a corrected model needs what the windows hold

@@ -36,7 +36,12 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     model: what to write; ridge regression in double precision, networks in single, as they are computed here
     path: of an `.onnx` file; written whole or not at all
     """
-    helper, checker = _onnx()
+    try:
+        from onnx import checker, helper
+    except ImportError as error:
+        raise SchemaError(
+            "ONNX export requires the package onnx", "it is not installed", "Install it: pip install 'gaitdisc[onnx]'."
+        ) from error
     fitted = model.reconstructor.model
     graph = _Graph(helper, np.float64 if isinstance(fitted, FourierRidge) else np.float32)
     x = graph.add("Cast", WINDOW, to=graph.type_of(graph.number))
@@ -58,16 +63,6 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     checker.check_model(whole, full_check=True)
     with whole_file(path) as part:
         part.write_bytes(whole.SerializeToString())
-
-
-def _onnx() -> tuple[Any, Any]:
-    try:
-        from onnx import checker, helper
-    except ImportError as error:
-        raise SchemaError(
-            "ONNX export requires the package onnx", "it is not installed", "Install it: pip install 'gaitdisc[onnx]'."
-        ) from error
-    return helper, checker
 
 
 def _metadata(model: SensingModel) -> dict[str, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,7 @@ from gaitdisc.recording import Samples
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS
 from gaitdisc.sensing.calibration import calibrated, first_strides, rehearsed
 from gaitdisc.sensing.model_folder import SensingModel
-from gaitdisc.sensing.reconstructor import KINDS, WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import KINDS, WITHOUT_NETWORK, Sensing, WindowModel, fit_reconstructor
 from gaitdisc.sensing.state_errors import (
     Reconstructed,
     angle_columns,
@@ -164,17 +163,29 @@ def reconstruct(
     fitted, predictions, test_rows = _fitted(parts, what, fits)
     predictions += _baselines(parts, what) if what.lags.ahead else []
     test_rows &= np.isfinite(np.hstack([one.states for one in predictions])).all(axis=1)
-    spread, errors, summary, curves = parts.fitted().y.std(axis=0), [], [], []
+    spread, summary = parts.fitted().y.std(axis=0), []
+    errors: dict[tuple[str, str], pd.DataFrame] = {}
+    curves: dict[tuple[str, str], pd.DataFrame] = {}
     for one in predictions:
         tested = Reconstructed(test.rows(test_rows), stride[test_rows], one.states[test_rows])
-        row = _summary(tested, channels, what) | one.checked(spread, tested)
-        summary.append({"participant": participant, "model": one.model, "n_fitted": one.n_fitted, **row,
-                        "seconds": one.seconds})  # fmt: skip
-        errors.append(state_errors(tested, own, fits.seed).assign(participant=participant, model=one.model))
-        curves.append(phase_curves(tested, what.states).assign(participant=participant, model=one.model))
-    order = ["participant", "model"]
-    tables = (pd.concat(part, ignore_index=True) for part in (errors, curves))
-    errors_table, curves_table = (table[[*order, *(c for c in table if c not in order)]] for table in tables)
+        inside = coverage(tested.states - tested.windows.y, one.half_widths)
+        summary.append(
+            {
+                "participant": participant,
+                "model": one.model,
+                "n_fitted": one.n_fitted,
+                **_summary(tested, channels, what),
+                "check_loss": float(np.mean((one.missed / spread) ** 2)),
+                "coverage": float(np.mean(inside)),
+                "seconds": one.seconds,
+            }
+        )
+        errors[participant, one.model] = state_errors(tested, own, fits.seed)
+        curves[participant, one.model] = phase_curves(tested, what.states)
+    errors_table, curves_table = (
+        pd.concat(each, names=["participant", "model"]).reset_index(level=[0, 1]).reset_index(drop=True)
+        for each in (errors, curves)
+    )
     models = tuple(SensingModel(done, tuple(channels), half) for done, half in fitted)
     return PersonReconstruction(participant, errors_table, pd.DataFrame(summary), curves_table, models)
 
@@ -190,13 +201,8 @@ class _Prediction:
     n_fitted: int = 0
     seconds: float = 0.0
 
-    def checked(self, spread: NDArray[np.float64], tested: Reconstructed) -> dict[str, float]:
-        """Loss by which models are chosen, and how often the interval that the check part gives holds."""
-        inside = coverage(tested.states - tested.windows.y, self.half_widths)
-        return {"check_loss": float(np.mean((self.missed / spread) ** 2)), "coverage": float(np.mean(inside))}
 
-
-Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and the half widths of its interval
+Fitted = tuple[WindowModel, NDArray[np.float64]]  # and the half widths of its interval
 
 
 def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Prediction], NDArray[np.bool_]]:
@@ -222,16 +228,13 @@ def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list
 
 def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
     """What a forecast has to beat; errors of fitted and checked part, the latter may be shorter than the time ahead."""
-    ahead_s, average = what.lags.ahead / what.rate_hz, phase_average(parts.training)
+    ahead_s = what.lags.ahead / what.rate_hz
     known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
     found = []
-    for name, forecast in (
-        (PERSISTENCE, partial(persistence, ahead_s=ahead_s)),
-        (PHASE_AVERAGE, partial(average.forecast, ahead_s=ahead_s)),
-    ):
-        missed = forecast(known) - stacked(known).y
+    for name, forecast in ((PERSISTENCE, persistence), (PHASE_AVERAGE, phase_average(parts.training).forecast)):
+        missed = forecast(known, ahead_s) - stacked(known).y
         missed = missed[np.isfinite(missed).all(axis=1)]
-        found.append(_Prediction(name, forecast(parts.test), missed, half_widths(missed)))
+        found.append(_Prediction(name, forecast(parts.test, ahead_s), missed, half_widths(missed)))
     return found
 
 

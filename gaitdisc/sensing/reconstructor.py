@@ -19,7 +19,6 @@ from gaitdisc.sensing.windows import Lags, hidden, present, thinned, windows_of
 
 if TYPE_CHECKING:
     from gaitdisc.networks.trained_network import TrainedNetwork
-    from gaitdisc.networks.training_settings import TrainingSettings
 
 FEATURES = 1000
 MOST_FITTED = 20_000  # windows; beyond it every k-th is fitted
@@ -145,7 +144,7 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
 
 
 @dataclass(frozen=True, eq=False)
-class Reconstructor:
+class WindowModel:
     """A fitted model that reconstructs states from windows."""
 
     kind: str
@@ -181,7 +180,7 @@ def fitting_device(kinds: Sequence[str], wanted: str) -> str:
 
 def fit_reconstructor(
     kind: str, what: Sensing, training: Samples, check: Samples, seed: int = 0, device: str = "auto"
-) -> Reconstructor:
+) -> WindowModel:
     """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the test part.
 
     training, check: windows to fit, and windows to choose by; readings may be missing for `masked shred`
@@ -199,7 +198,7 @@ def fit_reconstructor(
         training, check = hidden(training, len(what.sensors), seed), hidden(check, len(what.sensors), seed + 1)
     begun = time.process_time()
     model = fit(training, check)
-    return Reconstructor(kind, what, model, len(training), time.process_time() - begun, device)
+    return WindowModel(kind, what, model, len(training), time.process_time() - begun, device)
 
 
 def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samples, Samples], ScaledModel]:
@@ -218,7 +217,13 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
         text = TrainingSettings(
             batch=64, learning_rate=1e-3, falling=False, decays=(0.0,), solved=False, seed=seed, device=device
         )
-        return lambda training, check: train(training, build, _as_long(text, len(training)), check=check).network
+
+        def fit(training: Samples, check: Samples) -> ScaledModel:
+            each = math.ceil(len(training) / text.batch)  # steps of an epoch
+            long = replace(text, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))
+            return train(training, build, long, check=check).network
+
+        return fit
     if kind == ENSEMBLE:
         each = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
         return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in each))
@@ -236,13 +241,7 @@ def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     return partial(Shred, sensors=sensors, masked=kind == MASKED)
 
 
-def _as_long(settings: TrainingSettings, windows: int) -> TrainingSettings:
-    """As many epochs as the steps of the dissertation's code make of so many windows."""
-    each = math.ceil(windows / settings.batch)
-    return replace(settings, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))
-
-
-def latent_states(done: Reconstructor, windows: Samples) -> NDArray[np.float64]:
+def latent_states(done: WindowModel, windows: Samples) -> NDArray[np.float64]:
     """Latent state of a fitted SHRED at the last reading of each window, (window, node) [1]."""
     from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trained_network import TrainedNetwork

@@ -55,17 +55,10 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
         }
         best = min(losses, key=lambda chosen: losses[chosen])
         names = ", ".join(channels[k].name for k in best)
+        on_test = [float(np.sqrt(np.mean(_errors(each, best)[1]))) for each in products]
         now = time.process_time()
-        rows.append(
-            (
-                size,
-                names,
-                losses[best],
-                _rmse(products, best) if angles else float("nan"),
-                len(losses) * len(people),
-                now - begun,
-            )
-        )
+        rmse = float(np.mean(on_test)) if angles else float("nan")
+        rows.append((size, names, losses[best], rmse, len(losses) * len(people), now - begun))
         begun = now
     return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
 
@@ -96,10 +89,6 @@ def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
 
     weights = y_scale.sd**2 if in_deg else np.ones(len(y_scale.sd))
     return _Products(of(training), of(parts.checked()), of(parts.tested()), weights, kept)
-
-
-def _rmse(products: Sequence[_Products], chosen: Chosen) -> float:
-    return float(np.mean([np.sqrt(np.mean(_errors(each, chosen)[1])) for each in products]))
 
 
 def _errors(products: _Products, chosen: Chosen) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -25,7 +25,7 @@ from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_st
 from gaitdisc.report.reconstruction_page import NOT_MSE, write_reconstruction_report
 from gaitdisc.report.table import Table
 from gaitdisc.results.reconstruction import mean_over_people
-from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import MASKED, Sensing, WindowModel, fit_reconstructor
 from gaitdisc.sensing.state_errors import angle_columns
 from gaitdisc.sensing.windows import Parts, filled, split_within, with_missing
 from gaitdisc.words import counted, listed, number, unit_text
@@ -174,7 +174,7 @@ def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], ki
     for level in SHARES:
         for kind, done in fitted.items():
 
-            def lost(walk: Recording, k: int, done: Reconstructor = done, level: float = level) -> Recording:
+            def lost(walk: Recording, k: int, done: WindowModel = done, level: float = level) -> Recording:
                 holed = with_missing(walk, what.sensors, level, 0.0, k)
                 return holed if done.kind == MASKED else filled(holed, what.sensors, "last", done.sensor_means)
 
@@ -188,7 +188,7 @@ def _disturbed_parts(walks: Walks, what: Sensing, disturbed: Callable[[Recording
     return split_within(windows, "temporal", what.reach_s)
 
 
-def _rmse(done: Reconstructor, test: Samples, channels: Sequence[Channel]) -> float:
+def _rmse(done: WindowModel, test: Samples, channels: Sequence[Channel]) -> float:
     return float(np.sqrt(np.mean((done(test) - test.y)[:, angle_columns(channels)] ** 2)))
 
 

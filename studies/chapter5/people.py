@@ -18,7 +18,7 @@ from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.sensing.calibration import calibrated
 from gaitdisc.sensing.reconstruct import persistence, phase_average
-from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor, latent_states
+from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Sensing, WindowModel, fit_reconstructor, latent_states
 from gaitdisc.sensing.windows import Lags, Parts, split_by_subject, split_by_trial, split_within, stacked
 
 from .gait import DATA, RUNS, SENSORS, TREADMILL, cohort, exotendon, first_person
@@ -118,7 +118,7 @@ def ahead(quick: bool) -> Iterator[Number]:
             yield Number(name, f"{ahead_s:g} s", "", rmse((values - test.y)[known]))
 
 
-def components(done: Reconstructor, parts: Parts, rank: int) -> tuple[Values, Values, Values]:
+def components(done: WindowModel, parts: Parts, rank: int) -> tuple[Values, Values, Values]:
     """Mean latent state, its first directions, and the fitted part's course along them (time, component)."""
     states = latent_states(done, parts.training[0])
     mean = states.mean(axis=0)
@@ -126,7 +126,7 @@ def components(done: Reconstructor, parts: Parts, rank: int) -> tuple[Values, Va
     return mean, axes, (states - mean) @ axes
 
 
-def linear(done: Reconstructor, parts: Parts) -> Callable[[Values, int], Values]:
+def linear(done: WindowModel, parts: Parts) -> Callable[[Values, int], Values]:
     """Carry the latent state on by the linear map of one step."""
     mean, axes, course = components(done, parts, RANK)
     step = np.linalg.lstsq(course[:-STEP], course[STEP:], rcond=None)[0]
@@ -134,7 +134,7 @@ def linear(done: Reconstructor, parts: Parts) -> Callable[[Values, int], Values]
     return lambda states, n: decoded(mean + (states - mean) @ axes @ np.linalg.matrix_power(step, n // STEP) @ axes.T)
 
 
-def sparse(done: Reconstructor, parts: Parts) -> Callable[[Values, int], Values]:
+def sparse(done: WindowModel, parts: Parts) -> Callable[[Values, int], Values]:
     """Carry the latent state on by sparse equations of its first components, by Runge-Kutta steps of 0.01 s."""
     mean, axes, course = components(done, parts, SINDY_RANK)
     names = tuple(f"z{k + 1}" for k in range(SINDY_RANK))

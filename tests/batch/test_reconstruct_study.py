@@ -14,8 +14,7 @@ from gaitdisc.batch.reconstruct_study import (
     reconstruct_study,
     search_study,
 )
-from gaitdisc.batch.sensed_walks import EDGE_S, sensed_walks
-from gaitdisc.batch.target_walks import target_walk
+from gaitdisc.batch.sensed_walks import EDGE_S, sensed_walks, target_walk
 from gaitdisc.channel import Channel
 from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, TrainingError, UnitError

@@ -13,8 +13,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.model import Model, augment
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.shred import ShallowDecoder
-from gaitdisc.networks.threads import pinned_threads, torch_threads
-from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.networks.trained_network import TrainedNetwork, pinned_threads, torch_threads
 from gaitdisc.recording import scale_of
 from gaitdisc.sensing.model_folder import load_weights, save_weights
 from gaitdisc.sensing.reconstructor import Ensemble

@@ -124,16 +124,6 @@ def test_arrays_that_changed_or_went_since_the_run_was_loaded_are_reported(respo
         _ = gone.residuals
 
 
-@pytest.mark.parametrize("file", ["r2.csv", "arrays.npz"])
-def test_a_flipped_byte_is_reported(response, tmp_path, file):
-    RESPONSE.save(response, tmp_path, "key")
-    content = bytearray((tmp_path / file).read_bytes())
-    content[len(content) // 2] ^= 1
-    (tmp_path / file).write_bytes(bytes(content))
-    with pytest.raises(SchemaError, match=rf"{file}.*changed"):
-        RESPONSE.load_keyed(tmp_path)
-
-
 def test_a_missing_file_and_another_format(response, tmp_path):
     with pytest.raises(SchemaError, match=r"run.json is missing"):
         load_run(tmp_path)
@@ -204,15 +194,6 @@ def test_a_fitted_model_has_neither_page_nor_citations(tmp_path):
             refused(tmp_path)
 
 
-def test_a_run_comes_back_as_it_was(run, tmp_path):
-    WALK.save(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
-    RESPONSE.save(run.responses[0], tmp_path / "responses" / "P01", "key")
-    save_run(run, tmp_path)
-    loaded = load_run(tmp_path)
-    assert (loaded.title, loaded.refusals, loaded.provenance) == (run.title, run.refusals, run.provenance)
-    pd.testing.assert_frame_equal(loaded.r2_table(), run.r2_table())
-
-
 @pytest.fixture
 def saved(run, pair_tests, tmp_path):
     WALK.save(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
@@ -221,8 +202,11 @@ def saved(run, pair_tests, tmp_path):
     return tmp_path
 
 
-def test_the_paired_tests_come_back_as_they_were(saved, pair_tests):
-    loaded = load_run(saved).tests
+def test_a_run_comes_back_as_it_was_with_its_paired_tests(saved, run, pair_tests):
+    again = load_run(saved)
+    assert (again.title, again.refusals, again.provenance) == (run.title, run.refusals, run.provenance)
+    pd.testing.assert_frame_equal(again.r2_table(), run.r2_table())
+    loaded = again.tests
     assert (loaded.participants, loaded.alpha, loaded.level, loaded.too_few) == (11, 0.05, 0.95, "")
     pd.testing.assert_frame_equal(loaded.tests, pair_tests.tests)
     pd.testing.assert_frame_equal(loaded.families, pair_tests.families)

@@ -66,14 +66,6 @@ def test_a_set_without_a_kept_cycle_comes_back_too(tmp_path):
     assert len(CYCLES.load(tmp_path).kept) == 0
 
 
-def test_what_was_changed_by_hand_is_refused(tmp_path):
-    CYCLES.save(made_cycles(), tmp_path, "key")
-    table = tmp_path / "cycles.csv"
-    table.write_text(table.read_text().replace("events", "markers", 1))
-    with pytest.raises(SchemaError, match="changed since it was saved"):
-        CYCLES.load_keyed(tmp_path)
-
-
 def test_no_two_sets_share_a_folder():
     names = [cycles_name("P01", *words) for words in (("", "a b"), ("a", "b"), ("", "a_b"), ("a b", "c"), ("a", "b c"))]
     assert len({*names}) == len(names)
@@ -129,13 +121,6 @@ def test_comparisons_come_back_to_the_last_digit(over, tmp_path):
         assert list(again.tables()[name].columns) == list(table.columns)
 
 
-def test_a_changed_table_is_reported(over, tmp_path):
-    OVER.save(over, tmp_path)
-    (tmp_path / "baselines.csv").write_text("model\n")
-    with pytest.raises(SchemaError, match=r"baselines\.csv.*changed since it was"):
-        OVER.load(tmp_path)
-
-
 TABLE = pd.DataFrame(
     [("EMG", "knee_angle_r", "exo", "network", 0.1 + 0.2, 99), ("EMG", "knee_angle_r", "exo", "ridge", -3.5, 99)],
     columns=pd.Index(VARIANT_COLUMNS),
@@ -148,18 +133,6 @@ def test_what_was_saved_is_loaded(tmp_path):
     assert (found.participant, found.question, key) == ("P01", "sensitivity", "key")
     assert found.left_away == {"angles 4 Hz": "too short"}
     pd.testing.assert_frame_equal(found.table, TABLE)
-
-
-def test_a_damaged_table_is_reported(tmp_path):
-    VARIANTS.save(Variants("P01", "modalities", TABLE, {}), tmp_path, "key")
-    (tmp_path / "variants.csv").write_text("nothing")
-    with pytest.raises(SchemaError, match="changed since it was saved"):
-        VARIANTS.load_keyed(tmp_path)
-
-
-def test_an_empty_folder_holds_none(tmp_path):
-    with pytest.raises(SchemaError, match="missing"):
-        VARIANTS.load_keyed(tmp_path)
 
 
 def test_what_was_found_over_the_participants_is_loaded(tmp_path):
@@ -193,8 +166,19 @@ def test_saved_is_loaded(mismatch, tmp_path):
     assert (again.exchange, again.findings, again.channels) == (mismatch.exchange, mismatch.findings, mismatch.channels)
 
 
-def test_a_changed_table_of_a_mismatch_is_reported(mismatch, tmp_path):
-    MISMATCH.save(mismatch, tmp_path)
-    (tmp_path / "regions.csv").write_text("channel\n")
-    with pytest.raises(SchemaError, match=r"regions\.csv.*changed since it was"):
-        MISMATCH.load(tmp_path)
+@pytest.mark.parametrize(
+    ("kind", "saved", "table"),
+    [
+        (CYCLES, lambda _: made_cycles(), "cycles"),
+        (MISMATCH, lambda request: request.getfixturevalue("mismatch"), "regions"),
+        (OVER, lambda request: request.getfixturevalue("over"), "baselines"),
+        (VARIANTS, lambda _: Variants("P01", "modalities", TABLE, {}), "variants"),
+    ],
+)
+def test_a_table_that_is_missing_or_was_changed_is_refused(request, tmp_path, kind, saved, table):
+    with pytest.raises(SchemaError, match="missing"):
+        kind.load(tmp_path)
+    kind.save(saved(request), tmp_path)
+    (tmp_path / f"{table}.csv").write_text("channel\n")
+    with pytest.raises(SchemaError, match=rf"{table}\.csv.*changed since it was saved"):
+        kind.load(tmp_path)

@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 from gaitdisc.channel import Channel
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
-from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Ensemble, Reconstructor, network_of, sensing
+from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Ensemble, WindowModel, network_of, sensing
 from gaitdisc.sensing.windows import Lags, split_within
 
 
@@ -42,6 +42,6 @@ def untrained(pair):
         scales = scale_of(seen.x), scale_of(seen.y)
         members = tuple(TrainedNetwork(seen.inputs, seen.outputs, *scales, network) for network in networks)
         model = Ensemble(members) if kind == ENSEMBLE else members[0]
-        return Reconstructor(kind, pair.what, model, len(seen), 0.0)
+        return WindowModel(kind, pair.what, model, len(seen), 0.0)
 
     return made

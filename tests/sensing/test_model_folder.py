@@ -17,13 +17,17 @@ from gaitdisc.recording import Recording, scale_of
 from gaitdisc.results.unit_folder import file_sha256
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.onnx_file import write_onnx
-from gaitdisc.sensing.reconstructor import Reconstructor, fit_reconstructor
+from gaitdisc.sensing.reconstructor import WindowModel, fit_reconstructor
+
+
+def as_saved(done, pair):
+    return SensingModel(done, pair.channels, np.array([0.5]))
 
 
 @pytest.fixture(scope="module")
 def saved(pair):
     fitted = fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
-    return SensingModel(fitted, pair.channels, np.array([0.5]))
+    return as_saved(fitted, pair)
 
 
 def test_a_loaded_model_tells_the_same_of_a_new_recording(pair, saved, tmp_path):
@@ -45,7 +49,7 @@ def test_where_it_was_fitted_is_kept(saved, tmp_path):
 
 def test_a_network_is_loaded_with_its_kind(pair, tmp_path):
     fitted = fit_reconstructor("shallow decoder", pair.what, pair.parts.fitted(), pair.parts.checked())
-    save_model(SensingModel(fitted, pair.channels, np.ones(1)), tmp_path)
+    save_model(as_saved(fitted, pair), tmp_path)
     test = pair.parts.tested()
     np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), fitted(test))
 
@@ -70,7 +74,7 @@ def test_refusals(pair, saved, tmp_path):
 @pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble", "shred-text"])
 def test_every_recurrent_network_is_loaded_as_it_was(pair, untrained, tmp_path, kind):
     done = untrained(kind)
-    save_model(SensingModel(done, pair.channels, np.ones(1)), tmp_path)
+    save_model(as_saved(done, pair), tmp_path)
     test = pair.parts.tested()
     np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), done(test))
     files = {f"weights_{k}.npz" for k in range(1, 6)} if kind == "shred ensemble" else {"weights.npz"}
@@ -92,7 +96,7 @@ def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
     with pytest.raises(SchemaError, match=r"gaitdisc.*weights\.npz.*missing"):
         load_model(tmp_path)
     static = fit_reconstructor("linear", pair.what, pair.parts.fitted(), pair.parts.checked())
-    save_model(SensingModel(static, pair.channels, np.ones(1)), tmp_path / "static")
+    save_model(as_saved(static, pair), tmp_path / "static")
     (tmp_path / "weights.npz").write_bytes((tmp_path / "static" / "weights.npz").read_bytes())
     sha256 = file_sha256(tmp_path / "weights.npz")
     resealed(tmp_path / "model.json", lambda data: data["sha256"].update({"weights.npz": sha256}))
@@ -144,10 +148,6 @@ def run(path, windows):
     )[0]
 
 
-def as_saved(done, pair):
-    return SensingModel(done, pair.channels, np.array([0.5]))
-
-
 @pytest.mark.parametrize("kind", ["linear", "delay ridge", "fourier ridge"])
 def test_ridge_regression_by_another_program(pair, tmp_path, kind):
     pytest.importorskip("onnx")
@@ -189,7 +189,7 @@ def test_other_networks(pair, tmp_path, build):
     network = TrainedNetwork(tuple("abcdefgh"), tuple("xyz"), scale_of(x), scale_of(y), build())
     two = pair.what.__class__(("a", "late"), ("late",), pair.what.lags, 100.0)
     write_onnx(
-        SensingModel(Reconstructor("shred", two, network, 0, 0.0), pair.channels * 2, np.ones(1)), tmp_path / "m.onnx"
+        SensingModel(WindowModel("shred", two, network, 0, 0.0), pair.channels * 2, np.ones(1)), tmp_path / "m.onnx"
     )
     np.testing.assert_allclose(run(tmp_path / "m.onnx", x), network(x), atol=1e-5)
 

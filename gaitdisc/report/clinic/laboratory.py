@@ -71,8 +71,8 @@ def load_laboratory(run_folder: Path) -> Laboratory:
             raise _refusal(f"{key} = {str(value)[:60]!r}")
     people = data.get("people", {})
     for person, own in people.items():
-        known = isinstance(own, dict) and own.keys() <= {"affected", "comment"} and _is_short(own.get("comment", ""))
-        if not known or own.get("affected", "left") not in AFFECTED:
+        comment = own.get("comment", "") if isinstance(own, dict) and own.keys() <= {"affected", "comment"} else None
+        if not isinstance(comment, str) or len(comment) > LONGEST or own.get("affected", "left") not in AFFECTED:
             raise _refusal(f"[people.{person}] {str(own)[:80]}")
     said: dict[str, dict[str, str]] = {
         word: {who: own[word] for who, own in people.items() if word in own} for word in ("affected", "comment")
@@ -81,10 +81,6 @@ def load_laboratory(run_folder: Path) -> Laboratory:
     logo = _picture(path.parent / data["logo"]) if data.get("logo") else ""
     name = str(data.get("laboratory", ""))
     return Laboratory(name, logo, bool(data.get("pdf", False)), axes, said["affected"], said["comment"])
-
-
-def _is_short(comment: object) -> bool:
-    return isinstance(comment, str) and len(comment) <= LONGEST
 
 
 def _ends(name: str, ends: Any) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import base64
 import hashlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
@@ -106,6 +106,30 @@ def write_person_page(
     return write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
 
 
+class Sheet(NamedTuple):
+    """Panels under one heading."""
+
+    name: str
+    heading: str
+    panels: list[Panel]
+    caption: str
+
+
+def sheets_of(reading: ClinicalReading) -> list[Sheet]:
+    """Kinematics, kinetics and EMG of a reading, as page and PDF show them; what was not recorded has no panel."""
+    people = sorted({band.people for band in reading.bands.values()})
+    bands = "No band: there is no reference for this condition."
+    if people:
+        count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
+        bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs of {count} controls."
+    kinetics = sheet(reading, MOMENTS, POWERS, FORCES)
+    return [
+        Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
+        Sheet("kinetics", "Moments, powers and forces", kinetics, MOMENT_SIGNS),
+        Sheet("emg", "EMG", emg_sheet(reading.pooled), EMG),
+    ]
+
+
 def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWords) -> dict[str, Any]:
     stem = next(iter(file_names([prefix]).values())) if prefix else ""
     words = {
@@ -120,15 +144,12 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     }
     if not reading.legs:
         return words
-    profile = profile_table(reading)
-    angles = sheet(reading, KINEMATICS)
-    save_table(panel_numbers(angles), beside / f"{stem}cycles.csv")
+    profile, sheets = profile_table(reading), sheets_of(reading)
+    save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
     return {
         **words,
-        "kinematics": _sheet(angles, f"{band_words(reading)} {CYCLES}", (beside, f"{stem}kinematics"), say),
+        **{one.name: _sheet(one.panels, one.caption, (beside, f"{stem}{one.name}"), say) for one in sheets},
         "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
-        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS, (beside, f"{stem}kinetics"), say),
-        "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg"), say),
         "distances": _saved(values_table(reading), beside, stem, say),
         "numbers": _saved(numbers_table(reading), beside, stem, say),
         "profile": _saved(profile, beside, stem, say) if profile else None,
@@ -171,15 +192,6 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
     count = reference.people(condition)
     people = f"{count} controls of the laboratory's own" if count else "nobody who walked so"
     return f"Reference: {people}, saved {reference.created[:10]}."
-
-
-def band_words(reading: ClinicalReading) -> str:
-    """What the band is of, or why there is none."""
-    people = sorted({band.people for band in reading.bands.values()})
-    if not people:
-        return "No band: there is no reference for this condition."
-    count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
-    return f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs of {count} controls."
 
 
 def _method(person: PersonSession) -> list[str]:

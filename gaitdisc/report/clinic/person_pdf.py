@@ -14,8 +14,8 @@ import numpy as np
 
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.clinic.laboratory import ENGLISH, PageWords
-from gaitdisc.report.clinic.panels import SPANS, Panel, contrast_sheet, emg_sheet, sheet
-from gaitdisc.report.clinic.person_page import CONTRAST, CYCLES, EMG, MOMENT_SIGNS, band_words
+from gaitdisc.report.clinic.panels import SPANS, Panel, contrast_sheet
+from gaitdisc.report.clinic.person_page import CONTRAST, sheets_of
 from gaitdisc.report.clinic.sentences import (
     contrast_sentences,
     laboratory_sentences,
@@ -26,7 +26,6 @@ from gaitdisc.report.clinic.sentences import (
 from gaitdisc.report.clinic.values import change_table, profile_rows, values_table
 from gaitdisc.report.panels import SIDES, in_style
 from gaitdisc.results.clinical_reference import ClinicalReading, Contrast, PersonSession, Profile
-from gaitdisc.results.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.whole_file import whole_file
 
@@ -107,17 +106,14 @@ def _write_reading(
     sheets.text("Scores", size=HEAD, bold=True)
     for sentence in score_sentences(reading):
         sheets.text(sentence)
-    sheets.text("Kinematics", size=HEAD, bold=True)
-    sheets.panels(sheet(reading, KINEMATICS))
-    sheets.text(f"{band_words(reading)} {CYCLES} {KEY}", size=SMALL)
-    kinetics, muscles = sheet(reading, MOMENTS, POWERS, FORCES), emg_sheet(reading.pooled)
-    if kinetics or muscles:
-        sheets.turn()
-    for heading, panels, words in (("Moments, powers and forces", kinetics, MOMENT_SIGNS), ("EMG", muscles, EMG)):
-        if panels:
-            sheets.text(heading, size=HEAD, bold=True)
-            sheets.panels(panels)
-            sheets.text(words, size=SMALL)
+    kinematics, *others = sheets_of(reading)
+    recorded = [one for one in others if one.panels]
+    for one in (kinematics, *recorded):
+        if recorded and one is recorded[0]:
+            sheets.turn()
+        sheets.text(one.heading, size=HEAD, bold=True)
+        sheets.panels(one.panels)
+        sheets.text(f"{one.caption} {KEY}" if one is kinematics else one.caption, size=SMALL)
 
 
 def _write_contrast(sheets: _Sheets, contrast: Contrast) -> None:
