@@ -27,8 +27,8 @@ class Compiled:
     parameters: tuple[str, ...]
     observed: tuple[str, ...]
     defaults: NDArray[np.float64]  # (parameter,), the parameters' own values
-    right_hand_side: Program  # derivatives of the states, and the observed channels
-    observation: Program  # derivatives of the states, and the observed channels
+    right_hand_side: Program  # derivatives of the states
+    observation: Program  # the observed channels
 
     def run(
         self, drive: Drive, rows: Rows, steps: int, *, substeps: int = SUBSTEPS, past: NDArray[np.float64] | None = None
@@ -122,8 +122,10 @@ class Compiled:
         """Past with NaN for the states that it lacks, the last ones: an effect's own were never measured."""
         if past is None:
             return read_only(np.empty((0, 0, 0)))
-        lacking = ((0, 0), (0, 0), (0, len(self.states) - past.shape[2]))
-        return read_only(np.ascontiguousarray(np.pad(past, lacking, constant_values=np.nan), float))
+        lacking = len(self.states) - past.shape[2]
+        if lacking:
+            past = np.pad(past, ((0, 0), (0, 0), (0, lacking)), constant_values=np.nan)
+        return read_only(np.ascontiguousarray(past, float))
 
     def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
         starts = np.array(rows.starts, float, order="C", ndmin=2)
