@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording.arrays import read_only
-from gaitdisc.simulation.delays import before_rows, cubic_in_rows, linear_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.program import Program, at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.simulation import Simulation
@@ -28,8 +27,8 @@ class Compiled:
     parameters: tuple[str, ...]
     observed: tuple[str, ...]
     defaults: NDArray[np.float64]  # (parameter,), the parameters' own values
-    right_hand_side: Program  # derivatives of the states, and the observed channels
-    observation: Program  # derivatives of the states, and the observed channels
+    right_hand_side: Program  # derivatives of the states
+    observation: Program  # the observed channels
 
     def run(
         self, drive: Drive, rows: Rows, steps: int, *, substeps: int = SUBSTEPS, past: NDArray[np.float64] | None = None
@@ -49,9 +48,7 @@ class Compiled:
         ok = np.asarray(np.isfinite(starts).all(axis=1))
         lanes, integrate = self._integrator(values)
         program = self._instructions(lanes)
-        wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
-        driven = (drive.rate, drive.time0, drive.inputs, drive.samples, wraps)
-        before = read_only(np.empty((0, 0, 0)) if past is None else np.ascontiguousarray(self._of_all(past), float))
+        driven, before = self._driven(drive), self._before(past)
         plan = (steps, substeps, lanes)
         with np.errstate(all="ignore"):  # a row that leaves every bound is reported, not warned of
             integrate(program, driven, (place, starts, values, seconds), plan, before, (found, ok))
@@ -99,7 +96,12 @@ class Compiled:
         first = 1 + n + len(self.inputs)
         t = drive.time0[place[:, 0], None] + sample / drive.rate
         seconds = self._seconds(self.observation, values)
-        late = self._delayed(drive, place, states, seconds, past)
+        late = np.empty((count, steps, seconds.shape[1]))
+        if late.size:
+            from gaitdisc.simulation.machine import delay_signals
+
+            delays = self._delays(self.observation)
+            delay_signals(delays, seconds, self._driven(drive), place, self._before(past), states, late)
         points = count * steps
         columns = leaf_columns(t.ravel(), states.reshape(points, n), np.empty((points, 0)), values[0])
         columns[1 + n : 1 + n] = [
@@ -112,40 +114,18 @@ class Compiled:
         found = at_points(self.observation, columns, late.reshape(points, -1), points)
         return np.ascontiguousarray(found.T).reshape(count, steps, len(self.observed))
 
-    def _delayed(
-        self,
-        drive: Drive,
-        place: NDArray[np.int64],
-        states: NDArray[np.float64],
-        seconds: NDArray[np.float64],
-        past: NDArray[np.float64] | None,
-    ) -> NDArray[np.float64]:
-        """Delayed signals of the observations along rows, (row, step, delay).
+    def _driven(self, drive: Drive) -> tuple:
+        wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
+        return drive.rate, drive.time0, drive.inputs, drive.samples, wraps
 
-        States are cubic between the samples of their row, near to the finer steps of the run; inputs are linear.
-        """
-        count, steps, _ = states.shape
-        late = np.empty((count, steps, seconds.shape[1]))
-        for k, (signal, _) in enumerate(self.observation.delays):
-            position = np.arange(steps) - seconds[:, k, None] * drive.rate  # samples since the row's start
-            if signal in self.inputs:
-                column = self.inputs.index(signal)
-                wraps = self.simulation.inputs[column].wraps
-                at = np.clip(place[:, 1, None] + position, 0, drive.samples[place[:, 0], None] - 1)
-                late[:, :, k] = linear_in_rows(drive.inputs[:, :, column], place[:, 0], at, wraps)
-                continue
-            column = self.states.index(signal)
-            late[:, :, k] = cubic_in_rows(states[:, :, column], np.clip(position, 0, steps - 1))
-            before = (position < 0) & (place[:, 1, None] > 0)
-            if past is not None and before.any():
-                measured = before_rows(self._of_all(past)[:, :, column], place, position, states[:, 0, column])
-                late[:, :, k] = np.where(before, measured, late[:, :, k])
-        return late
-
-    def _of_all(self, past: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _before(self, past: NDArray[np.float64] | None) -> NDArray[np.float64]:
         """Past with NaN for the states that it lacks, the last ones: an effect's own were never measured."""
+        if past is None:
+            return read_only(np.empty((0, 0, 0)))
         lacking = len(self.states) - past.shape[2]
-        return np.pad(past, ((0, 0), (0, 0), (0, lacking)), constant_values=np.nan) if lacking else past
+        if lacking:
+            past = np.pad(past, ((0, 0), (0, 0), (0, lacking)), constant_values=np.nan)
+        return read_only(np.ascontiguousarray(past, float))
 
     def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
         starts = np.array(rows.starts, float, order="C", ndmin=2)
@@ -180,9 +160,12 @@ class Compiled:
 
     def _instructions(self, rows: int) -> tuple:
         program = self.right_hand_side
+        return program.placed(rows), program.setup, program.constants, self._delays(program), program.registers
+
+    def _delays(self, program: Program) -> NDArray[np.int64]:
+        """Of each delay whether it is of a state (else of an input), and its column, (delay, 2)."""
         kinds = [
             (1, self.states.index(signal)) if signal in self.states else (0, self.inputs.index(signal))
             for signal, _ in program.delays
         ]
-        delayed = np.array(kinds, np.int64).reshape(-1, 2)
-        return program.placed(rows), program.setup, program.constants, delayed, program.registers
+        return np.array(kinds, np.int64).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Signals between their samples, and some seconds ago; whether the seconds of a delay have a meaning."""
+"""A signal some seconds ago; whether the seconds of a delay have a meaning."""
 
 from __future__ import annotations
 
@@ -30,68 +30,12 @@ def delayed_in_series(
     [0.0, 0.0, 0.5, 1.5]
     """
     at = np.clip(np.arange(len(signal)) - seconds * rate, 0, len(signal) - 1)
-    return linear_in_rows(signal[None], np.array([0]), at[None], wraps)[0]
-
-
-def linear_in_rows(
-    series: NDArray[np.float64], which: NDArray[np.int64], at: NDArray[np.float64], wraps: bool
-) -> NDArray[np.float64]:
-    """Values between the samples of series, (row, step).
-
-    series (trial, sample): signals
-    which (row,): trial of each row
-    at (row, step): places, in samples, inside the trial
-    """
-    k = np.minimum(at.astype(int), series.shape[1] - 2) if series.shape[1] > 1 else np.zeros(at.shape, int)
-    value, after = series[which[:, None], k], series[which[:, None], np.minimum(k + 1, series.shape[1] - 1)]
-    slope = after - value
+    k = at.astype(int)
+    slope = signal[np.minimum(k + 1, len(signal) - 1)] - signal[k]
     if wraps:
         slope -= np.round(slope)
-    value = np.where(at > k, value + (at - k) * slope, value)
+    value = np.where(at > k, signal[k] + (at - k) * slope, signal[k])
     return value % 1.0 if wraps else value
-
-
-def cubic_in_rows(series: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values between the samples of series by the polynomial through four of them, (row, step).
-
-    series (row, sample): signals; linear where they have fewer than four samples
-    at (row, step): places, in samples, inside the row
-
-    >>> cubic_in_rows(np.arange(5.0)[None] ** 3, np.array([[1.5]])).tolist()
-    [[3.375]]
-    """
-    count, steps = series.shape
-    rows = np.arange(count)
-    if steps < 4:
-        return linear_in_rows(series, rows, at, False)
-    first = np.clip(at.astype(int) - 1, 0, steps - 4)
-    found = np.zeros(at.shape)
-    for i in range(4):
-        weight = np.ones(at.shape)
-        for j in range(4):
-            if j != i:
-                weight *= (at - first - j) / (i - j)
-        found += np.where(weight == 0, 0.0, weight * series[rows[:, None], first + i])
-    return found
-
-
-def before_rows(
-    past: NDArray[np.float64], place: NDArray[np.int64], position: NDArray[np.float64], start: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Measured state before each row began, joined to the row's own start, (row, step).
-
-    past (trial, sample): measured state; where it is NaN the start counts
-    place (row, 2): trial and first sample of each row
-    position (row, step): places, in samples, counted from each row's start
-    start (row,): state at the start
-    """
-    begin = place[:, 1, None]
-    at = np.clip(begin + position, 0, begin)
-    k = np.minimum(at.astype(int), np.maximum(begin - 1, 0))
-    value = past[place[:, 0, None], k]
-    after = np.where(k + 1 >= begin, start[:, None], past[place[:, 0, None], np.minimum(k + 1, past.shape[1] - 1)])
-    value = value + (at - k) * (after - value)
-    return np.where(np.isfinite(value), value, start[:, None])
 
 
 def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float = LONGEST_S, trial: str = "") -> None:

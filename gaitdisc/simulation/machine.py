@@ -197,6 +197,49 @@ def _linear(values, last, position, wraps):
 
 
 @compiled
+def delay_signals(delays, seconds, drive, place, past, states, into):
+    """Delayed signals along rows that were run, at their samples.
+
+    Inputs are linear; states are cubic between the samples of their row, near to the finer steps of the run.
+
+    delays (delay, 2), seconds (row, delay), drive, place (row, 2), past: as for `integrate_block`
+    states (row, sample, state): of the rows
+    into (row, sample, delay): changed in place
+    """
+    rate, _, inputs, samples, wraps = drive
+    for d in range(delays.shape[0]):
+        column = delays[d, 1]
+        for r in range(place.shape[0]):
+            trial, begin = place[r, 0], place[r, 1]
+            for step in range(states.shape[1]):
+                position = step - seconds[r, d] * rate
+                if delays[d, 0] == 0:
+                    value = _linear(inputs[trial, :, column], samples[trial] - 1, begin + position, wraps[column])
+                elif position >= 0.0:
+                    value = _cubic(states[r, :, column], position)
+                else:
+                    value = _before(past, place[r], position, column, states[r, 0, column])
+                into[r, step, d] = value
+
+
+@compiled
+def _cubic(values, position):
+    """Value by the polynomial through the four samples around it; linear where there are fewer."""
+    if values.size < 4:
+        return _linear(values, values.size - 1, position, False)
+    first = min(max(int(position) - 1, 0), values.size - 4)
+    found = 0.0
+    for i in range(4):
+        weight = 1.0
+        for j in range(4):
+            if j != i:
+                weight *= (position - first - j) / (i - j)
+        if weight != 0.0:
+            found += weight * values[first + i]
+    return found
+
+
+@compiled
 def _before(past, place, position, column, start):
     """Value of a state before its row began: what was measured, else the row's first value."""
     trial, begin = place[0], place[1]

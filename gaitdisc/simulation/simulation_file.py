@@ -20,7 +20,7 @@ from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
-MOSTTABLES = 1000  # the library that parses takes a time that grows with their square
+MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
 ERRORS = ("gain", "sd", "wander")  # of an input
 TABLES = {
     "states": ("unit", "meaning", "initial"),
@@ -89,8 +89,8 @@ def read_simulation(path: Path | str) -> Simulation:
 
 def simulation_of(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
     """Simulation of the text of a TOML file."""
-    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOSTTABLES:
-        raise _not_toml(file, f"more than {MOSTTABLES} tables")
+    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
+        raise _not_toml(file, f"more than {MOST_TABLES} tables")
     try:
         table = parsed_toml(text.replace("\r\n", "\n"))
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Delayed signals along the samples of a trial."""
+"""Delays: signals along the samples of a trial; those that have no meaning are refused with seconds and place."""
 
 import numpy as np
 import pytest
@@ -6,9 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_simulation import system
 
-from gaitdisc.simulation.delays import delayed_in_series
+from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.delays import delayed_in_series, refuse_delays
 from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.parts import Input, Parameter, State
+from gaitdisc.simulation.python_simulation import python_simulation
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
 
 
 @given(st.floats(0, 3), st.integers(1, 200))
@@ -46,3 +51,65 @@ def test_an_observed_state_is_delayed_into_the_measured_past(begin):
     states, _ = compiled.run(drive, rows, 30)
     observed = compiled.observe(drive, rows, states, past=t[None, :, None])[0, :, 0]
     np.testing.assert_allclose(observed, np.maximum(t[begin : begin + 31] - 0.1, 0.0), atol=1e-12)
+
+
+TEXT = """[states.x]
+[inputs.u]
+[parameters.late]
+value = {late}
+[equations]
+x = "u - delay({what})"
+"""
+
+
+def late(what, value=0.2):
+    return TEXT.format(what=what, late=value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            late("x, -1"),
+            r"line 6, \[equations\] x: the delay of a state must not be negative.*; 'delay\(x, -1\)' is -1",
+        ),
+        (late("x, -late"), r"'delay\(x, -late\)' is -0.2 s \(-late\). Write the delay without the minus sign"),
+        (late("x, late", -0.3), r"'delay\(x, late\)' is -0.3 s \(late\)"),
+        (
+            late("x, 1e9"),
+            r"must be shorter than a day \(86400 s\); 'delay\(x, 1000000000.*' is 1e\+09 s. Write the delay",
+        ),
+        (late("x, 0/0"), r"must be a number of seconds; 'delay\(x, 0/0\)' is nan s. Write a number that is not"),
+        (late("u, late - 1e308*10"), r"is -inf s \(late - .*Write a number that is not negative"),
+        (
+            late("x, 1") + '[[effects]]\nequation = "x"\nterm = "delay(x, -2)"\n',
+            r"\[effects\] 0: .*'delay\(x, -2\)' is -2",
+        ),
+        (late("x, 1") + '[observations]\nseen = "delay(x, -3)"\n', r"line 8, \[observations\] seen: .* is -3 s"),
+    ],
+)
+def test_a_file_with_such_a_delay_is_refused_when_it_is_read(text, words):
+    with pytest.raises(SchemaError, match=words):
+        simulation_of(text)
+
+
+@pytest.mark.parametrize("what", ["x, 0", "x, late", "u, -0.05", "u, 0.05", "x, 2*late - 0.1"])
+def test_delays_that_have_a_meaning_are_read(what):
+    assert "delay" in simulation_of(late(what)).equations[0][1]
+
+
+@pytest.mark.parametrize("what", ["x, 1e4", "x, 40*late", "u, -8", "u, 8"])
+def test_a_delay_as_long_as_the_shortest_trial_is_refused(what):
+    simulation = simulation_of(late(what))
+    refuse_delays(simulation)
+    with pytest.raises(SimulationError, match=r"\[equations\].*shorter.*'b'.*8 s"):  # fmt: skip
+        refuse_delays(simulation, 8.0, "b")
+
+
+def test_a_python_object_with_such_a_delay_is_refused_as_well():
+    model = python_simulation("f", lambda t, x, u, p, ports: x, [State("x")], [Input("u")], [Parameter("d", 0.5)])
+    refuse_delays(model.with_input("u", "delay(u, -d)"), 2.0, "a")
+    with pytest.raises(SimulationError, match=r"\[inputs\] u: .*9\*d\)'.*4\.5 s"):
+        refuse_delays(model.with_input("u", "delay(u, 9*d)"), 2.0, "a")
+    with pytest.raises(SimulationError, match=r"\[observations\] x: .*-1\)'.*-1 s"):
+        refuse_delays(model.with_observation("x", "delay(x, -1)"), 2.0, "a")

@@ -1,8 +1,11 @@
 """A simulation gives new ones; it never changes."""
 
-import pytest
+from dataclasses import FrozenInstanceError
 
-from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
+import pytest
+from texts import says
+
+from gaitdisc.simulation.parts import Input, Parameter, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
@@ -69,3 +72,28 @@ def test_sensors_stand_in_the_order_of_the_observations_and_go_with_them(ankle):
     assert told.observing(["omega"]).sensors == (Sensor("omega", lowpass=6.0),)
     assert told.with_sensor(Sensor("theta")).sensors == (Sensor("omega", lowpass=6.0),)
     assert told.with_observation("theta", "1.1*theta").sensor("theta").sd == 0.01
+
+
+def test_only_phase_wraps():
+    assert Input("phase", "1").wraps
+    assert not Input("phase", "rad").wraps
+    assert not Input("tau", "1").wraps
+
+
+def test_parts_are_frozen():
+    with pytest.raises(FrozenInstanceError):
+        Parameter("k", 1.0).value = 2.0  # type: ignore[misc]
+
+
+def test_a_sensor_of_which_nothing_is_said_is_not_known():
+    assert not Sensor("x").known
+    assert all(one.known for one in (Sensor("x", "deg"), Sensor("x", sd=0.3), Sensor("x", lowpass=6.0)))
+
+
+def test_it_says_where_before_what():
+    error = SimulationError("every name is known", "'omgea' is not", "Write 'omega'.").at("equations", "omega")
+    assert says(str(error), "[equations] omega", "'omgea'", "'omega'")
+
+
+def test_without_a_place_it_is_the_sentence_alone():
+    assert str(SimulationError("a", "b", "C.")) == "a; b. C."

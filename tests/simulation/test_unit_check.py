@@ -1,14 +1,16 @@
-"""Units that do not fit are told; those that do are not."""
+"""Units that do not fit are told; of a measured column they are refused."""
 
 from dataclasses import replace
 
 import pytest
 from texts import says
 
-from gaitdisc.simulation.parts import Parameter, State, Term
+from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import bundled, bundled_names, simulation_of
-from gaitdisc.simulation.unit_check import unit_findings
+from gaitdisc.simulation.unit_check import refuse_units, unit_findings
 
 TEXT = """title = "mass"
 [states.x]
@@ -79,3 +81,46 @@ def test_a_choice_has_the_unit_of_what_is_chosen():
     held = Simulation("held", (State("x", "m"),), equations=(("x", "where(x, x)"),))
     (said,) = (each.what for each in unit_findings(held))
     assert says(said, "[equations] x: 'where(x, x)'", "m/s")
+
+
+@pytest.mark.parametrize(
+    ("expression", "unit"),
+    [
+        ("57.2958*theta", "deg"),
+        ("-57.3*theta", "deg"),
+        ("theta*57.29577951", "deg"),
+        ("theta", "rad"),
+        ("1.02*theta", "rad"),
+        ("57.2958*omega", "deg/s"),
+        ("tau", "N m"),
+        ("1000*tau", "N mm"),
+        ("tau*omega", "W"),
+        ("3*theta", "ticks"),
+        ("sin(theta)", "1"),
+        ("57.2958*(theta + 0.1)", "deg"),
+    ],
+)
+def test_units_that_fit(ankle, expression, unit):
+    refuse_units(ankle.with_observation("seen", expression).with_sensor(Sensor("seen", unit)))
+
+
+@pytest.mark.parametrize(
+    ("expression", "unit", "words"),
+    [
+        ("theta", "deg", r"its column, 'deg'; 'theta' is in rad. Write 57.2958\*theta."),
+        ("-theta", "deg", r"'theta' is in rad. Write -57.2958\*theta."),
+        ("57.2958*theta", "rad", r"its column, 'rad'; 'theta' is in rad. Write 1\*theta."),
+        ("theta", "m", r"its column, 'm'; 'theta' has another kind of unit. Correct the unit or expression."),
+        ("tau*omega", "N m", r"'tau\*omega' has another kind of unit"),
+    ],
+)
+def test_units_that_do_not_fit_are_refused_with_the_mend(ankle, expression, unit, words):
+    with pytest.raises(SimulationError, match=words):
+        refuse_units(ankle.with_observation("seen", expression).with_sensor(Sensor("seen", unit)))
+
+
+def test_a_file_is_refused_at_the_line_of_the_observation(ankle_text):
+    text = f'{ankle_text}[observations.ankle]\nexpression = "theta"\nunit = "deg"\n'
+    line = text.split("\n").index("[observations.ankle]") + 1
+    with pytest.raises(SchemaError, match=rf"ankle.toml, line {line}, \[observations\]"):
+        simulation_of(text, "ankle.toml")
