@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import cast
 
@@ -18,7 +19,8 @@ from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.raw_file import file_sha256
-from gaitdisc.results.discovery import DEVICE, SIMULATION, Discovery
+from gaitdisc.recording import Finding
+from gaitdisc.results.discovery import DEVICE, SIMULATION, Discovery, GapSize
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.even_time import MILLISECONDS
 from gaitdisc.simulation.measured import Measured
@@ -113,7 +115,6 @@ def discovered(
     weighed: whether an explanation is possible; all are by default
     refitted: fits the numbers of what was found once more; they stay as they are by default
     """
-    data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
@@ -131,7 +132,7 @@ def discovered(
 
 
 def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
-    """Return an answer with what it rests on, and without a name of a person.
+    """Return an answer with what it rests on; it is written without a name of a person.
 
     model: with what was found
     """
@@ -139,12 +140,38 @@ def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, SIMULATION)
     public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
-    return replace(found, findings=tuple(map(public.finding, found.findings)), provenance=made)
+    numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
+    trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
+    seen = [(one, public.finding(replace(one, what=_without(one.what, trials)))) for one in found.findings]
+    return replace(found, provenance=made, hide=partial(_hidden, trials=trials, findings=seen))
 
 
-def _trial_name(name: str, number: int) -> str:
-    """Of a trial of the measured table; what it is called there may be a person's name."""
-    return name if PublicWords().said(name) == name else f"trial {number}"
+def _hidden(found: Discovery, trials: Mapping[str, str], findings: list[tuple[Finding, Finding]]) -> Discovery:
+    """Return an answer without a name of a person.
+
+    trials: names of trials that may be one, and what they are called
+    findings: each about the data, and as it is written
+    """
+
+    def sized(size: GapSize) -> GapSize:
+        return replace(size, of=_without(size.of, trials))
+
+    return replace(
+        found,
+        sentence=_without(found.sentence, trials),
+        train=sized(found.train),
+        held_out=sized(found.held_out),
+        runs=replace(found.runs, names=tuple(_without(one, trials) for one in found.runs.names)),
+        findings=tuple(next((public for known, public in findings if known == one), one) for one in found.findings),
+        explanations=tuple(replace(one, held_out=one.held_out and sized(one.held_out)) for one in found.explanations),
+        hide=None,
+    )
+
+
+def _without(text: str, trials: Mapping[str, str]) -> str:
+    for name, called in trials.items():
+        text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", called, text)
+    return text
 
 
 def _own_words(model: Simulation) -> frozenset[str]:

@@ -188,7 +188,7 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
     named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
     shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
     seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
-    time, numbers = times[shown, None] + np.arange(at.length) / data.rate, (str(k + 1) for k in range(len(data.trials)))
+    time = times[shown, None] + np.arange(at.length) / data.rate
     again = (at.trial[shown][1:] == at.trial[shown][:-1])[:, None] & (time[1:] <= time[:-1, -1:])
     seen[1:][again] = np.nan  # where two runs overlap, the first is drawn
     simulated, augmented = seen - runs.before[shown], seen - runs.after[shown]
@@ -198,7 +198,7 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
         held_out=sizes[1],
         effects=effects,
         explanations=(*named, *found.explanations[len(named) :]),
-        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, tuple(numbers)),
+        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, data.trials),
     )
     said = sentence_of(found, base, fit.parts if effects else ())
     return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))

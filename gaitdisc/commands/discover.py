@@ -125,6 +125,7 @@ def _write(
 
         progress("drawing the report")
         place = write_discovery_report(found, out)
+    found = found.public
     typer.echo("\n".join([found.sentence, *notes]))
     for finding in found.findings:
         if finding.severity != "note":

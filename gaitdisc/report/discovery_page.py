@@ -230,6 +230,7 @@ def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.
 
 def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
     """Write the report of a discovery: `report.html`, `figures/` and `tables/`."""
+    discovery = discovery.public
     made, how = discovery.provenance, method_of(discovery)
     tables = {
         "estimates": estimates_table(discovery),

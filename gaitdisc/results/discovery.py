@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -229,11 +229,18 @@ class Discovery(Saved, file="discovery.json"):
     beside: Mapping[str, float] = field(default_factory=dict)
     explanations: tuple[Explanation, ...] = ()
     given: str = ""
+    # hides what may name a person; None where nothing does. Python holds the names, what is written does not
+    hide: Callable[[Discovery], Discovery] | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
         if self.verdict not in VERDICTS:
             raise ValueError(f"verdict must be one of {VERDICTS}, not {self.verdict!r}")
+
+    @property
+    def public(self) -> Discovery:
+        """The same as it is written: without a name of a person."""
+        return self.hide(self) if self.hide else self
 
     def to_frame(self) -> pd.DataFrame:
         """Held-out runs as a table: run, trial, time [s], and each channel measured, simulated and augmented."""

@@ -38,6 +38,7 @@ def save_discovery(discovery: Discovery, folder: Path, models: Sequence[str] = (
     """Save a discovery; models: files of the augmented model, which were written into the folder together with it."""
     import pandas as pd
 
+    discovery = discovery.public
     write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
     hashes = {name: file_sha256(written_so_far(folder / name)) for name in (RUNS, *models)}
     return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))

@@ -1,4 +1,6 @@
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -6,11 +8,13 @@ import pytest
 from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import MASS, Experiment, record, with_load
 from made_simulation import system
+from manufactured_discovery import manufactured
 
-from gaitdisc.batch.discover_files import discover_files, discover_model
+from gaitdisc.batch.discover_files import discover_files, discover_model, sealed
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
+from gaitdisc.recording import Finding
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.parts import Term
@@ -41,6 +45,22 @@ def test_the_answer_carries_what_it_rests_on(files):
     assert found.runs.names == ("1", "2", "3", "4")
     (term,) = augmented.effects
     assert (term.place, term.name) == ("load", "cubic_stiffness")
+
+
+def test_names_of_people_are_hidden_in_what_is_written_and_held_by_python(tmp_path):
+    """A trial may have the name of whoever walked it."""
+    data = SimpleNamespace(trials=("Otto", "1", "2", "Erika"), rate=100.0, channels=("x",))
+    seen = Finding("warning", "odd trial", "walk.csv", "trial 'Erika' is late", "", "x")
+    found = manufactured(sentence="Erika is late.", findings=(seen, Finding("note", "limit", "model", "knee", "")))
+    found = replace(
+        found, runs=replace(found.runs, names=data.trials), held_out=replace(found.held_out, of="trial Erika")
+    )
+    held = sealed(found, system({"x": "-x"}), data, {})
+    assert (held.sentence, held.runs.names, held.findings) == ("Erika is late.", data.trials, found.findings)
+    save_discovery(held, tmp_path)
+    text = (tmp_path / "discovery.json").read_text() + (tmp_path / "held_out.csv").read_text()
+    assert "Erika" not in text and "trial 'trial 4' is late" in text and '"knee"' in text
+    assert "Erika" not in write_discovery_report(held, tmp_path).read_text()
 
 
 def test_a_catalogue_is_read_before_anything_is_computed(files):
