@@ -40,16 +40,13 @@ class Trial:
 
 def runs_of(case: Case, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
     """Run a model over trials, finding nothing but the start states."""
-    periods = like.shooting.segments.span / case.rhythm.samples
-    *shorter, whole = _lengths(periods)
-    guess = case.guess
-    for length in shorter:
+    guess, runs = case.guess, []
+    for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
         segments = case.segments(trials, length)
         shooting = replace(case.shooting(segments).with_noise(like.noise), past=guess.states)
-        guess = guess.with_run(segments, _started(shooting, now, guess.starts(segments)).states)
-    segments = case.segments(trials, whole)
-    shooting = replace(case.shooting(segments).with_noise(like.noise), past=guess.states)
-    return Trial(segments, _started(shooting, now, guess.starts(segments)), shooting.seen)
+        runs.append(Trial(segments, _started(shooting, now, guess.starts(segments)), shooting.seen))
+        guess = guess.with_run(segments, runs[-1].fit.states)
+    return runs[-1]
 
 
 def free_run_error(case: Case, now: ScoredModel) -> float:
