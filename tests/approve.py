@@ -109,24 +109,40 @@ def list_templates() -> dict[str, str]:
 
 
 def _templates(module: ast.Module) -> Iterator[str]:
+    functions = (node for node in ast.walk(module) if isinstance(node, ast.FunctionDef))  # outer ones first
+    inside = {node: function for function in functions for node in ast.walk(function)}
     for node in ast.walk(module):
         name = ast.unparse(node.func).rpartition(".")[2] if isinstance(node, ast.Call) else ""
         if isinstance(node, ast.Call) and (name.endswith("Error") or name == "Finding") and len(node.args) >= 2:
-            words = [_template(one) for one in node.args]
+            words = [_template(one, _assigned(inside.get(node, module))) for one in node.args]
             if any(" " in one for one in words):
                 yield f"{name}: {' / '.join(words)}"
 
 
-def _template(node: ast.expr) -> str:
+def _assigned(scope: ast.AST) -> dict[str, list[str]]:
+    """Words that a function puts into its names, in the order of its lines."""
+    words: dict[str, list[str]] = defaultdict(list)
+    for node in ast.walk(scope):
+        if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name) and words[node.target.id]:
+            words[node.target.id][-1] += _template(node.value, {})
+        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            text = _template(node.value, {})
+            words[node.targets[0].id] += [text] if " " in text else []
+    return {name: texts for name, texts in words.items() if texts}
+
+
+def _template(node: ast.expr, assigned: dict[str, list[str]]) -> str:
     """Words of an argument, `{}` where a value stands."""
     if isinstance(node, ast.Constant):
         return str(node.value)
     if isinstance(node, ast.JoinedStr):
-        return "".join(_template(one) for one in node.values)
+        return "".join(_template(one, assigned) for one in node.values)
     if isinstance(node, ast.FormattedValue):
-        return _template(node.value)
+        return _template(node.value, assigned)
     if isinstance(node, ast.IfExp):
-        return f"{_template(node.body)} (or: {_template(node.orelse)})"
+        return f"{_template(node.body, assigned)} (or: {_template(node.orelse, assigned)})"
+    if isinstance(node, ast.Name) and node.id in assigned:
+        return " (or: ".join(assigned[node.id]) + ")" * (len(assigned[node.id]) - 1)
     return "{}"
 
 
