@@ -127,7 +127,7 @@ class _Field:
         if thing is None:
             raise AttributeError(self._name)
         value = vars(thing)[self._name]
-        return value.made(value.arrays) if isinstance(value, OnDisk) else value
+        return value.made(_arrays(value.arrays.path, value.arrays.sha256)) if isinstance(value, OnDisk) else value
 
     def __set__(self, thing: object, value: object) -> None:
         vars(thing)[self._name] = value
