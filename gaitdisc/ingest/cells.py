@@ -61,26 +61,21 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
 
 def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp], form: Form) -> list[str]:
     width = len(labels)
+    needed = f"{form.file}: every row must have {width} cells, one per column"
     counts = [len(row.split()) if form.separator == " " else row.count(form.separator) + 1 for row in rows]
     if min(counts) < width:
         row = counts.index(min(counts)) if counts[-1] >= width else len(counts) - 1
         cut = ", the last line" if row == len(rows) - 1 else ""
-        raise ReadError(
-            f"{form.file}: every row must have {width} cells, one per column",
-            f"line {numbers[row]}{cut} has {counts[row]}",
-            "The file was cut or edited. Copy or export it again.",
-        )
+        found = f"line {numbers[row]}{cut} has {counts[row]}"
+        raise ReadError(needed, found, "The file was cut or edited. Copy or export it again.")
     if max(counts) == width:
         return rows
     even = []
     for row, number in zip(rows, numbers, strict=True):
         cells = form.split(row)
         if any(cell.strip() for cell in cells[width:]):
-            raise ReadError(
-                f"{form.file}: every row must have {width} cells, one per column",
-                f"line {number} has {len(cells)}",
-                "Name every column in the header line, or export the file again.",
-            )
+            remedy = "Name every column in the header line, or export the file again."
+            raise ReadError(needed, f"line {number} has {len(cells)}", remedy)
         even.append(form.separator.join(cells[:width]))
     return even
 
