@@ -50,8 +50,9 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
     numbers = np.array([first_line + i for i, line in enumerate(lines) if line.strip()], dtype=np.intp)
     rows = [line for line in lines if line.strip()]
     if not rows:
-        found = f"none follow line {first_line - 1}"
-        raise ReadError(f"{form.file} must contain rows of numbers", found, "Export the whole trial.")
+        raise ReadError(
+            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
+        )
     rows = _even_rows(rows, labels, numbers, form)
     values = _numbers(rows, form)
     if values is None or np.isinf(values).any():
@@ -61,21 +62,26 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
 
 def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp], form: Form) -> list[str]:
     width = len(labels)
-    needed = f"{form.file}: every row must have {width} cells, one per column"
     counts = [len(row.split()) if form.separator == " " else row.count(form.separator) + 1 for row in rows]
     if min(counts) < width:
         row = counts.index(min(counts)) if counts[-1] >= width else len(counts) - 1
         cut = ", the last line" if row == len(rows) - 1 else ""
-        found = f"line {numbers[row]}{cut} has {counts[row]}"
-        raise ReadError(needed, found, "The file was cut or edited. Copy or export it again.")
+        raise ReadError(
+            f"{form.file}: every row must have {width} cells, one per column",
+            f"line {numbers[row]}{cut} has {counts[row]}",
+            "The file was cut or edited. Copy or export it again.",
+        )
     if max(counts) == width:
         return rows
     even = []
     for row, number in zip(rows, numbers, strict=True):
         cells = form.split(row)
         if any(cell.strip() for cell in cells[width:]):
-            remedy = "Name every column in the header line, or export the file again."
-            raise ReadError(needed, f"line {number} has {len(cells)}", remedy)
+            raise ReadError(
+                f"{form.file}: every row must have {width} cells, one per column",
+                f"line {number} has {len(cells)}",
+                "Name every column in the header line, or export the file again.",
+            )
         even.append(form.separator.join(cells[:width]))
     return even
 
@@ -133,8 +139,9 @@ def check_counts(cells: Cells, file: str, *counts: tuple[str, Sequence[int], int
         wrong = sorted({count for count in claimed if count != there})
         if wrong:
             what = f"the header states {' and '.join(map(str, wrong))} {kind}, the file has {there}"
-            spoils = "nothing here, but other programs may refuse the file"
-            findings.append(Finding("warning", "wrong count", file, what, spoils))
+            findings.append(
+                Finding("warning", "wrong count", file, what, "nothing here, but other programs may refuse the file")
+            )
     return findings
 
 
@@ -175,12 +182,14 @@ def even_time(
         return f"line {lines[row]}" if lines is not None else f"row {row + 1}"
 
     if len(time) < 2:
-        needed = f"{file}: a recording must have at least two samples"
-        raise SamplingError(needed, f"it has {len(time)}", "Export the whole trial.")
+        raise SamplingError(
+            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the whole trial."
+        )
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))
-        found = f"{place(row)} has {time[row]}"
-        raise SamplingError(f"{file}: every sample must have a time", found, "Export it again.")
+        raise SamplingError(
+            f"{file}: every sample must have a time", f"{place(row)} has {time[row]}", "Export it again."
+        )
     steps = np.diff(time)
     if steps.min() <= 0:
         row = int(np.argmin(steps))
