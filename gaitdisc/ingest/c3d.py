@@ -208,9 +208,14 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
 
 def _made_finite(values: NDArray[np.float64], what: str, file: str) -> list[Finding]:
     infinite = np.isinf(values)
+    if not infinite.any():
+        return []
     values[infinite] = np.nan
-    said = f"{int(infinite.sum())} {what} are infinite; treated as missing"
-    return [Finding("warning", "infinite values", file, said, what)] if infinite.any() else []
+    return [
+        Finding(
+            "warning", "infinite values", file, f"{int(infinite.sum())} {what} are infinite; treated as missing", what
+        )
+    ]
 
 
 @dataclass(frozen=True)
@@ -282,9 +287,15 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
     ]
     rest = header.size - layout.end
     if rest >= layout.frame_bytes + BLOCK and not rotations:
-        what = f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more"
-        spoils = "nothing unless they are frames; compare the trial's length with your notes"
-        findings.append(Finding("warning", "bytes left over", header.file, what, spoils))
+        findings.append(
+            Finding(
+                "warning",
+                "bytes left over",
+                header.file,
+                f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more",
+                "nothing unless they are frames; compare the trial's length with your notes",
+            )
+        )
     return layout, findings
 
 

@@ -20,11 +20,7 @@ _OFF = {"foot off", "toe off", "to", "fo", "off"}
 
 
 def without_people(label: str, people: Iterable[str]) -> str:
-    """Label without the names of people, as the prefix `Name:` or as a word in it.
-
-    >>> without_people("Ann:LASI", ["Ann"]), without_people("EMG Ann soleus", ["Ann"])
-    ('LASI', 'EMG soleus')
-    """
+    """Label without the names of people, as the prefix `Name:` or as a word in it."""
     plain = label
     for person in people:
         plain = re.sub(rf"(?<![A-Za-z0-9]){re.escape(person)}(?![A-Za-z0-9])", "", plain, flags=re.IGNORECASE)
@@ -111,11 +107,7 @@ class LabelMap:
 
 
 def event_kind(label: str, context: str) -> tuple[str, str]:
-    """What an event is (`Foot Strike`, `Right Foot Off`, or Qualisys' `LHS`, `RTO`) and on which side.
-
-    >>> event_kind("Foot Strike", "Left"), event_kind("RTO", ""), event_kind("Sync", "General")
-    (('initial contact', 'l'), ('foot off', 'r'), ('Sync', ''))
-    """
+    """What an event is (`Foot Strike`, `Right Foot Off`, or Qualisys' `LHS`, `RTO`) and on which side."""
     side = {"l": "l", "r": "r"}.get(context.strip().lower()[:1], "")
     word = re.sub(r"[\s_.-]+", " ", label.strip().lower())
     found = re.fullmatch(r"(left|right|l|r) ?(.+)", word)

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.columns import check_written_names
@@ -76,7 +75,11 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
         if name in WHOLE:  # ezc3d makes floats of them, which other programs refuse
             kept = file["parameters"][group][name]
             kept["type"], kept["value"] = ezc3d.ezc3d.INT, np.asarray(kept["value"]).astype(int)
-    file["data"]["points"] = _points(markers, frames) if markers is not None else np.empty((4, 0, frames))
+    file["data"]["points"] = np.empty((4, 0, frames))
+    if markers is not None:  # (4, marker, frame) [m]; one that lacks a coordinate is written as not seen
+        points = markers.values[:frames].reshape(frames, -1, 3).copy()
+        points[np.isnan(points).any(axis=2)] = np.nan
+        file["data"]["points"] = np.concatenate([points.transpose(2, 1, 0), np.ones((1, points.shape[1], frames))])
     file["data"]["analogs"] = np.ascontiguousarray(values.T)[None]
     with tempfile.TemporaryDirectory() as folder:
         written = Path(folder) / "whole.c3d"
@@ -121,13 +124,6 @@ def _platforms(surfaces: Sequence[Surface], columns: Sequence[Sequence[int]]) ->
         (group, "CORNERS"): np.array([surface.corners for surface in surfaces]).T,
         (group, "ORIGIN"): np.zeros((3, count)),
     }
-
-
-def _points(markers: Recording, frames: int) -> NDArray[np.float64]:
-    """Markers as ezc3d takes them, (4, marker, frame) [m]; one that lacks a coordinate is written as not seen."""
-    values = markers.values[:frames].reshape(frames, -1, 3).copy()
-    values[np.isnan(values).any(axis=2)] = np.nan
-    return np.concatenate([values.transpose(2, 1, 0), np.ones((1, values.shape[1], frames))])
 
 
 def _samples_per_frame(recordings: Sequence[Recording], frame_hz: float, file: str) -> int:

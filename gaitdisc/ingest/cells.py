@@ -50,8 +50,9 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
     numbers = np.array([first_line + i for i, line in enumerate(lines) if line.strip()], dtype=np.intp)
     rows = [line for line in lines if line.strip()]
     if not rows:
-        found = f"none follow line {first_line - 1}"
-        raise ReadError(f"{form.file} must contain rows of numbers", found, "Export the whole trial.")
+        raise ReadError(
+            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
+        )
     rows = _even_rows(rows, labels, numbers, form)
     values = _numbers(rows, form)
     if values is None or np.isinf(values).any():
@@ -138,8 +139,9 @@ def check_counts(cells: Cells, file: str, *counts: tuple[str, Sequence[int], int
         wrong = sorted({count for count in claimed if count != there})
         if wrong:
             what = f"the header states {' and '.join(map(str, wrong))} {kind}, the file has {there}"
-            spoils = "nothing here, but other programs may refuse the file"
-            findings.append(Finding("warning", "wrong count", file, what, spoils))
+            findings.append(
+                Finding("warning", "wrong count", file, what, "nothing here, but other programs may refuse the file")
+            )
     return findings
 
 
@@ -180,12 +182,14 @@ def even_time(
         return f"line {lines[row]}" if lines is not None else f"row {row + 1}"
 
     if len(time) < 2:
-        needed = f"{file}: a recording must have at least two samples"
-        raise SamplingError(needed, f"it has {len(time)}", "Export the whole trial.")
+        raise SamplingError(
+            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the whole trial."
+        )
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))
-        found = f"{place(row)} has {time[row]}"
-        raise SamplingError(f"{file}: every sample must have a time", found, "Export it again.")
+        raise SamplingError(
+            f"{file}: every sample must have a time", f"{place(row)} has {time[row]}", "Export it again."
+        )
     steps = np.diff(time)
     if steps.min() <= 0:
         row = int(np.argmin(steps))

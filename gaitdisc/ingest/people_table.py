@@ -209,11 +209,7 @@ def condition_word(path: Path) -> tuple[str, str]:
 
 
 def walk_key(path: Path) -> str:
-    """What is left of a file's name when the words for its kind are taken away: files of one walk share it.
-
-    >>> walk_key(Path("IK_gait.mot")), walk_key(Path("gait_emg.sto")), walk_key(Path("coordinates.sto"))
-    ('gait', 'gait', '')
-    """
+    """What is left of a file's name when the words for its kind are taken away: files of one walk share it."""
     parts = re.split(r"[^A-Za-z0-9]+", path.stem)
     return "_".join(part for part in parts if part and part.lower() not in WORDS["content"])
 
@@ -239,11 +235,7 @@ def _person_in(name: str) -> str:
 
 
 def group_word(path: Path) -> str:
-    """Words of a path that name a group: folders such as `controls` above those of persons; or empty.
-
-    >>> group_word(Path("children/td/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
-    ('children td', '')
-    """
+    """Words of a path that name a group: folders such as `controls` above those of persons; or empty."""
     folders = path.parent.parts[:-1] if _own_folders(path) else path.parent.parts
     return " ".join(folder.lower() for folder in folders if folder.lower() in WORDS["group"])
 

@@ -153,7 +153,7 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
     if ending not in READERS:
         raise ReadError(
             f"the file type of {path.name} must be one of {', '.join(ENDINGS)}",
-            f"its ending is {ending!r}{hint_nearest(ending, ENDINGS)}",
+            f"its ending is {ending!r}" + hint_nearest(ending, ENDINGS),
             "Export it in one of these formats.",
         )
     return READERS[ending](path, channels)
@@ -262,7 +262,7 @@ def write_recording(recording: Recording, path: Path | str, overwrite: bool = Fa
     if ending not in WRITERS:
         raise WriteError(
             f"the name of a recording's file must end with {', '.join(WRITERS)}",
-            f"{Path(path).name} ends with {ending!r}{hint_nearest(ending, WRITERS)}",
+            f"{Path(path).name} ends with {ending!r}" + hint_nearest(ending, WRITERS),
             "Use one of these endings.",
         )
     with guarded("gd.write", overwrite=overwrite):
