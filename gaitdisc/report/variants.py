@@ -114,10 +114,7 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
         if not len(own):
             continue
         middle = own.groupby("without", sort=False)["fall"].median().sort_values(ascending=False, kind="stable")
-        most = [
-            f"{family_words(str(name))} ({number(fall, 3)})"
-            for name, fall in zip(middle.index[:3], middle.to_numpy(float), strict=False)
-        ]
+        most = [f"{family_words(str(name))} ({number(fall, 3)})" for name, fall in middle.head(3).items()]
         said.append(f"Among {words}, the Augmented model loses most R² (medians) without {listed(most)}.")
     said.append(
         "A fall shows information that the other inputs cannot replace. Joint angles and EMG of one walk are "
@@ -172,19 +169,14 @@ def orders(run: VariantRun) -> pd.DataFrame:
 def sensitivity_table(run: VariantRun) -> Table:
     """Medians under every setting, and whether Nominal < Augmented holds."""
     medians, held = setting_medians(run), orders(run)
-    counts = held[["holds", "participants", "different", "variables"]].to_numpy(float)
-    order = dict(zip(held["variant"].astype(str), counts, strict=True))
-    groups = [group for group in ("angles", "EMG") if group in set(medians["variables"])]
+    groups = [group for group in GROUPS if group in set(medians["variables"])]
     rows = []
-    for variant, own in medians.groupby("variant", sort=False):
-        cells = [
-            number(float(own.loc[own["variables"] == group, column].median()))
-            for group in groups
-            for column in ("nominal", "augmented", "exo", "null")
-        ]
-        holds, people, different, variables = order[str(variant)]
-        shown = "not tested" if np.isnan(different) else f"{different:.0f} of {variables:.0f}"
-        rows.append((str(variant), *cells, f"{holds:.0f} of {people:.0f}", shown))
+    for setting in held.itertuples():
+        own = medians[medians["variant"] == setting.variant].set_index("variables").reindex(groups)
+        cells = own[["nominal", "augmented", "exo", "null"]].to_numpy(float).ravel()
+        people = f"{setting.holds} of {setting.participants}"
+        tested = f"{setting.different:.0f} of {setting.variables}" if len(run.tests) else "not tested"
+        rows.append((str(setting.variant), *map(number, cells), people, tested))
     caption = (
         f"R² [1] on the held-out device walk ({run.exo}), medians over participants of medians over variables, n = "
         f"{counted(len(run.people), 'participant')}; one setting changed at a time. R² of two settings refer to "
@@ -195,14 +187,8 @@ def sensitivity_table(run: VariantRun) -> Table:
     )
     heads = (("", 1), *((group, len(HEADINGS)) for group in groups), ("Nominal < Augmented", 2))
     columns = ("setting", *(HEADINGS * len(groups)), "people", "variables")
-    return Table(
-        "sensitivity",
-        caption,
-        columns,
-        tuple(rows),
-        medians.merge(held.drop(columns=["participants", "variables"]), on="variant"),
-        heads,
-    )
+    numbers = medians.merge(held.drop(columns=["participants", "variables"]), on="variant")
+    return Table("sensitivity", caption, columns, tuple(rows), numbers, heads)
 
 
 def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
