@@ -64,7 +64,7 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
 
     def later(self, made: Callable[[Arrays], T]) -> Any:
         """Return what shall be made of the arrays when it is looked at, for a field that `may_lie_on_disk`."""
-        return OnDisk(self, made)
+        return OnDisk(self.path, self.sha256, made)
 
     def _read(self) -> Arrays:
         return _arrays(self.path, self.sha256) if self.sha256 else {}
@@ -74,7 +74,8 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
 class OnDisk(Generic[T]):
     """Something made of the arrays of one file each time it is looked at."""
 
-    arrays: StoredArrays
+    path: Path
+    sha256: str  # hash it had when it was saved
     made: Callable[[Arrays], T]
 
 
@@ -127,7 +128,7 @@ class _Field:
         if thing is None:
             raise AttributeError(self._name)
         value = vars(thing)[self._name]
-        return value.made(_arrays(value.arrays.path, value.arrays.sha256)) if isinstance(value, OnDisk) else value
+        return value.made(_arrays(value.path, value.sha256)) if isinstance(value, OnDisk) else value
 
     def __set__(self, thing: object, value: object) -> None:
         vars(thing)[self._name] = value
