@@ -192,7 +192,8 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
         if isinstance(given, Recording):
             values = interpolated(given.time, given.selected([name]).values, time)[:, 0]
         else:
-            values = _values(given[name], time)
+            values = np.asarray(given[name](time) if callable(given[name]) else given[name], float)
+            values = np.full(len(time), values) if values.ndim == 0 else values
         if values.shape != time.shape:
             raise ShapeError(
                 f"the input {name!r} must have one value per time",
@@ -210,12 +211,6 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
             "Fill the gap, or simulate a shorter period.",
         )
     return driven
-
-
-def _values(given: Any, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values of one input at the times: of a function of the time, of a number that stays, or as they are given."""
-    values = np.asarray(given(time) if callable(given) else given, float)
-    return np.full(len(time), values) if values.ndim == 0 else values
 
 
 def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] | None) -> NDArray[np.float64]:

@@ -19,8 +19,8 @@ _NUDGE = 1e-2  # of a parameter, to see what drives the rate
 class Divergence:
     """The last that is known of a row."""
 
-    row: int  # numbers of the row and of its trial
-    trial: int  # numbers of the row and of its trial
+    row: int
+    trial: int
     time: float  # of its last finite sample [s]
     state: str  # that changes fastest there, relative to its size
     value: float

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.simulation.checking import check_expression
 from gaitdisc.simulation.delays import delayed_in_series
-from gaitdisc.simulation.expression import Tree
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.program import at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.refusal import SimulationError
@@ -56,7 +55,11 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
     scope = simulation_scope(simulation)
     known = (*names, *scope)
     trees = [check_expression(text, known, simulation) for text in expressions]
-    program = compiled_program(trees, names, (), _standing_in(trees, scope))
+    needed = {name for tree in trees for name in names_in(tree)}
+    for name in reversed([*scope]):  # definitions that stand in these, one in another: no other's delays matter
+        if name in needed:
+            needed.update(names_in(scope[name]))
+    program = compiled_program(trees, names, (), {name: tree for name, tree in scope.items() if name in needed})
     values = compiled.defaults if points.values is None else np.asarray(points.values, float)
     columns = leaf_columns(points.t, points.x, points.u, values)
     columns += [np.asarray(extra, float) for extra in points.extras.values()]
@@ -76,12 +79,3 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
         wraps = any(each.wraps for each in simulation.inputs if each.name == signal)
         late[:, k] = delayed_in_series(columns[names.index(signal)], seconds[k], points.rate, wraps)
     return at_points(program, columns, late, count)
-
-
-def _standing_in(trees: Sequence[Tree], scope: Mapping[str, Tree]) -> dict[str, Tree]:
-    """Definitions that stand in some expressions, one in another too: the delays of the others do not matter."""
-    needed = {name for tree in trees for name in names_in(tree)}
-    for name in reversed([*scope]):
-        if name in needed:
-            needed.update(names_in(scope[name]))
-    return {name: tree for name, tree in scope.items() if name in needed}

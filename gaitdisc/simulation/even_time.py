@@ -25,10 +25,8 @@ class TrialColumns:
 
     name: str
     time: NDArray[np.float64]  # (sample,) [s], as measured
-    # (sample, input), (sample, channel), columns that the simulation needs; NaN where a cell is empty
-    inputs: NDArray[np.float64]
-    # (sample, input), (sample, channel), columns that the simulation needs; NaN where a cell is empty
-    observed: NDArray[np.float64]
+    inputs: NDArray[np.float64]  # (sample, input), columns that the simulation needs; NaN where a cell is empty
+    observed: NDArray[np.float64]  # (sample, channel), the same of observed channels
 
 
 def on_even_time(
@@ -53,9 +51,12 @@ def on_even_time(
             even, what = _resampled(trial, np.asarray((place + first) / rate, np.float64), inputs)
             what = f"trial {trial.name!r}: times deviate by up to {worst:.1f} % of a step from an even clock; {what}"
             findings.append(Finding("note", "clock", source, what, "nothing at this size"))
-    missing = int(place[-1]) + 1 - len(place)
-    if missing:
-        even = _with_rows(even, place, rate)
+    count = int(place[-1]) + 1
+    missing = count - len(place)
+    if missing:  # empty rows where the clock jumped
+        driving, observed = (np.full((count, each.shape[1]), np.nan) for each in (even.inputs, even.observed))
+        driving[place], observed[place] = even.inputs, even.observed
+        even = TrialColumns(even.name, even.time[0] + np.arange(count) / rate, driving, observed)
         what = f"trial {trial.name!r}: {missing} rows of {len(even.time)} are missing"
         findings.append(Finding("warning", "gap in time", source, what, "the missing period, which is excluded"))
     return _bridged(even, inputs, rate, source, findings), rate, findings
@@ -160,14 +161,6 @@ def _roughness(values: NDArray[np.float64], like: NDArray[np.float64]) -> float:
     """Sum over the columns of the squared third differences, each over that of another table."""
     sums = [np.nansum(np.diff(one, 3, axis=0) ** 2, axis=0) for one in (values, like)]
     return float(np.sum(sums[0] / np.where(sums[1] > 0, sums[1], 1.0)))
-
-
-def _with_rows(trial: TrialColumns, place: NDArray[np.intp], rate: float) -> TrialColumns:
-    """Insert empty rows where the clock jumped."""
-    count = int(place[-1]) + 1
-    inputs, observed = (np.full((count, each.shape[1]), np.nan) for each in (trial.inputs, trial.observed))
-    inputs[place], observed[place] = trial.inputs, trial.observed
-    return TrialColumns(trial.name, trial.time[0] + np.arange(count) / rate, inputs, observed)
 
 
 def _bridged(

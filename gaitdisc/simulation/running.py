@@ -30,8 +30,12 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     >>> compile_simulation(Simulation("decay", (State("x"),), equations=(("x", "-x"),))).states
     ('x',)
     """
-    if not isinstance(simulation, Simulation):
-        return _of_python(simulation)
+    if isinstance(simulation, PythonSimulation):
+        parts = simulation.parts
+        own, feeds = (compile_simulation(replace(one, model="")) for one in (parts, simulation.feeds))
+        return PythonCompiled(
+            **{**vars(own), "simulation": parts, "right_hand_side": feeds.observation}, model=simulation
+        )
     if simulation.model:
         raise SimulationError(
             "a simulation must have its own equations to be run",
@@ -57,21 +61,6 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         defaults,
         compiled_program(wanted, leaves, parameters, defined),
         compiled_program(seen, leaves, parameters, defined),
-    )
-
-
-def _of_python(model: PythonSimulation) -> Compiled:
-    own, feeds = (compile_simulation(replace(one, model="")) for one in (model.parts, model.feeds))
-    return PythonCompiled(
-        model.parts,
-        own.states,
-        own.inputs,
-        own.parameters,
-        own.observed,
-        own.defaults,
-        feeds.observation,
-        own.observation,
-        model,
     )
 
 

@@ -88,7 +88,10 @@ class Simulation:
             object.__setattr__(self, part, _lines(getattr(self, part)))
         if not self.observations:
             object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
-        object.__setattr__(self, "sensors", self._known_sensors())
+        order = {name: number for number, (name, _) in enumerate(self.observations)}
+        known = [one for one in self.sensors if one.known]
+        known.sort(key=lambda one: order.get(one.channel, len(order)))  # what belongs to none of them stands last
+        object.__setattr__(self, "sensors", tuple(known))
         check(self)
 
     def __repr__(self) -> str:
@@ -100,12 +103,6 @@ class Simulation:
         rows += [(each.name, f"{each.value:g} {each.unit}") for each in self.parameters]
         rows += [(f"at {each.place}", each.term) for each in self.effects]
         return html_of(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
-
-    def _known_sensors(self) -> tuple[Sensor, ...]:
-        """Those of which something is said, in the order of the observations; what belongs to none stands last."""
-        order = [name for name, _ in self.observations]
-        known = (one for one in self.sensors if one.known)
-        return tuple(sorted(known, key=lambda one: order.index(one.channel) if one.channel in order else len(order)))
 
     @property
     def signals(self) -> tuple[str, ...]:

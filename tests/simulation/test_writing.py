@@ -77,10 +77,27 @@ def test_windows_line_ends_stay(ankle_text):
     assert text.count("\r\n") == text.count("\n")
 
 
-def test_a_layout_that_does_not_fit_is_written_anew():
-    inline = simulation_of('[states]\nx = {unit = "m"}\n[parameters]\nk = {value = 2}\n[equations]\nx = "-k*x"\n')
+def test_inline_tables_are_changed_where_they_stand():
+    inline = simulation_of(
+        '[states]\nx = {unit = "m"}  # metres\n[parameters]\nk = {value = 2}\n[equations]\nx = "-k*x"\n'
+    )
     changed = inline.with_values({"k": 3.0})
+    assert simulation_text(changed) == inline.layout.replace("value = 2", "value = 3.0")
     assert simulation_of(simulation_text(changed)) == changed
+
+
+def test_a_layout_that_does_not_fit_is_written_anew():
+    listed = simulation_of('effects = [{equation = "x", term = "1"}]  # one\n[states.x]\n[equations]\nx = "-x"\n')
+    changed = listed.with_effect(Term("x", "equation", "constant_load", "0.5"))
+    assert simulation_of(simulation_text(changed)) == changed
+
+
+def test_a_sensor_is_written_into_the_line_of_its_observation(ankle_text):
+    read = simulation_of(ankle_text + '[observations]\ntheta = "theta"  # goniometer\nomega = "omega"\n')
+    changed = read.with_sensor(Sensor("theta", sd=0.01))
+    text = simulation_text(changed)
+    assert text == read.layout.replace('theta = "theta"  #', 'theta = {expression = "theta", sd = 0.01}  #')
+    assert simulation_of(text) == changed
 
 
 def test_a_number_as_an_expression_is_replaced():
