@@ -115,10 +115,11 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
         for name in given:
             if name not in has:
                 near = nearest_word(name, has)
+                hint = f"Did you mean {near!r}? " if near else ""
                 raise SchemaError(
                     f"a {kind} is one of the model's",
                     f"{file} has none called {name!r}",
-                    f"{f'Did you mean {near!r}? ' if near else ''}Known: {', '.join(has) or 'none'}.",
+                    f"{hint}Known: {', '.join(has) or 'none'}.",
                 )
         whole = kind not in ("parameter", "port")
         if whole and given != has:
