@@ -10,7 +10,8 @@ from hidden_in_a_mass import MASS, Experiment, record, with_load
 from made_simulation import system
 from manufactured_discovery import manufactured
 
-from gaitdisc.batch.discover_files import discover_files, discover_model, sealed
+import gaitdisc as gd
+from gaitdisc.batch.discover_files import discover_files, sealed
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
@@ -93,7 +94,7 @@ HIDDEN = {
 def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
     model = tank(initial=3.0 if verdict == "wrong_initial_condition" else None)
     measured = write_record(tmp_path / "tank.csv", seed=1, **HIDDEN[verdict])
-    found, augmented = discover_model(model, measured)
+    found, augmented = gd.discover(model, measured)
     assert found.verdict == verdict
     assert found.provenance is not None and list(found.provenance.files) == ["measured table"]
 
