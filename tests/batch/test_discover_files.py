@@ -53,9 +53,8 @@ def test_names_of_people_are_hidden_in_what_is_written_and_held_by_python(tmp_pa
     data = SimpleNamespace(trials=("Otto", "1", "2", "Erika"), rate=100.0, channels=("x",))
     seen = Finding("warning", "odd trial", "walk.csv", "trial 'Erika' is late", "", "x")
     found = manufactured(sentence="Erika is late.", findings=(seen, Finding("note", "limit", "model", "knee", "")))
-    found = replace(
-        found, runs=replace(found.runs, names=data.trials), held_out=replace(found.held_out, of="trial Erika")
-    )
+    size, runs = replace(found.held_out, of="trial Erika"), replace(found.runs, names=data.trials)
+    found = replace(found, held_out=size, runs=runs)
     held = sealed(found, system({"x": "-x"}), data, {})
     assert (held.sentence, held.runs.names, held.findings) == ("Erika is late.", data.trials, found.findings)
     save_discovery(held, tmp_path)
