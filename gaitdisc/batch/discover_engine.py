@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.batch.discover_files import discovered, sealed
 from gaitdisc.batch.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
@@ -17,7 +16,7 @@ from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
-from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.engine import Engine, Values
 from gaitdisc.engines.expansion import expanded
 from gaitdisc.engines.mapping import other_values, read_mapping
 from gaitdisc.engines.own_runs import OwnRuns, trial_called
@@ -214,7 +213,7 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
             )
 
 
-def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> NDArray[np.float64]:
+def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> Values:
     """Coordinates and speeds along the record (trial, sample, state)."""
     data, plain = without_spikes(data), replace(mapping, model="")
     period = rhythm_of(data.observed, data.rate).period
@@ -222,7 +221,7 @@ def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> NDAr
     return guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
 
 
-def _known(engine: Engine, states: NDArray[np.float64], data: Measured) -> tuple[Finding, ...]:
+def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:
     """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
     found, inside = [], np.arange(states.shape[1]) < data.samples[:, None]
     for number, one in enumerate(engine.coordinates):

@@ -43,17 +43,6 @@ def discover_files(
     return discovered(model, data, request, files, progress)
 
 
-def discover_model(
-    model: PythonSimulation, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
-) -> tuple[Discovery, PythonSimulation]:
-    """Find what a simulation that is a Python object lacks against a table of measured trials."""
-    progress(f"reading {measured.name}")
-    simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
-    data = read_measured(measured, simulation)
-    found, augmented = discovered(simulation, data, request, {measured: "measured table"}, progress)
-    return found, cast("PythonSimulation", augmented)
-
-
 def discover_study(
     study: Path,
     participant: str,

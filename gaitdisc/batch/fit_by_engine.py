@@ -19,7 +19,7 @@ from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.paired_test import paired_test, sum_error
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.engine import Engine, Values
 from gaitdisc.engines.mapping import replaced_inputs, with_input_changed
 from gaitdisc.engines.own_runs import (
     FEWER,
@@ -52,7 +52,7 @@ class EngineFit:
     mapping: Simulation
     engine: Engine
     measured: Measured  # driven by the controls
-    states: NDArray[np.float64]  # (trial, sample, state), smoothed: where starts and fibres are taken from
+    states: Values  # (trial, sample, state), smoothed: where starts and fibres are taken from
     parts: tuple[Part, ...] = ()  # of what was found
     progress: Callable[[str], None] = lambda _: None
 
@@ -91,13 +91,13 @@ class EngineFit:
                 controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
                 lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}it stands in discovery.json alone"))
-        return augmented, written, Driven(written.engine, augmented, controls, lags)
+        return augmented, written, Driven(written.engine, augmented, controls, lags, self.progress)
 
     def left(
         self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Start] | None = None
-    ) -> NDArray[np.float64]:
+    ) -> Values:
         """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
-        return left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near, self.progress)
+        return left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
 
     def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
         """Return what was found with numbers of the engine's own runs, whose starts follow them (Gauss-Newton).
@@ -108,12 +108,12 @@ class EngineFit:
         slots = [(number, slot) for number, part in enumerate(self.parts) for slot in part.candidate.slots]
         values = np.array([self.parts[number].values[slot] for number, slot in slots])
 
-        def parts_at(values: NDArray[np.float64]) -> tuple[Part, ...]:
+        def parts_at(values: Values) -> tuple[Part, ...]:
             each = dict(zip(slots, values.tolist(), strict=True))
             of_part = ({slot: each[number, slot] for slot in one.values} for number, one in enumerate(self.parts))
             return tuple(replace(one, values=own) for one, own in zip(self.parts, of_part, strict=True))
 
-        def white(values: NDArray[np.float64], near: dict[int, Start]) -> NDArray[np.float64]:
+        def white(values: Values, near: dict[int, Start]) -> Values:
             left = self.left(found, parts_at(values), runs, near) / runs.floor
             return np.nan_to_num(left, posinf=1e6, neginf=-1e6).ravel()
 
@@ -147,7 +147,7 @@ class EngineFit:
         return replace(found, effects=tuple(effects))
 
 
-def borne_out(runs: OwnRuns, without: NDArray[np.float64]) -> bool:
+def borne_out(runs: OwnRuns, without: Values) -> bool:
     """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
     test = paired_test(without, runs.after, runs.floor)
     return test.bears_out and test.fall > CRITERIA.margin
@@ -157,7 +157,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
     mapping, data = fit.mapping, fit.measured
     at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, FEWER if engine.fibres else MOST_RUNS)
-    left = left_by(Driven(engine, mapping, data.drive.inputs), data, at, fit.states, progress=fit.progress)
+    left = left_by(Driven(engine, mapping, data.drive.inputs, progress=fit.progress), data, at, fit.states)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([one.sd or np.nan for one in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)

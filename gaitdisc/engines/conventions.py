@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Coordinate, Engine
+from gaitdisc.engines.engine import Coordinate, Engine, Values
 from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -49,7 +49,7 @@ CONVENTIONS = {
 }  # fmt: skip
 
 
-def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: NDArray[np.float64]) -> None:
+def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
     """Refuse angles that can be no radians: degrees that nobody said are degrees; a wheel may turn as often as it does.
 
     states (trial, sample, state): smoothed: coordinates, then speeds
@@ -71,9 +71,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
             )
 
 
-def refuse_other_conventions(
-    mapping: Simulation, engine: Engine, measured: Measured, states: NDArray[np.float64]
-) -> None:
+def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
     """Refuse a record that the model follows with other signs or units of some columns, and does not as it stands.
 
     states (trial, sample, state): smoothed: coordinates, then speeds
@@ -109,7 +107,7 @@ def refuse_other_conventions(
 class _Misfit:
     """How far an engine's accelerations are from those of a record, whose columns may have other signs or units."""
 
-    def __init__(self, mapping: Simulation, engine: Engine, measured: Measured, states: NDArray[np.float64]) -> None:
+    def __init__(self, mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
         self.engine, self.values, self.rate = engine, mapping.values(), measured.rate
         count, samples = len(engine.coordinates), measured.drive.samples
         moved = [np.ptp(one[:n, :count], axis=0).sum() for one, n in zip(states, samples, strict=True)]
@@ -118,7 +116,7 @@ class _Misfit:
         self.q, self.v = along[:, :count], along[:, count:]
         self.controls = measured.drive.inputs[trial, : samples[trial]]
 
-    def with_factors(self, factors: NDArray[np.float64]) -> float:
+    def with_factors(self, factors: Values) -> float:
         """Share of the accelerations' squares that is missed, mean over coordinates.
 
         factors (coordinate,): which each is multiplied with
@@ -130,9 +128,7 @@ class _Misfit:
         missed = own - self.engine.accelerations(at, self.values)
         return float(np.mean(np.mean(missed**2, axis=0) / np.maximum(np.mean(own**2, axis=0), TINY)))
 
-    def others(
-        self, factors: NDArray[np.float64]
-    ) -> Iterator[tuple[NDArray[np.bool_], _Convention, NDArray[np.float64]]]:
+    def others(self, factors: Values) -> Iterator[tuple[NDArray[np.bool_], _Convention, Values]]:
         """Return each other convention of a coordinate, and the other sign of all: which, how, and factors with it."""
         every = np.ones(len(factors), bool)
         if len(factors) > 1 and (factors == 1.0).all():

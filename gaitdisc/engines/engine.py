@@ -12,12 +12,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.expression import RESERVED
 from gaitdisc.simulation.parts import Input, Parameter, Term
 
+Values = NDArray[np.float64]
 SPEED = "_speed"
 LONGEST = 40  # characters, which leaves room for what a kind of number is called behind it
 ENGINES = {".xml": "mujoco", ".mjcf": "mujoco", ".osim": "opensim"}
@@ -53,12 +53,12 @@ class Coordinate:
 class Motion:
     """Where a model is evaluated."""
 
-    q: NDArray[np.float64]  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
-    v: NDArray[np.float64]
-    u: NDArray[np.float64]  # (point, control), what acts through each: its activation where it has one, else itself
-    z: NDArray[np.float64] | None = None  # (point, fibre) [m], lengths of fibres; in equilibrium where absent
-    own: NDArray[np.float64] | None = None  # (point, state), of pushes; 0 where absent
-    t: NDArray[np.float64] | None = None  # (point,) [s], time of pushes; 0 where absent
+    q: Values  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
+    v: Values
+    u: Values  # (point, control), what acts through each: its activation where it has one, else itself
+    z: Values | None = None  # (point, fibre) [m], lengths of fibres; in equilibrium where absent
+    own: Values | None = None  # (point, state), of pushes; 0 where absent
+    t: Values | None = None  # (point,) [s], time of pushes; 0 where absent
 
     def at(self, points: NDArray[np.intp]) -> Motion:
         """Return some of its points."""
@@ -78,14 +78,12 @@ class Pushes:
     machine: Compiled  # of the coordinates, the speeds, whose rates are the forces, and the states of the pushes
     count: int  # coordinates
 
-    def at(
-        self, t: NDArray[np.float64], x: NDArray[np.float64], u: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def at(self, t: Values, x: Values, u: Values) -> tuple[Values, Values]:
         """Forces (point, coordinate) and rates of their states at times, all states (point, state) and controls."""
         rates = self.machine.rates(t, x, u)
         return rates[:, self.count : 2 * self.count], rates[:, 2 * self.count :]
 
-    def begun(self, start: Motion) -> NDArray[np.float64]:
+    def begun(self, start: Motion) -> Values:
         """All states (point, state) where runs begin."""
         own = np.zeros((len(start.q), len(self.machine.states) - 2 * self.count)) if start.own is None else start.own
         return np.hstack([start.q, start.v, own])
@@ -112,9 +110,7 @@ class Engine(Protocol):
     fibres: bool  # whether muscles have states besides their activation
     pushes: Pushes | None  # what acts in its runs besides
 
-    def accelerations(
-        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
-    ) -> NDArray[np.float64]:
+    def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate) under generalised forces (point, coordinate)."""
         ...
 
@@ -122,21 +118,19 @@ class Engine(Protocol):
         """Coordinate on which a parameter's unit is a force, and that force over its names; None where it is more."""
         ...
 
-    def rates(self, at: Motion, values: Mapping[str, float]) -> NDArray[np.float64]:
+    def rates(self, at: Motion, values: Mapping[str, float]) -> Values:
         """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
         ...
 
-    def along(
-        self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
-    ) -> Motion:
+    def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion (sample, coordinate) with the muscle states that the engine computes along it."""
         ...
 
-    def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
+    def near(self, known: Motion, q: Values, v: Values) -> Motion:
         """Return other coordinates and speeds near a known motion, with the fibres that go with them."""
         ...
 
-    def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    def run(self, start: Motion, controls: Values, rate: float) -> Values:
         """Coordinates, then speeds (run, sample, state), by the engine's own integrator."""
         ...
 
@@ -155,17 +149,6 @@ def refuse_absent(package: str, error: ImportError) -> SchemaError:
         f"a model of this kind is computed by the package {package}",
         f"it is not installed here ({str(error).splitlines()[0][:120]})",
         f"Install it: pip install 'gaitdisc[{package}]'.",
-    )
-
-
-def refuse_unknown(kind: str, name: str, known: tuple[str, ...], file: str) -> SchemaError:
-    """Say which names a model has."""
-    nearest = nearest_word(name, known)
-    hint = f"Did you mean {nearest!r}? " if nearest else ""
-    return SchemaError(
-        f"a {kind} is one of the model's",
-        f"{file} has none called {name!r}",
-        f"{hint}Known: {', '.join(known) or 'none'}.",
     )
 
 

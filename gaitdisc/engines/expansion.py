@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.engine import Engine, Motion, Values
 from gaitdisc.engines.mapping import REPLACED
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
@@ -35,7 +35,7 @@ def expanded(
     simulation: Simulation,
     engine: Engine,
     measured: Measured,
-    states: NDArray[np.float64],
+    states: Values,
     values: Mapping[str, float] | None = None,
 ) -> tuple[Simulation, Measured]:
     """Simulation that is expanded along a record, and the record with what the engine computed along it.
@@ -73,7 +73,7 @@ def expanded(
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
 
 
-def recorded_motion(engine: Engine, measured: Measured, states: NDArray[np.float64]) -> list[Motion]:
+def recorded_motion(engine: Engine, measured: Measured, states: Values) -> list[Motion]:
     """Motion of each trial with what the engine computes along it.
 
     states (trial, sample, state): smoothed
@@ -88,8 +88,8 @@ class _Columns:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self.values: dict[str, NDArray[np.float64]] = {}
-        self.slowed: NDArray[np.float64] | None = None  # (point, coordinate, coordinate)
+        self.values: dict[str, Values] = {}
+        self.slowed: Values | None = None  # (point, coordinate, coordinate)
         self._terms: dict[str, list[str]] = {one.speed: [] for one in engine.coordinates}
 
     @property
@@ -98,7 +98,7 @@ class _Columns:
         rates = {speed: " + ".join(terms) or "0" for speed, terms in self._terms.items()}
         return {one.name: one.speed for one in self.engine.coordinates} | rates
 
-    def add(self, name: str, column: NDArray[np.float64], factor: str = "") -> None:
+    def add(self, name: str, column: Values, factor: str = "") -> None:
         """Add a column (point, coordinate) times a factor to every acceleration; one that rests is a number.
 
         name: what follows the speed's name in that of the column
@@ -124,7 +124,7 @@ class _Along:
     """The motion of a record, and those of its points at which slopes are computed."""
 
     at: Motion
-    accelerations: NDArray[np.float64]  # of that motion (point, coordinate)
+    accelerations: Values  # of that motion (point, coordinate)
     points: NDArray[np.intp]
 
     @property
@@ -132,11 +132,11 @@ class _Along:
         """The motion at these points."""
         return self.at.at(self.points)
 
-    def without_jumps(self, slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    def without_jumps(self, slope: Values) -> Values:
         """Slopes without those of a few points: a muscle's path jumps where it comes off a surface."""
         return slope if self.at.z is None else median_filter(slope, (JUMP, 1), mode="nearest")
 
-    def spread(self, slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    def spread(self, slope: Values) -> Values:
         """Slopes at every point, linear between those at which they were computed."""
         every = np.arange(len(self.at.q))
         if len(every) == len(self.points):
@@ -174,13 +174,13 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     _expand_parameters(columns, simulation, along, few, values)
 
 
-def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[str, Values]:
     """Slopes of the accelerations by each coordinate, speed and control at every point.
 
     Differences are to both sides: a muscle's stiffness is a small rest of that of its tendon less that of its fibre.
     """
     few, count = along.few, len(engine.coordinates)
-    found: dict[str, NDArray[np.float64]] = {}
+    found: dict[str, Values] = {}
     for name, _, ahead, behind, size in _nudged(engine, few, "qvuz"):
         found[name] = along.without_jumps((engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size))
     fibres = [found.pop(name) for name in _fibres(few)]
@@ -196,9 +196,7 @@ def _fibres(at: Motion) -> list[str]:
     return [] if at.z is None else [f"fibre_{number}" for number in range(at.z.shape[1])]
 
 
-def _following(
-    engine: Engine, speeds: Mapping[str, NDArray[np.float64]], fibres: list[NDArray[np.float64]]
-) -> dict[str, NDArray[np.float64]]:
+def _following(engine: Engine, speeds: Mapping[str, Values], fibres: list[Values]) -> dict[str, Values]:
     """How far each fibre (point, fibre) moves with a coordinate, speed or control to which it has settled.
 
     A fibre settles within milliseconds: its length is that at which its speed is the one with which that length moves.
@@ -212,7 +210,7 @@ def _following(
     return found | {one.name: -speeds[one.name] / settling for one in engine.controls}
 
 
-def _slowed(damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _slowed(damping: Values) -> tuple[Values, Values]:
     """Factor of accelerations by which no speed settles faster than a run can follow, and its inverse less one.
 
     A light body that muscles hold (a foot), or a damped joint, would settle within a millisecond; it is made as heavy
@@ -226,7 +224,7 @@ def _slowed(damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
 
 
 def _expand_parameters(
-    columns: _Columns, simulation: Simulation, along: _Along, here: NDArray[np.float64], values: Mapping[str, float]
+    columns: _Columns, simulation: Simulation, along: _Along, here: Values, values: Mapping[str, float]
 ) -> None:
     """What each parameter changes, to first order in it; without muscles also how that changes with the coordinates.
 
@@ -248,9 +246,7 @@ def _expand_parameters(
         columns.add(f"by_{name}", along.spread(rest), away)
 
 
-def _nudged(
-    engine: Engine, at: Motion, fields: str
-) -> Iterator[tuple[str, NDArray[np.float64], Motion, Motion, float]]:
+def _nudged(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Values, Motion, Motion, float]]:
     """Yield each coordinate, speed, control and fibre with the motion a little to either side."""
     names = {
         "q": [one.name for one in engine.coordinates],

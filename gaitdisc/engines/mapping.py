@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Engine, is_model, read_model, refuse_unknown
+from gaitdisc.channel import nearest_word
+from gaitdisc.engines.engine import Engine, Values, is_model, read_model
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
@@ -114,7 +114,13 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
     for kind, (given, has) in known.items():
         for name in given:
             if name not in has:
-                raise refuse_unknown(kind, name, has, file)
+                near = nearest_word(name, has)
+                hint = f"Did you mean {near!r}? " if near else ""
+                raise SchemaError(
+                    f"a {kind} is one of the model's",
+                    f"{file} has none called {name!r}",
+                    f"{hint}Known: {', '.join(has) or 'none'}.",
+                )
         whole = kind not in ("parameter", "port")
         if whole and given != has:
             raise SchemaError(
@@ -141,9 +147,7 @@ def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simul
     return replace(mapping, definitions=(*mapping.definitions, (f"{REPLACED}{name}", expression)))
 
 
-def replaced_inputs(
-    mapping: Simulation, time: NDArray[np.float64], u: NDArray[np.float64], rate: float
-) -> NDArray[np.float64]:
+def replaced_inputs(mapping: Simulation, time: Values, u: Values, rate: float) -> Values:
     """Controls of one trial (sample, control) with those that the mapping replaces by an expression of the recorded."""
     plain = replace(mapping, model="", effects=(), definitions=())
     points = Points(time, np.zeros((len(time), len(plain.states))), u, rate=rate)

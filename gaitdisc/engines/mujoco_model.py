@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, new_name, refuse_absent
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_value
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
@@ -100,9 +99,7 @@ class MujocoModel:
         self.contacts = 0  # most that any evaluated point had
 
     @_heard
-    def accelerations(
-        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
-    ) -> NDArray[np.float64]:
+    def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
         model, data, forward = self._model, self._data, self._mujoco.mj_forward
         kept = self._changed(values)
@@ -143,9 +140,7 @@ class MujocoModel:
     rates = accelerations  # no fibre has a state of its own
 
     @_heard
-    def along(
-        self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
-    ) -> Motion:
+    def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with activations, integrated from equilibrium with the first controls."""
         found = np.array(controls, float)
         if not self._stateful.any():
@@ -164,12 +159,12 @@ class MujocoModel:
                 data.act[:] += h * data.act_dot
         return Motion(q, v, found)
 
-    def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
+    def near(self, known: Motion, q: Values, v: Values) -> Motion:
         """Return other coordinates and speeds near a known motion."""
         return replace(known, q=q, v=v)
 
     @_heard
-    def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    def run(self, start: Motion, controls: Values, rate: float) -> Values:
         """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator; controls are linear in between."""
         model, data, steps = self._model, self._data, self._steps(rate)
         own, kept = self._stateful, model.opt.timestep

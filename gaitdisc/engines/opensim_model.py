@@ -16,14 +16,14 @@ from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, new_name, refuse_absent
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.expression import Name, Number, Tree, parsed
 from gaitdisc.simulation.parts import Input, Parameter, Term
 
 ALLOWED = ("sin", "cos", "tan", "tanh", "exp", "sqrt", "min", "max")
+ELEMENTS = {"mass": "Body", "optimal_force": "CoordinateActuator", "max_isometric_force": r"\w*Muscle"}  # of any kind
 BINARY = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "^"}
 
 
@@ -77,15 +77,11 @@ class OpensimModel:
             name for name, called in self._called.items() if called in moving and not called.endswith("optimal_force")
         )
 
-    def accelerations(
-        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
-    ) -> NDArray[np.float64]:
+    def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate), with other values of some parameters."""
         return self.rates(at, values, forces)[:, : len(self.coordinates)]
 
-    def rates(
-        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
-    ) -> NDArray[np.float64]:
+    def rates(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
         own = {one.name: one.value for one in self.parameters}
         changed = {self._called[name]: value for name, value in values.items() if value != own[name]}
@@ -96,27 +92,25 @@ class OpensimModel:
         """None: masses, gravity and optimal forces are more."""
         del parameter
 
-    def along(
-        self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
-    ) -> Motion:
+    def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
         return Motion(q, v, *self._query("along", q, v, controls, rate)) if self.fibres else Motion(q, v, controls)
 
-    def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
+    def near(self, known: Motion, q: Values, v: Values) -> Motion:
         """Return other coordinates and speeds near a known motion; fibres move as their lengths at rest do."""
         if known.z is None:
             return replace(known, q=q, v=v)
         before, after = (self._query("equilibria", each, known.u) for each in (known.q, q))
         return Motion(q, v, known.u, known.z + after - before)
 
-    def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    def run(self, start: Motion, controls: Values, rate: float) -> Values:
         """Coordinates, then speeds (run, sample, state), by OpenSim's Manager; with pushes by Runge-Kutta, order 4."""
         if self.pushes is None:
             return self._query("run", start.q, start.v, start.u, start.z, controls, rate)
         pushes, n, h = self.pushes, len(self.coordinates), 1 / rate
         t = np.zeros(len(start.q)) if start.t is None else start.t
 
-        def rates(t: NDArray[np.float64], x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+        def rates(t: Values, x: Values, u: Values) -> Values:
             forces, own = pushes.at(t, x, u)
             at = Motion(x[:, :n], x[:, n : 2 * n], u)
             return np.hstack([at.v, self.accelerations(at, {}, forces), own])
@@ -215,11 +209,8 @@ def with_value(text: str, name: str, value: float) -> str | None:
             return None
         vector = np.array([float(word) for word in found[2].split()])
         return text[: found.start(2)] + _words(vector * (value / np.linalg.norm(vector))) + text[found.end(2) :]
-    kind, part, word = ("Body", name.removesuffix("_mass"), "mass")
-    if name.endswith("_optimal_force"):
-        kind, part, word = "CoordinateActuator", name.removesuffix("_optimal_force"), "optimal_force"
-    if name.endswith("_max_isometric_force"):  # of a muscle of any kind
-        kind, part, word = r"\w*Muscle", name.removesuffix("_max_isometric_force"), "max_isometric_force"
+    word = next(one for one in ELEMENTS if name.endswith(f"_{one}"))
+    kind, part = ELEMENTS[word], name.removesuffix(f"_{word}")
     found = re.search(rf"<({kind}) name={re.escape(quoteattr(part))}>.*?</\1>", text, re.DOTALL)
     own = re.search(rf"(<{word}>)([^<]*)(</{word}>)", found[0]) if found else None
     if found is None or own is None:

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Coordinate, Motion, new_name
+from gaitdisc.engines.engine import Coordinate, Motion, Values, new_name
 from gaitdisc.engines.opensim_model import OpensimModel
 from gaitdisc.engines.opensim_worker import (
     PORT,
@@ -22,7 +21,6 @@ from gaitdisc.engines.opensim_worker import (
 )
 from gaitdisc.errors import SchemaError
 
-Values = NDArray[np.float64]
 TRANSLATIONAL = 2
 
 

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 PORT = "force_by_hand_on_"
-ROTATIONAL = 1
+ROTATIONAL, UNBOUND = 1, (-np.inf, np.inf)
 KEPT = 12  # models with other values that are kept ready
 ACCURACY = {False: 1e-7, True: 1e-5}  # of runs, without and with muscles: fibres take short steps
 ACCURACY_ALONG = 1e-5  # of muscles along a prescribed motion
@@ -38,8 +38,13 @@ class _Ready:
         add_ports(self.model, osim, free)
         if profiles is not None:
             self._driven(*profiles)
-        if motion is not None:
-            self._prescribed(free, *motion)
+        if motion is not None:  # coordinates along time, smooth between samples
+            for name, along in zip(free, motion[1].T, strict=True):
+                line = osim.SimmSpline()
+                for t, value in zip(motion[0], along, strict=True):
+                    line.addPoint(float(t), float(value))
+                self.model.getCoordinateSet().get(name).setPrescribedFunction(line)
+                self.model.getCoordinateSet().get(name).setDefaultIsPrescribed(True)
         self.state = state = self.model.initSystem()
         every = self.model.getCoordinateSet()
         self.free = [every.get(name) for name in free]
@@ -57,16 +62,6 @@ class _Ready:
             controller.addActuator(self.model.getActuators().get(name))
             controller.prescribeControlForActuator(name, line)
         self.model.addController(controller)
-
-    def _prescribed(self, free: list[str], time: Any, q: Any) -> None:
-        """Coordinates along time, smooth between samples."""
-        for number, name in enumerate(free):
-            line = self.osim.SimmSpline()
-            for t, value in zip(time, q[:, number], strict=True):
-                line.addPoint(float(t), float(value))
-            coordinate = self.model.getCoordinateSet().get(name)
-            coordinate.setPrescribedFunction(line)
-            coordinate.setDefaultIsPrescribed(True)
 
     def _states_of_muscles(self) -> tuple[dict[int, int], list[int], list[str]]:
         """Place of each actuator's activation, and of the muscles' other states; actuators with yet other states."""
@@ -231,7 +226,11 @@ class _Answers:
             muscle = self.osim.Muscle.safeDownCast(actuator)
             if muscle is not None:
                 parameters.append((f"{name}_max_isometric_force", muscle.getMaxIsometricForce(), "N"))
-        coordinates = [(each.getName(), each.getMotionType() == ROTATIONAL, *_range(each)) for each in one.free]
+        free = ((each, (each.getRangeMin(), each.getRangeMax())) for each in one.free)
+        coordinates = [  # a range that is a default binds nothing
+            (each.getName(), each.getMotionType() == ROTATIONAL, *(own if each.getDefaultClamped() else UNBOUND))
+            for each, own in free
+        ]
         described = {"coordinates": coordinates, "controls": controls, "muscles": bool(one.activations or one.fibres)}
         described["parameters"] = [(*each, self._moves(each[0], each[1])) for each in parameters]
         return described | {"others": one.others, "dependent": one.dependent, "locked": one.locked}
@@ -306,12 +305,6 @@ class _Answers:
                     *(each.getSpeedValue(state) for each in one.free),
                 ]
         return found
-
-
-def _range(coordinate: Any) -> tuple[float, float]:
-    """Range of a coordinate where it is more than a default; a range in OpenSim binds nothing."""
-    low, high = coordinate.getRangeMin(), coordinate.getRangeMax()
-    return (low, high) if coordinate.getDefaultClamped() else (-np.inf, np.inf)
 
 
 def serve(questions: BinaryIO, answers: BinaryIO, path: str, answering: Callable[[Any, str], Any] = _Answers) -> None:

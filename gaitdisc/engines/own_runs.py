@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.engine import Engine, Values
 from gaitdisc.engines.expansion import recorded_motion
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
@@ -24,7 +24,7 @@ NUDGE = 1e-4
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 WINDOWS = 10  # in a period: what is missing bends a run more slowly
 CHANCE = 0.05  # of runs of a perfect model that are not taken for mere noise, and searched
-Start = NDArray[np.float64]  # (state,): coordinates, speeds, lags, states of pushes
+Start = Values  # (state,): coordinates, speeds, lags, states of pushes
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,9 @@ class Driven:
 
     engine: Engine
     mapping: Simulation
-    controls: NDArray[np.float64]  # (trial, sample, control)
+    controls: Values  # (trial, sample, control)
     lags: Mapping[int, float] = field(default_factory=dict)  # control: time constant [s] of the lag in these
+    progress: Callable[[str], None] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -51,12 +52,12 @@ class Stretches:
 class OwnRuns:
     """What runs by the engine itself leave of the record: measured minus run, without and with what was found."""
 
-    before: NDArray[np.float64]  # (run, sample, channel) [the channel's unit], NaN where nothing was measured
-    after: NDArray[np.float64]
+    before: Values  # (run, sample, channel) [the channel's unit], NaN where nothing was measured
+    after: Values
     at: Stretches
     engine: str  # its name
     units: Mapping[str, str]  # of the channels
-    floor: NDArray[np.float64]  # (channel,), standard deviation of the noise
+    floor: Values  # (channel,), standard deviation of the noise
     states: int  # numbers that each run's start was fitted with
 
     def among(self, some: NDArray[np.bool_]) -> OwnRuns:
@@ -101,7 +102,7 @@ class OwnRuns:
         return f"run by {self.engine} itself over {len(self.before)} runs of all trials, the model misses {found}"
 
 
-def root_mean_square(left: NDArray[np.float64]) -> NDArray[np.float64]:
+def root_mean_square(left: Values) -> Values:
     """Size (channel,) of what is left."""
     return np.sqrt(np.nanmean(left**2, axis=(0, 1)))
 
@@ -124,13 +125,8 @@ def trial_called(measured: Measured, name: str) -> int:
 
 
 def left_by(
-    model: Driven,
-    measured: Measured,
-    at: Stretches,
-    states: NDArray[np.float64],
-    near: dict[int, Start] | None = None,
-    progress: Callable[[str], None] = lambda _: None,
-) -> NDArray[np.float64]:
+    model: Driven, measured: Measured, at: Stretches, states: Values, near: dict[int, Start] | None = None
+) -> Values:
     """Measured minus run (run, sample, channel), starts and hidden states found by Gauss-Newton.
 
     states (trial, sample, state): smoothed: where the search for each start begins
@@ -143,10 +139,10 @@ def left_by(
     said = time.monotonic()
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
         if time.monotonic() - said > SILENT_S:
-            progress(f"{row} of {len(at.trial)} runs by {engine.called} are done")
+            model.progress(f"{row} of {len(at.trial)} runs by {engine.called} are done")
             said = time.monotonic()
 
-        def left_from(starts: NDArray[np.float64], samples: int, trial: int = trial, first: int = first):
+        def left_from(starts: Values, samples: int, trial: int = trial, first: int = first):
             some = slice(first, first + samples)
             driven = np.repeat(model.controls[None, trial, some], len(starts), axis=0)
             for hidden, (control, seconds) in zip(starts.T[2 * n :], lags.items(), strict=False):
@@ -170,9 +166,7 @@ def left_by(
     return found
 
 
-def _started(
-    left_from: Callable[[NDArray[np.float64]], NDArray[np.float64]], start: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _started(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:
     """Start that suits a run best, and what it leaves."""
     left = left_from(start[None])[0]
     there = np.isfinite(left)
@@ -194,7 +188,7 @@ def _started(
     return start, left
 
 
-def observed(mapping: Simulation, channels: Sequence[str], points: Points) -> NDArray[np.float64]:
+def observed(mapping: Simulation, channels: Sequence[str], points: Points) -> Values:
     """Observed channels (sample, channel) of an engine's run."""
     expressions = [dict(mapping.observations)[name] for name in channels]
     found = evaluate_many(replace(mapping, model=""), expressions, points)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
-from gaitdisc.engines.engine import Coordinate
+from gaitdisc.engines.engine import Coordinate, Values
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, loads_of, xml_of
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
@@ -20,7 +20,6 @@ from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 
-Values = NDArray[np.float64]
 SHORTEST_S = 0.5
 EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends of the angles where rates come from them
 PASSIVE = ("LimitForce", "CoordinateForce", "BushingForce", "Ligament", "SpringForce", "GeneralizedForce")  # of classes

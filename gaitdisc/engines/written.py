@@ -11,9 +11,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import ByHand, Engine, Motion, Pushes, read_model
+from gaitdisc.engines.engine import ByHand, Engine, Motion, Pushes, Values, read_model
 from gaitdisc.engines.mapping import REPLACED, read_mapping
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
@@ -121,7 +120,7 @@ def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str]
     return lambda text: engine.text_with_effect(text, ByHand(term, number, at))
 
 
-def _by_hand(augmented: Simulation, term: Term, x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _by_hand(augmented: Simulation, term: Term, x: Values) -> Values:
     """Force of a term at states (point,); infinite where it depends on more than states."""
     plain = replace(augmented, model="", effects=(), definitions=())
     if "delay(" in term.term or "t" in names(parsed(term.term)):

@@ -89,10 +89,9 @@ def discover(
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
         files[Path(model)] = "simulation"
-    slow = simulation.manner if isinstance(simulation, PythonSimulation) else ""
     report = progress or LOG.info
-    if slow:
-        report(slow)
+    if isinstance(simulation, PythonSimulation) and simulation.manner:
+        report(simulation.manner)
     return discovered(simulation, measured, request, files, report)
 
 
@@ -113,14 +112,10 @@ def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str],
         answered = discover_tracked(walk, Path(data), request, report)
         return answered.found, answered.augmented
 
-    files: dict[Path, str] = {}
-
     def read(mapping: Simulation) -> Measured:
-        if isinstance(data, Path | str):
-            files[Path(data)] = "measured table"
-            return measured_of_file(Path(data), mapping)
-        return _measured(data, mapping)[0]
+        return measured_of_file(Path(data), mapping) if isinstance(data, Path | str) else _measured(data, mapping)[0]
 
+    files = {Path(data): "measured table"} if isinstance(data, Path | str) else {}
     answer = discover_engine(model, read, request, files, report)
     return answer.found, answer.augmented
 

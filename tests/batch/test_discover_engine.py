@@ -7,27 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
+from saved_folders import PENDULUM, SPRING
 from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-
-PENDULUM = """<mujoco model="pendulum">
-  <option timestep="0.001"/>
-  <worldbody>
-    <body name="rod">
-      <joint name="pivot" type="hinge" axis="0 -1 0" damping="0.3"/>
-      <inertial pos="0 0 -0.4" mass="2" diaginertia="0.05 0.05 0.001"/>
-    </body>
-  </worldbody>
-  <actuator>
-    <motor name="drive" joint="pivot" gear="5"/>
-  </actuator>
-</mujoco>
-"""
-SPRING = (
-    '<tendon><fixed name="s" stiffness="20" springlength="-1000 0.1"><joint joint="pivot" coef="1"/></fixed></tendon>'
-)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,8 @@ from hidden_in_a_mass import MASS, Experiment, record, with_load
 from made_simulation import system
 from manufactured_discovery import manufactured
 
-from gaitdisc.batch.discover_files import discover_files, discover_model, sealed
+import gaitdisc as gd
+from gaitdisc.batch.discover_files import discover_files, sealed
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
@@ -52,9 +53,8 @@ def test_names_of_people_are_hidden_in_what_is_written_and_held_by_python(tmp_pa
     data = SimpleNamespace(trials=("Otto", "1", "2", "Erika"), rate=100.0, channels=("x",))
     seen = Finding("warning", "odd trial", "walk.csv", "trial 'Erika' is late", "", "x")
     found = manufactured(sentence="Erika is late.", findings=(seen, Finding("note", "limit", "model", "knee", "")))
-    found = replace(
-        found, runs=replace(found.runs, names=data.trials), held_out=replace(found.held_out, of="trial Erika")
-    )
+    size, runs = replace(found.held_out, of="trial Erika"), replace(found.runs, names=data.trials)
+    found = replace(found, held_out=size, runs=runs)
     held = sealed(found, system({"x": "-x"}), data, {})
     assert (held.sentence, held.runs.names, held.findings) == ("Erika is late.", data.trials, found.findings)
     save_discovery(held, tmp_path)
@@ -93,7 +93,7 @@ HIDDEN = {
 def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
     model = tank(initial=3.0 if verdict == "wrong_initial_condition" else None)
     measured = write_record(tmp_path / "tank.csv", seed=1, **HIDDEN[verdict])
-    found, augmented = discover_model(model, measured)
+    found, augmented = gd.discover(model, measured)
     assert found.verdict == verdict
     assert found.provenance is not None and list(found.provenance.files) == ["measured table"]
 

@@ -1,6 +1,15 @@
-"""What an engine offers: names of ports, and what is said of unknown names."""
+"""What an engine offers: names of parts and ports, which files are models, and what is absent or unknown."""
 
-from gaitdisc.engines.engine import Coordinate, refuse_unknown
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from gaitdisc.engines.engine import Coordinate, is_model, part_name, read_model
+from gaitdisc.engines.mapping import check_mapping, drafted
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.simulation.parts import Input
 
 
 def test_a_slide_has_a_force_and_a_hinge_a_moment():
@@ -8,6 +17,44 @@ def test_a_slide_has_a_force_and_a_hinge_a_moment():
     assert Coordinate("knee", "rad", "knee").port == "knee_moment"
 
 
-def test_an_unknown_name_is_told_with_the_nearest():
-    said = str(refuse_unknown("control", "hip_moter", ("hip_motor", "knee_motor"), "leg.xml"))
-    assert "leg.xml has none called 'hip_moter'" in said and "Did you mean 'hip_motor'?" in said
+def test_an_unknown_name_is_told_with_the_nearest(pendulum):
+    mapping = drafted(read_model(pendulum))
+    wrong = SimpleNamespace(**vars(mapping) | {"inputs": (Input("drove", "1"),), "values": mapping.values})
+    with pytest.raises(SchemaError, match=r"pendulum.xml has none called 'drove'.*Did you mean 'drive'\?"):
+        check_mapping(wrong, read_model(pendulum))
+
+
+def test_an_ending_says_whether_a_file_is_a_model(tmp_path):
+    assert is_model(tmp_path / "leg.xml") and is_model(tmp_path / "arm.OSIM") and not is_model(tmp_path / "leg.toml")
+
+
+def test_a_missing_file_and_a_missing_engine_are_refused(tmp_path, monkeypatch):
+    with pytest.raises(ReadError, match="there is none at"):
+        read_model(tmp_path / "leg.xml")
+    file = tmp_path / "leg.xml"
+    file.write_text("<mujoco/>")
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(GaitdiscError, match=r"Install it: pip install 'gaitdisc\[mujoco\]'"):
+        read_model(file)
+
+
+@pytest.mark.parametrize(
+    "called", ["knee angle", "hüfte", "lambda", "t", "sin", "2nd", "_x", "a" * 90, "膝", "/jointset/hip_r"]
+)
+def test_any_name_becomes_one_that_an_expression_knows(called):
+    name = part_name(called, "joint")
+    assert set(names(parsed(f"2*{name} + 1"))) == {name}
+    assert part_name(called, "joint", {name}) != name
+
+
+def test_a_motor_called_as_its_joint_is_told_apart(tmp_path):
+    mujoco_model = pytest.importorskip("gaitdisc.engines.mujoco_model")
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'gaitdisc[mujoco]'")
+    (tmp_path / "arm.xml").write_text(
+        '<mujoco><worldbody><body><joint name="elbow"/><geom size="0.1"/><body><joint name="lift" type="slide"/>'
+        '<geom size="0.1"/></body></body></worldbody><actuator><motor name="elbow" joint="elbow"/>'
+        '<motor name="lift_force" joint="lift"/><motor joint="lift"/></actuator></mujoco>'
+    )
+    model = mujoco_model.MujocoModel(tmp_path / "arm.xml")
+    assert [one.name for one in model.coordinates] == ["elbow", "lift"]
+    assert [one.name for one in model.controls] == ["elbow_control", "lift_force_control", "control_3"]

@@ -38,11 +38,8 @@ def test_only_angles_and_their_rates_are_turned_to_degrees():
     assert shown_unit("radish") == ("radish", 1.0)
 
 
-def test_an_interval_that_is_not_known_is_not_said():
+def test_an_interval_that_is_not_known_is_not_said_and_a_negative_one_with_a_word():
     assert estimate_text(Estimate(3.0, NAN, NAN, "N")) == "3.00 N"
-
-
-def test_a_negative_interval_is_said_with_a_word():
     assert says(estimate_text(Estimate(-2.0, -2.5, -1.5, "N")), "−2.0 N", "−2.5 to −1.5")
 
 
