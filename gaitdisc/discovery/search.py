@@ -40,7 +40,7 @@ class Search:
     places: tuple[Place, ...]
     candidates: tuple[Candidate, ...]
     rhythm: Rhythm
-    progress: Callable[[str], None] = field(default=lambda _: None, compare=False)
+    progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
 
     def extended(self, now: ScoredModel, most: int = MOST_COMPARED) -> list[ScoredModel]:
         """Return the model and, after it, others with one explanation more, all under the noise that the best leaves.

@@ -160,15 +160,17 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
 
 
 def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
-    """Return a verdict that names nothing where what is named closes too little of the gap, and mere noise is not left.
+    """Return a verdict that names nothing where what is named takes off too little.
 
-    The gap is that of unseen data above the sensors' noise.
+    That is less than a simulation may err by, a hundredth of the spread, of the error in unseen data; or too little of
+    the gap, that of unseen data above the sensors' noise, where mere noise is not left.
     """
     found, proof = verdict.found, verdict.proof
-    if not found.model.parts or not proof or case.leaves_noise(found):
+    if not found.model.parts or not proof:
         return verdict
     size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
-    if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:
+    closes = case.leaves_noise(found) or 1 - np.sqrt(size.unexplained) >= CRITERIA.matters
+    if closes and not size.before**2 - size.after**2 < CRITERIA.model_error**2:
         return verdict
     return Verdict("no_gap", as_read, (found, *verdict.rivals), proof=proof)
 
