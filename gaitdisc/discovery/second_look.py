@@ -160,17 +160,15 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
 
 
 def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
-    """Return a verdict that names nothing where what is named takes off too little.
+    """Return a verdict that names nothing where what is named closes too little of the gap, and mere noise is not left.
 
-    That is less than a simulation may err by, a hundredth of the spread, of the error in unseen data; or too little of
-    the gap, that of unseen data above the sensors' noise, where mere noise is not left.
+    The gap is that of unseen data above the sensors' noise.
     """
     found, proof = verdict.found, verdict.proof
-    if not found.model.parts or not proof:
+    if not found.model.parts or not proof or case.leaves_noise(found):
         return verdict
     size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
-    closes = case.leaves_noise(found) or 1 - np.sqrt(size.unexplained) >= CRITERIA.matters
-    if closes and not size.before**2 - size.after**2 < CRITERIA.model_error**2:
+    if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:
         return verdict
     return Verdict("no_gap", as_read, (found, *verdict.rivals), proof=proof)
 

@@ -108,14 +108,10 @@ def _nothing(discovery: Discovery) -> str:
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} independent samples)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     if discovery.held_out.p < discovery.held_out.alpha:
-        several = (
+        return (
             f"No effect is named, because several effects act at a time: {for_what} would explain most, but less than "
             "half of the held-out error. Trials in which fewer effects act can distinguish them."
         )
-        small = (
-            f"No effect is named: {for_what} would take off less than a hundredth of the range in which the data vary."
-        )
-        return small if may_be_left(discovery.held_out.before, discovery.held_out) else several
     return (
         f"No effect is named: the training data indicate {for_what}, but the held-out data do not support it{tested}. "
         "More trials of varied movement can decide."

@@ -57,17 +57,9 @@ def test_what_is_missing_grows_along_a_run_and_a_sensors_noise_does_not(truth, c
     assert grows_along_runs(*_problem(with_load(truth), Experiment(seconds=12.0, cutoff_hz=cutoff_hz))) == grows
 
 
-@pytest.mark.parametrize(
-    ("truth", "how", "named"),
-    [
-        ("-14*x**3", Experiment(seconds=12.0), True),
-        ("0", Experiment(seconds=12.0, shaking=8.0), False),
-        ("-0.5*x**3", Experiment(seconds=12.0, noise=0.001), True),
-        ("-0.2*x**3", Experiment(seconds=12.0, noise=0.001), False),  # .8 % of the spread, as no simulation is exact
-    ],
-)
-def test_what_closes_next_to_nothing_of_the_gap_or_is_below_a_hundredth_of_the_spread_is_not_named(truth, how, named):
-    case, as_read = _problem(with_load(truth), how)
+@pytest.mark.parametrize(("truth", "shaking", "named"), [("-14*x**3", 0.0, True), ("0", 8.0, False)])
+def test_what_closes_next_to_nothing_of_the_gap_is_not_named(truth, shaking, named):
+    case, as_read = _problem(with_load(truth), Experiment(seconds=12.0, shaking=shaking))
     found = _with(case, as_read, "cubic_stiffness@load", factor=-1.0)
     verdict = Verdict("missing_physics", found, (), proof=held_out_proof(case, as_read, found))
     assert (without_small(case, as_read, verdict) is verdict) == named
