@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +54,7 @@ class EngineFit:
     measured: Measured  # driven by the controls
     states: Values  # (trial, sample, state), smoothed: where starts and fibres are taken from
     parts: tuple[Part, ...] = ()  # of what was found
-    progress: Callable[[str], None] = lambda _: None
+    progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
 
     def noted(self, found: ScoredModel) -> CandidateModel:
         """Return what was found as it is, once its parts are kept."""

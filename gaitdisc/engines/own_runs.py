@@ -35,7 +35,7 @@ class Driven:
     mapping: Simulation
     controls: Values  # (trial, sample, control)
     lags: Mapping[int, float] = field(default_factory=dict)  # control: time constant [s] of the lag in these
-    progress: Callable[[str], None] = lambda _: None
+    progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
 
 
 @dataclass(frozen=True)

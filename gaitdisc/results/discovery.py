@@ -211,6 +211,8 @@ class Discovery(Saved, file="discovery.json"):
         most on held-out data.
     given : str
         ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
+    hide : callable, optional
+        Returns the discovery as it is written: without words that may name a person.
     """
 
     verdict: str
@@ -229,7 +231,6 @@ class Discovery(Saved, file="discovery.json"):
     beside: Mapping[str, float] = field(default_factory=dict)
     explanations: tuple[Explanation, ...] = ()
     given: str = ""
-    # hides what may name a person; None where nothing does. Python holds the names, what is written does not
     hide: Callable[[Discovery], Discovery] | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
