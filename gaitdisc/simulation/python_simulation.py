@@ -42,7 +42,7 @@ class PythonSimulation:
 
     def __getattr__(self, name: str) -> Any:
         """What a `Simulation` has: a part of it, or what gives another of this function with other parts."""
-        if name.startswith("__"):  # Python asks for them before there are parts
+        if name.startswith("__"):  # copy and pickle look these up before there are parts
             raise AttributeError(name)
         own = getattr(self.parts, name)
         if not name.startswith(("with", "observing")):

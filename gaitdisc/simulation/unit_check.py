@@ -67,7 +67,7 @@ def powers_in(
 
     units: of the names; None of one whose unit nobody knows
     bare: what a number without a name counts as where it multiplies; None where the product may then have any unit
-    report: told what does not fit
+    report: called with each sum of unlike units
     """
     if not isinstance(tree, Operation):
         return units.get(tree.name) if isinstance(tree, Name) else None
