@@ -22,10 +22,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import torch
 
-from gaitdisc.networks.descent import TorchSteps
-from gaitdisc.networks.shred import Shred
-from gaitdisc.networks.trained_network import torch_threads
-from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings, schedule_of
+from gaitdisc.models.descent import TorchSteps
+from gaitdisc.models.shred import Shred
+from gaitdisc.models.trained_network import torch_threads
+from gaitdisc.models.training_settings import PRECISIONS, TrainingSettings, schedule_of
 
 STEPS, TRIES = 3, 6
 

@@ -48,7 +48,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaitdisc import PooledCycles
-from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, participant_of, person_of, walk_of, with_pelvis
+from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Limits, Noted
+from gaitdisc.clinic.demonstration import CONDITION, Visit, participant_of, person_of, walk_of, with_pelvis
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import reference_of
 from gaitdisc.clinic.rules import _sample, rules
@@ -59,8 +60,7 @@ from gaitdisc.ingest.study import Conditions, PlannedTrial, Study
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.recording import Trial
 from gaitdisc.recording.trial import LEG_OF_STATURE
-from gaitdisc.results.clinical_reference import ClinicalReading, ClinicalReference, Limits, Noted
-from gaitdisc.results.provenance import made_now
+from gaitdisc.saved.provenance import made_now
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 90_000
 ALWAYS = 10.0  # half width of what lasts the whole stride

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from gaitdisc.cohort.cohort import WALK_S, the_twelve, walks_of
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study
 from gaitdisc.processing.process import processed
+from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Samples
 from gaitdisc.response.fit_response import ResponseSettings, held_out_part
-from gaitdisc.response.samples import gait_samples
 
 MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))

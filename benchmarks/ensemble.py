@@ -29,8 +29,8 @@ import numpy as np
 from scipy.stats import spearmanr
 from sensing_walks import Person, chosen_walks
 
-from gaitdisc.sensing.reconstructor import ENSEMBLE, Ensemble, fit_reconstructor
-from gaitdisc.sensing.state_errors import coverage, half_widths
+from gaitdisc.reconstruction.state_errors import coverage, half_widths
+from gaitdisc.reconstruction.window_model import ENSEMBLE, Ensemble, fit_reconstructor
 
 
 def main() -> None:

@@ -41,7 +41,7 @@ from chapter5.reconstruct_field import FieldTask, prepare
 from chapter5.routes import fixed_at_random
 from chapter5.turbulence import FlowSettings, record_turbulence
 
-from gaitdisc.sensing.windows import RANDOM, Lags
+from gaitdisc.reconstruction.windows import RANDOM, Lags
 
 FLOW = FlowSettings(nodes=50, cut=50, snapshots=600, spin_up=800)
 LAGS = {"ours": Lags(13, 8), "text": Lags(100, 1)}
@@ -97,8 +97,8 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     """Train on one kind of targets and test in the field."""
     import torch
 
-    from gaitdisc.networks.descent import TorchSteps
-    from gaitdisc.networks.training_settings import TrainingSettings, schedule_of
+    from gaitdisc.models.descent import TorchSteps
+    from gaitdisc.models.training_settings import TrainingSettings, schedule_of
 
     torch.set_num_threads(1)
     torch.manual_seed(0)
@@ -141,7 +141,7 @@ def peak_mb() -> float:
 
 def built(network: str, inputs: int, outputs: int):
     """Network by its name."""
-    from gaitdisc.sensing.reconstructor import OF_TEXT, network_of
+    from gaitdisc.reconstruction.window_model import OF_TEXT, network_of
 
     return network_of("shred" if network == "ours" else OF_TEXT, 1)(inputs, outputs)
 

@@ -30,8 +30,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from sensing_walks import LAGS, Person, chosen_walks
 
-from gaitdisc.sensing.reconstruct import Fits, reconstruct
-from gaitdisc.sensing.reconstructor import sensing
+from gaitdisc.reconstruction.reconstruct import Fits, reconstruct
+from gaitdisc.reconstruction.window_model import sensing
 
 AHEAD = (0, 5, 10, 20, 30, 50)  # samples
 

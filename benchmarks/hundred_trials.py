@@ -68,7 +68,7 @@ print(json.dumps([done.returncode, wall, used.ru_utime + used.ru_stime, used.ru_
 CYCLES = """
 import sys
 from pathlib import Path
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.run.run_study import run_study
 from gaitdisc.ingest.study_file import load_study
 run_study(load_study(sys.argv[1]), Path(sys.argv[1]) / "run")
 """

@@ -32,11 +32,11 @@ import numpy as np
 from numpy.typing import NDArray
 from sensing_walks import Person, chosen_walks
 
+from gaitdisc.reconstruction.reconstruct import crossed_widths
+from gaitdisc.reconstruction.state_errors import LEVEL, coverage, half_widths
+from gaitdisc.reconstruction.window_model import fit_reconstructor
+from gaitdisc.reconstruction.windows import PERSON_OUT, Parts, split_by_subject, split_within
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.reconstruct import crossed_widths
-from gaitdisc.sensing.reconstructor import fit_reconstructor
-from gaitdisc.sensing.state_errors import LEVEL, coverage, half_widths
-from gaitdisc.sensing.windows import PERSON_OUT, Parts, split_by_subject, split_within
 
 
 def main() -> None:

@@ -34,10 +34,10 @@ import numpy as np
 from numpy.typing import NDArray
 from sensing_walks import Person, chosen_walks
 
+from gaitdisc.models.fourier_ridge import fit_fourier_ridge
+from gaitdisc.reconstruction.window_model import FEATURES, MASKED, WindowModel, fit_reconstructor
+from gaitdisc.reconstruction.windows import Parts, filled, hidden, split_within, with_missing
 from gaitdisc.recording import Samples
-from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.sensing.reconstructor import FEATURES, MASKED, WindowModel, fit_reconstructor
-from gaitdisc.sensing.windows import Parts, filled, hidden, split_within, with_missing
 
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 RUNS_S = (0.0, 0.2)

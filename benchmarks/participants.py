@@ -48,9 +48,9 @@ def report(since):
     print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
     return time.perf_counter(), time.process_time()
 
-from gaitdisc.batch.run_study import run_study
+from gaitdisc.run.run_study import run_study
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.report.response_page import write_report
+from gaitdisc.response.page import write_report
 folder = Path(sys.argv[1])
 study = load_study(folder)
 since = report((time.perf_counter(), 0.0))

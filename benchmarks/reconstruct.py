@@ -52,10 +52,10 @@ from sensing_walks import SENSORS, Person, cohort_walks
 from torch import Tensor, nn
 from torch.utils.data import DataLoader, TensorDataset
 
-from gaitdisc.networks.trained_network import pinned_threads
+from gaitdisc.models.trained_network import pinned_threads
+from gaitdisc.reconstruction.window_model import KINDS, fit_reconstructor
+from gaitdisc.reconstruction.windows import Lags, Parts, split_by_subject
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
-from gaitdisc.sensing.windows import Lags, Parts, split_by_subject
 
 EVERY_SAMPLE = Lags(100, 1)
 CHECK_EVERY, PATIENCE, WATCH = 20, 5, 5

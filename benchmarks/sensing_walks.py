@@ -8,14 +8,14 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.batch.sensed_walks import SensedWalks, sensed_walks
 from gaitdisc.channel import Channel
+from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study import Study
+from gaitdisc.reconstruction.sensed_walks import SensedWalks, sensed_walks
+from gaitdisc.reconstruction.state_errors import angle_columns
+from gaitdisc.reconstruction.window_model import Sensing, sensing
+from gaitdisc.reconstruction.windows import Lags, Parts, split_within
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.reconstructor import Sensing, sensing
-from gaitdisc.sensing.state_errors import angle_columns
-from gaitdisc.sensing.windows import Lags, Parts, split_within
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
 from chapter5.gait import treadmill

@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 from sensing_walks import treadmill_walks
 
-from gaitdisc.sensing.model_folder import Stream
-from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
-from gaitdisc.sensing.windows import windows_of
+from gaitdisc.reconstruction.model_folder import Stream
+from gaitdisc.reconstruction.window_model import KINDS, fit_reconstructor
+from gaitdisc.reconstruction.windows import windows_of
 
 GOAL_MS = 0.2
 

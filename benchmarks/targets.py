@@ -29,11 +29,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from sensing_walks import DATA, SENSORS
 
-from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
+from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.report.reconstruction_page import reconstruction_sentences
-from gaitdisc.sensing.reconstructor import KINDS
+from gaitdisc.reconstruction.page import reconstruction_sentences
+from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study
+from gaitdisc.reconstruction.window_model import KINDS
 
 RIDGES = ("linear", "delay ridge", "fourier ridge")
 MARKERS = tuple(f"{side}{place}.{axis}" for side in "RL" for place in ("CAL", "MT1") for axis in "yz")

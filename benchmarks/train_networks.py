@@ -55,9 +55,9 @@ from numpy.typing import NDArray
 from torch import nn
 from torch.utils.data import DataLoader, TensorDataset
 
-from gaitdisc.networks import trainer
-from gaitdisc.networks.trained_network import pinned_threads
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.models import trainer
+from gaitdisc.models.trained_network import pinned_threads
+from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.recording import Samples
 from gaitdisc.response.fit_response import fit_models, fit_network
 from gaitdisc.statistics.r2 import r2

@@ -9,6 +9,8 @@ from gaitdisc._version import __version__ as __version__
 TYPE_CHECKING = False  # typing itself takes longer to load than all else here; type checkers know the name
 if TYPE_CHECKING:
     from gaitdisc.channel import Channel as Channel
+    from gaitdisc.comparison.mismatch import Mismatch as Mismatch
+    from gaitdisc.discovery.result import Discovery as Discovery
     from gaitdisc.errors import GaitdiscError as GaitdiscError
     from gaitdisc.ingest.c3d import C3DReader as C3DReader
     from gaitdisc.ingest.reading import read_trial as read
@@ -22,12 +24,10 @@ if TYPE_CHECKING:
     from gaitdisc.library.filters import envelope as envelope
     from gaitdisc.library.filters import highpass as highpass
     from gaitdisc.library.filters import lowpass as lowpass
-    from gaitdisc.library.functions import simulation_from_function as simulation_from_function
     from gaitdisc.library.joints import angles as angles
     from gaitdisc.library.joints import moments as moments
     from gaitdisc.library.loading import check as check
     from gaitdisc.library.loading import load as load
-    from gaitdisc.library.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.library.response import fit_response as fit_response
     from gaitdisc.library.simulating import simulate as simulate
     from gaitdisc.library.steps import contacts as contacts
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from gaitdisc.library.walks import example_files as example_files
     from gaitdisc.library.walks import example_walks as example_walks
     from gaitdisc.processing.inspection import Inspection as Inspection
+    from gaitdisc.processing.pooled_cycles import PooledCycles as PooledCycles
+    from gaitdisc.reconstruction.reconstruction import Reconstruction as Reconstruction
+    from gaitdisc.reconstruction.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.recording.field import Axis as Axis
     from gaitdisc.recording.field import Field as Field
     from gaitdisc.recording.finding import Finding as Finding
@@ -44,12 +47,9 @@ if TYPE_CHECKING:
     from gaitdisc.recording.strides import Strides as Strides
     from gaitdisc.recording.trial import Event as Event
     from gaitdisc.recording.trial import Trial as Trial
-    from gaitdisc.results.discovery import Discovery as Discovery
-    from gaitdisc.results.mismatch import Mismatch as Mismatch
-    from gaitdisc.results.participant_response import ResponseRun as ResponseRun
-    from gaitdisc.results.pooled_cycles import PooledCycles as PooledCycles
-    from gaitdisc.results.reconstruction import Reconstruction as Reconstruction
+    from gaitdisc.response.participant_response import ResponseRun as ResponseRun
     from gaitdisc.signals.contacts import Contacts as Contacts
+    from gaitdisc.simulation.functions import simulation_from_function as simulation_from_function
     from gaitdisc.simulation.parts import Term as Term
     from gaitdisc.simulation.simulation import Simulation as Simulation
     from gaitdisc.simulation.simulation_file import bundled as bundled_simulation
@@ -89,21 +89,21 @@ _HOME = {
     "angles": ("library.joints", "angles"),
     "moments": ("library.joints", "moments"),
     "compare": ("library.comparing", "compare"),
-    "Mismatch": ("results.mismatch", "Mismatch"),
+    "Mismatch": ("comparison.mismatch", "Mismatch"),
     "Simulation": ("simulation.simulation", "Simulation"),
     "Term": ("simulation.parts", "Term"),
     "read_simulation": ("simulation.simulation_file", "read_simulation"),
     "write_simulation": ("simulation.writing", "write_simulation"),
     "bundled_simulation": ("simulation.simulation_file", "bundled"),
-    "simulation_from_function": ("library.functions", "simulation_from_function"),
+    "simulation_from_function": ("simulation.functions", "simulation_from_function"),
     "simulate": ("library.simulating", "simulate"),
     "discover": ("library.discovering", "discover"),
-    "Discovery": ("results.discovery", "Discovery"),
+    "Discovery": ("discovery.result", "Discovery"),
     "fit_response": ("library.response", "fit_response"),
-    "ResponseRun": ("results.participant_response", "ResponseRun"),
-    "PooledCycles": ("results.pooled_cycles", "PooledCycles"),
-    "Reconstructor": ("library.reconstructor", "Reconstructor"),
-    "Reconstruction": ("results.reconstruction", "Reconstruction"),
+    "ResponseRun": ("response.participant_response", "ResponseRun"),
+    "PooledCycles": ("processing.pooled_cycles", "PooledCycles"),
+    "Reconstructor": ("reconstruction.reconstructor", "Reconstructor"),
+    "Reconstruction": ("reconstruction.reconstruction", "Reconstruction"),
     "signed_rank": ("statistics.signed_rank", "signed_rank"),
     "paired_tests": ("library.comparing", "paired_tests"),
     "holm_sidak": ("statistics.holm_sidak", "holm_sidak"),

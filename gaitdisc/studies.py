@@ -3,6 +3,6 @@
 In a checkout they lie beside the package, in a wheel within it.
 """
 
-from gaitdisc.batch.chapter_parts import studies_folder
+from gaitdisc.run.chapter_parts import studies_folder
 
 __path__ = [str(studies_folder())]

@@ -74,10 +74,10 @@ def answer_of(folder: Path, reference: Path, angles: str = "file", pages: bool =
 def undrawn(study: Path, reference: Path, checked: Answer) -> Answer:
     """Add what `run` finds to what `check` said."""
     import gaitdisc as gd
-    from gaitdisc.batch.run_study import run_study
+    from gaitdisc.clinic.clinical_reference import load_reference
     from gaitdisc.clinic.reading import read_beside
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.results.clinical_reference import load_reference
+    from gaitdisc.run.run_study import run_study
 
     try:
         run = run_study(load_study(study), study / "run")

@@ -24,11 +24,11 @@ from ch4_ours import OURS
 from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.batch.vary_study import ablate_study
-from gaitdisc.batch.workers import Workers
+from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.report.response_page import write_report
+from gaitdisc.response.page import write_report
+from gaitdisc.run.vary_study import ablate_study
+from gaitdisc.run.workers import Workers
 
 WALK_S, PEOPLE = 240.0, 12
 QUICK_S, QUICK_PEOPLE = 60.0, 1

@@ -10,8 +10,8 @@ from chapter5.gait import DATA
 from further import Number
 
 import gaitdisc as gd
-from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.sensing.windows import stacked
+from gaitdisc.models.fourier_ridge import fit_fourier_ridge
+from gaitdisc.reconstruction.windows import stacked
 
 
 def energy(quick: bool) -> Iterator[Number]:

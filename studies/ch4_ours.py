@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import pandas as pd
 
 import gaitdisc as gd
-from gaitdisc.batch.demonstration import OUTPUTS
+from gaitdisc.cohort.demonstration import OUTPUTS
 from gaitdisc.response.over_participants import r2_by_participant, representative
 from gaitdisc.words import sideless
 

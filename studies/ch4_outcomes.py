@@ -27,8 +27,8 @@ from chapter5.people import ANGLES, CUTOFF_HZ
 from further import Made, Number, main
 
 import gaitdisc as gd
-from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.sensing.windows import stacked
+from gaitdisc.models.fourier_ridge import fit_fourier_ridge
+from gaitdisc.reconstruction.windows import stacked
 
 MOMENTS = ("ankle_angle_{}_moment", "knee_angle_{}_moment", "hip_flexion_{}_moment")
 JOINTS = ("ankle", "knee", "hip")

@@ -27,14 +27,14 @@ from chapter5.people import LAGS, SAGITTAL, TOLD, parts_of, rmse, runner, simula
 from further import Made, Number, main
 
 import gaitdisc as gd
-from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
-from gaitdisc.networks.trained_network import TrainedNetwork
-from gaitdisc.networks.trainer import train
-from gaitdisc.networks.training_settings import TrainingSettings
-from gaitdisc.sensing.calibration import calibrated, first_strides
-from gaitdisc.sensing.reconstructor import ENSEMBLE, Ensemble, Sensing, fit_reconstructor
-from gaitdisc.sensing.state_errors import coverage, half_widths
-from gaitdisc.sensing.windows import split_by_trial, stacked
+from gaitdisc.models.trained_network import TrainedNetwork
+from gaitdisc.models.trainer import train
+from gaitdisc.models.training_settings import TrainingSettings
+from gaitdisc.reconstruction.calibration import calibrated, first_strides
+from gaitdisc.reconstruction.sensed_walks import SensedWalk, sensed_walks
+from gaitdisc.reconstruction.state_errors import coverage, half_widths
+from gaitdisc.reconstruction.window_model import ENSEMBLE, Ensemble, Sensing, fit_reconstructor
+from gaitdisc.reconstruction.windows import split_by_trial, stacked
 
 STRIDES, WEIGHT = 10, 10
 

@@ -20,10 +20,10 @@ from chapter5.routes import Route, fixed_at_random, random_walk
 from command_line import SHARED
 
 import gaitdisc as gd
+from gaitdisc.reconstruction.window_model import fit_reconstructor
+from gaitdisc.reconstruction.windows import Lags
 from gaitdisc.report.page import Block, write_blocks, write_markdown
 from gaitdisc.report.table import Table
-from gaitdisc.sensing.reconstructor import fit_reconstructor
-from gaitdisc.sensing.windows import Lags
 
 FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was

@@ -28,11 +28,9 @@ from chapter5.reconstruct_field import reconstruct_field
 from chapter5.routes import fixed_at_random
 from further import Made, Number, main
 
-from gaitdisc.batch.reconstruct_study import ReconstructionSettings
-from gaitdisc.report.curves import LATENT, course_numbers, draw_course
-from gaitdisc.report.figure import Figure, save_figures
-from gaitdisc.report.panels import Room, in_style, legend, panels
-from gaitdisc.sensing.reconstructor import (
+from gaitdisc.processing.curves_figure import LATENT, course_numbers, draw_course
+from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings
+from gaitdisc.reconstruction.window_model import (
     KINDS,
     OF_TEXT,
     WITHOUT_NETWORK,
@@ -41,7 +39,9 @@ from gaitdisc.sensing.reconstructor import (
     latent_states,
     leading,
 )
-from gaitdisc.sensing.windows import RANDOM, Lags, split_by_subject
+from gaitdisc.reconstruction.windows import RANDOM, Lags, split_by_subject
+from gaitdisc.report.figure import Figure, save_figures
+from gaitdisc.report.panels import Room, in_style, legend, panels
 
 MODES = "modes of the states"
 

@@ -21,13 +21,13 @@ from collections.abc import Mapping
 import pandas as pd
 from chapter5 import gait
 
-from gaitdisc.batch.reconstruct_study import ReconstructionSettings
-from gaitdisc.batch.sensed_walks import sensed_walks
 from gaitdisc.ingest.study import Study
+from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings
+from gaitdisc.reconstruction.sensed_walks import sensed_walks
+from gaitdisc.reconstruction.window_model import KINDS, MASKED, sensing
+from gaitdisc.reconstruction.windows import RANDOM, RULES
 from gaitdisc.report.page import Block, write_blocks
 from gaitdisc.report.table import save_table
-from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing
-from gaitdisc.sensing.windows import RANDOM, RULES
 
 SAGITTAL = "3 sagittal"
 QUICK_KINDS = ("linear", "delay ridge", "fourier ridge")

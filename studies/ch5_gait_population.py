@@ -19,10 +19,10 @@ GIVEN = command_line(__name__, __doc__, OUT, GAIT, QUICK, WITHOUT_NETWORKS)  # b
 import pandas as pd
 from chapter5 import gait
 
-from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
+from gaitdisc.reconstruction.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
+from gaitdisc.reconstruction.reconstruction import CALIBRATED
+from gaitdisc.reconstruction.window_model import KINDS
 from gaitdisc.report.page import Block, write_blocks
-from gaitdisc.results.reconstruction import CALIBRATED
-from gaitdisc.sensing.reconstructor import KINDS
 
 WITHOUT = ("linear", "delay ridge", "fourier ridge")
 RULE = "one person left out"

@@ -28,9 +28,9 @@ from chapter5.reconstruct_field import FieldCell, latent_sizes, reconstruct_fiel
 from chapter5.routes import Route, circuit, fixed_at_random, joined
 
 import gaitdisc as gd
+from gaitdisc.reconstruction.window_model import KINDS
+from gaitdisc.reconstruction.windows import RANDOM
 from gaitdisc.report.page import Block
-from gaitdisc.sensing.reconstructor import KINDS
-from gaitdisc.sensing.windows import RANDOM
 
 SPLITS = (RANDOM, "temporal")
 WRITTEN_DOWN = tomllib.loads(Path(__file__).with_name("ch5_fields.toml").read_text(encoding="utf-8"))

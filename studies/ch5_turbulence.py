@@ -39,8 +39,8 @@ from chapter5.reconstruct_field import (
 from chapter5.routes import Route, fixed, fixed_at_random, random_walk
 from chapter5.turbulence import FlowSettings, record_turbulence
 
+from gaitdisc.reconstruction.windows import RANDOM, Lags
 from gaitdisc.report.page import Block
-from gaitdisc.sensing.windows import RANDOM, Lags
 
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100

@@ -3,7 +3,7 @@
     python studies/clinic_rules.py [--controls N] [--people N] [--run FOLDER] [--quick]
 
 Made people walk 16 s on a treadmill; cycles are cut of them as of any recording. Controls make the reference. A stiff
-knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/batch/demonstration.py); children of eight
+knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/cohort/demonstration.py); children of eight
 walk as adults of their size would, and nothing is to be said of them.
 """
 
@@ -24,15 +24,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from gaitdisc import PooledCycles
-from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, made_walk, participant_of, person_of
-from gaitdisc.batch.demonstration import FOUND_AS
+from gaitdisc.clinic.clinical_reference import ClinicalReference
+from gaitdisc.clinic.demonstration import CONDITION, Visit, made_walk, participant_of, person_of
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import reference_of
+from gaitdisc.cohort.demonstration import FOUND_AS
 from gaitdisc.ingest.study import Conditions, PlannedTrial, Study
 from gaitdisc.processing.pooled import pooled_cycles
-from gaitdisc.results.clinical_reference import ClinicalReference
-from gaitdisc.results.participant_response import load_run
-from gaitdisc.results.provenance import made_now
+from gaitdisc.response.participant_response import load_run
+from gaitdisc.saved.provenance import made_now
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 70_000
 KINDS = ("", *FOUND_AS, "child")

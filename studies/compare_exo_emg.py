@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.comparison.compare import compare_people
+from gaitdisc.comparison.page import write_mismatch_report
+from gaitdisc.comparison.sentences import mismatch_sentences
+from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.mismatch_page import write_mismatch_report
-from gaitdisc.report.mismatch_sentences import mismatch_sentences
-from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 
 PEOPLE, FORCES = 8, 6  # the first six signals are ground forces
 HARD, EASY = "C6", "C1"

@@ -32,19 +32,19 @@ from ankle_records import moments_per_foot_kg
 from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
-from gaitdisc.batch.demonstration import FORCES
-from gaitdisc.batch.device_study import FOOT_SHOWS_AT, device_walks, joint_records, weighed_foot
-from gaitdisc.batch.discover_files import discover_study
+from gaitdisc.cohort.demonstration import FORCES
 from gaitdisc.cohort.marker_trial import marker_trial
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import STIFFNESS, Person, Spring, drawn
 from gaitdisc.cohort.walk import TrueWalk, walked
+from gaitdisc.discovery.changed_moment import NORMAL_95
+from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, device_walks, joint_records, weighed_foot
+from gaitdisc.discovery.discover_files import discover_study
+from gaitdisc.discovery.result import Estimate, FoundEffect
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import load_study, write_study
-from gaitdisc.regression.changed_moment import NORMAL_95
-from gaitdisc.results.discovery import Estimate, FoundEffect
 
 CONDITIONS, CHANNELS = Conditions(nominal="nominal", device="exo"), {name: f"{name} [N]" for name in FORCES}
 WALK_S, PRESSURE_M, ERROR_HZ = 36.0, 0.003, 6.0

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
-from gaitdisc.batch.discover_engine import discover_model_file
+from gaitdisc.discovery.discover_engine import discover_model_file
 from gaitdisc.engines.engine import Engine, Motion, read_model
 from gaitdisc.engines.mapping import drafted
 

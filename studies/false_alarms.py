@@ -64,7 +64,7 @@ def person_of(made: Made) -> Person:
 
 def write_person(made: Made, folder: Path) -> None:
     """A static trial on both plates and some walks over them, as C3D files of a laboratory."""
-    from gaitdisc.batch.demonstration import write_marker_trial
+    from gaitdisc.cohort.demonstration import write_marker_trial
     from gaitdisc.cohort.marker_trial import marker_trial, overground, standing
     from gaitdisc.cohort.walk import walked
 

@@ -22,8 +22,8 @@ from gaitdisc.cohort.person import MUSCLES, Person, Spring, drawn
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
+from gaitdisc.processing.samples import gait_samples
 from gaitdisc.response.fit_response import ResponseSettings, fit_linear, held_out_part
-from gaitdisc.response.samples import gait_samples
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"{muscle}_r" for muscle in MUSCLES[:5]))
 EMG = tuple(f"{muscle}_{side}" for side in "rl" for muscle in MUSCLES)

@@ -32,9 +32,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from gaitdisc.batch.tracked_joints import joints_of
-from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, tracked_pass, with_angle_noise
 from gaitdisc.discovery.prescribed import CLOSED, ResidualMoment
+from gaitdisc.discovery.tracked_joints import joints_of
+from gaitdisc.discovery.tracked_pass import Pass, moments_of_angle_noise, tracked_pass, with_angle_noise
 from gaitdisc.engines.tracked_mapping import read_tracked
 
 WHITENED_DEG, SIZES = 0.3, (0.6, 1.4)

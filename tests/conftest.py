@@ -62,7 +62,7 @@ def trained_briefly(monkeypatch):
 
     In this process only: one that is started beside it trains whole.
     """
-    monkeypatch.setattr("gaitdisc.networks.training_settings.epochs_of", lambda *_: 2)
+    monkeypatch.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
 
 
 @pytest.fixture

@@ -5,11 +5,11 @@ import pandas as pd
 
 from gaitdisc.channel import Channel
 from gaitdisc.clinic.reference import reference_of
+from gaitdisc.processing.leg_curves import PROFILE
+from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.recording import PERCENT
-from gaitdisc.results.leg_curves import PROFILE
-from gaitdisc.results.participant_response import ResponseRun
-from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
-from gaitdisc.results.provenance import Provenance
+from gaitdisc.response.participant_response import ResponseRun
+from gaitdisc.saved.provenance import Provenance
 
 SOURCE = "# Made, after the form of Schwartz 2008: 83 children of 4 to 17 years; licence: none, made here"
 T = 2 * np.pi * PERCENT / 100

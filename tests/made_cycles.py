@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import Channel
+from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.saved.provenance import Refusal
 
 CHANNELS = (
     *(Channel(f"knee_angle_{side}", "angle", "deg", side) for side in "lr"),

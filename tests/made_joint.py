@@ -3,7 +3,7 @@
 import numpy as np
 
 from gaitdisc.processing.joint_record import JointRecord
-from gaitdisc.regression.muscle_moment import FASTEST, Driven, force_at_speed
+from gaitdisc.processing.muscle_moment import FASTEST, Driven, force_at_speed
 
 RATE_HZ, STRIDE_S = 100.0, 1.1
 MUSCLES = ("emg_sol_r", "emg_gas_r", "emg_ta_r")

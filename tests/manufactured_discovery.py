@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs, Whereabouts
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs, Whereabouts
-from gaitdisc.results.provenance import Provenance
+from gaitdisc.saved.provenance import Provenance
 
 NAN = float("nan")
 SPRING = FoundEffect(

@@ -2,7 +2,7 @@
 
 import json
 
-from gaitdisc.results.unit_folder import OWN, sealed_text
+from gaitdisc.saved.unit_folder import OWN, sealed_text
 
 
 def resealed(path, change):

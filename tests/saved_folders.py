@@ -20,8 +20,8 @@ from unittest.mock import patch
 import numpy as np
 import pandas as pd
 
-from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.cli import app
+from gaitdisc.cohort.demonstration import write_demonstration
 
 PROJECT = Path(__file__).parents[1]
 DATA = Path(os.environ.get("GAITDISC_DATA", PROJECT.parent / "shared" / "data"))
@@ -44,13 +44,13 @@ accelerations = "data/CMC/results_spring/walk_subject_Kinematics_dudt.sto"
 
 def call(*words: object) -> None:
     """Run a command of gaitdisc in this process."""
-    with patch("gaitdisc.networks.training_settings.epochs_of", lambda *_: 2):
+    with patch("gaitdisc.models.training_settings.epochs_of", lambda *_: 2):
         app([str(word) for word in words], standalone_mode=False)
 
 
 def write_study(laboratory: str = "angles", people: int = 1) -> None:
     """People who walk 30 s without and with a spring, in two trials each over ground, and a study of few channels."""
-    with patch("gaitdisc.batch.demonstration.TRIALS", 2):
+    with patch("gaitdisc.cohort.demonstration.TRIALS", 2):
         write_demonstration(Path("small"), 30.0, people, laboratory=laboratory)
     file = Path("small/study.toml")
     text = file.read_text(encoding="utf-8")

@@ -21,7 +21,7 @@ from gaitdisc.commands.options import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.models.training_settings import TrainingSettings
 
 pytestmark = pytest.mark.usefixtures("trained_briefly", "unpainted")
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
@@ -57,7 +57,7 @@ def ran(recordings, tmp_path_factory):
         shutil.copy(recordings / f"{word}.mot", folder)
     written(folder, walker("P01"))
     with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.networks.training_settings.epochs_of", lambda *_: 2)
+        brief.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
         assert said("run", folder)[0] == 0
     return folder
 
@@ -139,7 +139,7 @@ def test_an_input_that_does_not_move_is_told(folder):
 
 def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(folder, monkeypatch):
     diverging = partial(TrainingSettings, learning_rate=1e30)
-    monkeypatch.setattr("gaitdisc.batch.run_study.TrainingSettings", diverging)
+    monkeypatch.setattr("gaitdisc.run.run_study.TrainingSettings", diverging)
     written(folder, walker("P01"))
     code, words = said("run", folder)
     assert code == REFUSED

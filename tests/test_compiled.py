@@ -12,7 +12,7 @@ import gaitdisc
 from gaitdisc import compiled as room
 from gaitdisc.compiled import compiled
 
-CODE = "from gaitdisc.networks.fused_steps import exponential; import numpy as np; print(exponential(np.float32(1)))"
+CODE = "from gaitdisc.models.fused_steps import exponential; import numpy as np; print(exponential(np.float32(1)))"
 
 
 def test_arguments_of_numba_are_passed_on():
@@ -57,7 +57,7 @@ def installed(tmp_path):
     """The package where nobody may write: its caches are files in the place of folders, which stop root as well."""
     package = Path(gaitdisc.__file__).parent
     shutil.copytree(package, tmp_path / "gaitdisc", ignore=shutil.ignore_patterns("__pycache__"))
-    for folder in ("networks", "."):
+    for folder in ("models", "."):
         (tmp_path / "gaitdisc" / folder / "__pycache__").write_text("")
     return tmp_path
 

@@ -14,10 +14,10 @@ from multiprocessing import get_context
 import pytest
 from manufactured_discovery import manufactured
 
+from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.errors import WriteError
 from gaitdisc.own_files import LIST, claim_file, claim_folder, guarded, note_inputs, under_this_guard
-from gaitdisc.results.discovery_folder import save_discovery
-from gaitdisc.results.unit_folder import sealed_text
+from gaitdisc.saved.unit_folder import sealed_text
 from gaitdisc.whole_file import remove_file, whole_file, write_whole
 from gaitdisc.write_lock import write_lock
 

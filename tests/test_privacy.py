@@ -206,7 +206,7 @@ def test_the_study_is_the_key_and_its_title_names_nobody(study):
 def ran(study):
     """What a run of it prints; its report stands with every figure drawn."""
     with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.networks.training_settings.epochs_of", lambda *_: 2)
+        brief.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
         done = called("run", study, "--quiet")
     assert done.exit_code == 3, done.output
     return done.output

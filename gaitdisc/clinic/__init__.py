@@ -1,1 +1,4 @@
-"""The clinic: reference, scores, rules of what stands out, consistency, before and after."""
+"""The clinic: reference, rules of what stands out, consistency, and a person's page and PDF.
+
+Imports processing, report and what is below them.
+"""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitdisc.results.clinical_reference import PublishedGroup, ReferenceLeg
-from gaitdisc.results.leg_curves import BY_NAME, MOMENTS, POWERS, LegCurves
+from gaitdisc.clinic.clinical_reference import PublishedGroup, ReferenceLeg
+from gaitdisc.processing.leg_curves import BY_NAME, MOMENTS, POWERS, LegCurves
 
 GRAVITY = 9.81
 FEWEST = 10  # people of a group

@@ -8,12 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.clinic.like_controls import like_controls, like_published
-from gaitdisc.clinic.reference import bands, spatiotemporal_limits
-from gaitdisc.clinic.rules import outstanding, speed_words
-from gaitdisc.errors import ComparisonError
-from gaitdisc.recording import Finding
-from gaitdisc.results.clinical_reference import (
+from gaitdisc.clinic.clinical_reference import (
     FEW,
     Band,
     ClinicalReading,
@@ -24,8 +19,13 @@ from gaitdisc.results.clinical_reference import (
     ReferenceLeg,
     Score,
 )
-from gaitdisc.results.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, legs_of
-from gaitdisc.results.pooled_cycles import PooledCycles
+from gaitdisc.clinic.like_controls import like_controls, like_published
+from gaitdisc.clinic.reference import bands, spatiotemporal_limits
+from gaitdisc.clinic.rules import outstanding, speed_words
+from gaitdisc.errors import ComparisonError
+from gaitdisc.processing.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, legs_of
+from gaitdisc.processing.pooled_cycles import PooledCycles
+from gaitdisc.recording import Finding
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
 from gaitdisc.words import SIDE_WORDS
 

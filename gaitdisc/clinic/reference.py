@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from gaitdisc.clinic.clinical_reference import Band, ClinicalReference, Limits, ReferenceLeg
 from gaitdisc.errors import SchemaError
+from gaitdisc.processing.leg_curves import legs_of
+from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording.arrays import mean_where_known
-from gaitdisc.results.clinical_reference import Band, ClinicalReference, Limits, ReferenceLeg
-from gaitdisc.results.leg_curves import legs_of
-from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.provenance import Provenance
+from gaitdisc.saved.provenance import Provenance
 
 FEWEST = 5  # people below whom no limit is drawn
 ALPHA = 0.05  # chance that anything of a healthy person's page is beyond its limits

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.clinic.clinical_reference import FEW, SCORE_LEAST, Limits, Noted, Profile, ReferenceLeg
 from gaitdisc.clinic.reference import FARTHEST, FEWEST, Sample, limits_about
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reference import FEW, SCORE_LEAST, Limits, Noted, Profile, ReferenceLeg
-from gaitdisc.results.leg_curves import BY_NAME, LegCurves
-from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
+from gaitdisc.processing.leg_curves import BY_NAME, LegCurves
+from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
 
 PARTS = ("contact", "loading", "single support", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
 RULE_WORDS = ("name", "variable", "value", "part", "take", "less", "more", "group")

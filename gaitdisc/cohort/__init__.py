@@ -1,1 +1,4 @@
-"""People that the package makes itself: the embedded cohort of twelve."""
+"""The cohort: twelve simulated walkers, their muscles, their walks, and a laboratory's files of them.
+
+Imports ingest, signals, simulation and what is below them.
+"""

@@ -20,9 +20,9 @@ def ablate(
     quiet: Quiet = False,
 ) -> None:
     """Fit the models to less and less data, to find how much is enough."""
-    from gaitdisc.batch.vary_study import ablate_study
-    from gaitdisc.batch.workers import Workers
     from gaitdisc.response.vary import LENGTHS_S
+    from gaitdisc.run.vary_study import ablate_study
+    from gaitdisc.run.workers import Workers
 
     loaded, folder = claimed(study, out)
     lengths, workers = tuple(length) if length else LENGTHS_S, Workers(jobs, cluster)

@@ -22,8 +22,8 @@ def apply(
     ] = None,
 ) -> None:
     """Reconstruct the states of a recording with a saved model, and their errors if they were recorded."""
-    from gaitdisc.batch.reconstruct_study import reconstruct_recording
     from gaitdisc.own_files import claim_file
+    from gaitdisc.reconstruction.reconstruct_study import reconstruct_recording
 
     if model.is_file():
         raise SchemaError(

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.batch.chapter_parts import Part, costs, parts_of
 from gaitdisc.commands.options import SOME_REFUSED, Quiet
 from gaitdisc.commands.run_report import stoppable_bar
 from gaitdisc.errors import LOG
+from gaitdisc.run.chapter_parts import Part, costs, parts_of
 
 NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar goes before it is done
 
@@ -26,7 +26,7 @@ def chapter(
     quiet: Quiet = False,
 ) -> None:
     """Compute a chapter's tables."""
-    from gaitdisc.batch.chapter_run import lack_of, run_part
+    from gaitdisc.run.chapter_run import lack_of, run_part
 
     parts = parts_of(number, part)
     lacks = {one: lack_of(one, data) for one in parts}

@@ -13,7 +13,7 @@ def cite(
     out: Annotated[Path | None, typer.Option(help="File to write, .bib; by default it is printed.")] = None,
 ) -> None:
     """Print BibTeX of this program and of the methods that the result in a folder used."""
-    from gaitdisc.batch.citations import citations_of
+    from gaitdisc.run.citations import citations_of
     from gaitdisc.whole_file import write_whole
 
     cited = citations_of(folder)

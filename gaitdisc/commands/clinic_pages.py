@@ -13,11 +13,11 @@ from gaitdisc.whole_file import remove_file, write_whole
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from gaitdisc.clinic.clinical_reference import ClinicalReference, PersonSession
+    from gaitdisc.clinic.laboratory import PageWords
     from gaitdisc.ingest.study import Study
-    from gaitdisc.report.clinic.laboratory import PageWords
-    from gaitdisc.results.clinical_reference import ClinicalReference, PersonSession
-    from gaitdisc.results.provenance import Provenance
-    from gaitdisc.results.study_run import StudyRun
+    from gaitdisc.saved.provenance import Provenance
+    from gaitdisc.saved.study_run import StudyRun
 
 LABORATORY = "laboratory"  # folder of a run: what the pages were drawn with
 REFERENCE = "reference"  # folder of a run, beside its cycles
@@ -26,7 +26,7 @@ WORDS = "words.csv"  # of another language, beside them
 
 def keep_reference(place: Path | None, run_folder: Path) -> None:
     """Copy a reference into a run, so that its pages are drawn again without it."""
-    from gaitdisc.results.clinical_reference import FILE, PUBLISHED, load_reference, save_reference
+    from gaitdisc.clinic.clinical_reference import FILE, PUBLISHED, load_reference, save_reference
 
     if place is None:
         return
@@ -41,7 +41,7 @@ def keep_reference(place: Path | None, run_folder: Path) -> None:
 
 def kept_reference(run_folder: Path) -> ClinicalReference | None:
     """Reference that was copied into a run; None where none was."""
-    from gaitdisc.results.clinical_reference import FILE, PUBLISHED, load_reference
+    from gaitdisc.clinic.clinical_reference import FILE, PUBLISHED, load_reference
 
     folder = run_folder / REFERENCE
     there = (folder / FILE).is_file() or (folder / PUBLISHED).is_file()
@@ -50,7 +50,7 @@ def kept_reference(run_folder: Path) -> ClinicalReference | None:
 
 def keep_words(language: str, run_folder: Path) -> list[str]:
     """Copy a table of words into a run, or take it away for `en`; gives the words that it lacks."""
-    from gaitdisc.report.clinic.laboratory import read_words, write_words
+    from gaitdisc.clinic.laboratory import read_words, write_words
 
     if language == "en":
         remove_file(run_folder / WORDS)
@@ -63,21 +63,21 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
 
 def write_english(path: Path) -> Path:
     """Write the table of words that is to be filled in."""
-    from gaitdisc.report.clinic.laboratory import write_words
+    from gaitdisc.clinic.laboratory import write_words
 
     return write_words(path, _english())
 
 
 def _english() -> list[str]:
+    from gaitdisc.clinic.laboratory import english_words
     from gaitdisc.clinic.rules import rule_words
-    from gaitdisc.report.clinic.laboratory import english_words
 
     return english_words(rule_words())
 
 
 def kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
-    from gaitdisc.report.clinic.laboratory import ENGLISH, load_laboratory, read_words
+    from gaitdisc.clinic.laboratory import ENGLISH, load_laboratory, read_words
 
     words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
     return replace(words, laboratory=load_laboratory(run_folder))
@@ -105,10 +105,10 @@ def say_new_recordings(study: Study) -> None:
 
 def page_of_run(run: StudyRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
-    from gaitdisc.report.clinic.laboratory import Laboratory, load_laboratory
+    from gaitdisc.clinic.laboratory import Laboratory, load_laboratory
     from gaitdisc.report.saved_page import page_of
-    from gaitdisc.results.kind import find_kind
-    from gaitdisc.results.unit_folder import sealed_text
+    from gaitdisc.saved.kind import find_kind
+    from gaitdisc.saved.unit_folder import sealed_text
 
     own, place = load_laboratory(run_folder), run_folder / LABORATORY / "laboratory.json"
     if own == Laboratory():
@@ -128,13 +128,13 @@ def write_people(
     run: StudyRun, run_folder: Path, pdf: bool = False, progress: Callable[[Path], None] = lambda _: None
 ) -> Path | None:
     """Write pages of each person and session, and `index.html`; None for a run without cycles."""
-    from gaitdisc.results.pooled_cycles import CYCLES
+    from gaitdisc.processing.pooled_cycles import CYCLES
 
     if not run.of(CYCLES):
         return None
-    from gaitdisc.batch.read_people import cycles_of_people, read_session
-    from gaitdisc.report.clinic.kept_parts import hash_cycles, keep_part, read_part
-    from gaitdisc.report.clinic.person_page import index_rows, write_index
+    from gaitdisc.clinic.person_page import index_rows, write_index
+    from gaitdisc.clinic.read_people import cycles_of_people, read_session
+    from gaitdisc.processing.kept_parts import hash_cycles, keep_part, read_part
     from gaitdisc.report.figure import file_names
 
     report, reference, people = run_folder / "report", kept_reference(run_folder), cycles_of_people(run)
@@ -177,10 +177,10 @@ def write_before_after(
     run: StudyRun, run_folder: Path, person: str, words: tuple[str, str], pdf: bool = False
 ) -> list[Path]:
     """Write the page of a person before and after, as HTML and where wanted as PDF."""
-    from gaitdisc.batch.read_people import before_and_after
+    from gaitdisc.clinic.clinical_reference import PersonSession
+    from gaitdisc.clinic.read_people import before_and_after
     from gaitdisc.clinic.reading import contrast_of
     from gaitdisc.report.figure import file_names
-    from gaitdisc.results.clinical_reference import PersonSession
 
     reference = kept_reference(run_folder)
     before, after = before_and_after(run, reference, person, words)
@@ -192,7 +192,7 @@ def write_before_after(
 
 def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
     """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
-    from gaitdisc.batch.read_people import cycles_of_people, read_session
+    from gaitdisc.clinic.read_people import cycles_of_people, read_session
     from gaitdisc.report.figure import file_names
 
     people = cycles_of_people(run)
@@ -218,19 +218,19 @@ def _pages(
     pdf: bool,
 ) -> list[Path]:
     """Write the page of a person and session into a report, in these words, as HTML and where wanted as PDF."""
-    from gaitdisc.report.clinic.person_page import write_person_page
+    from gaitdisc.clinic.person_page import write_person_page
 
     page = write_person_page(person, name, reference, provenance, report, say)
     if not (pdf or say.laboratory.pdf):
         return [page]
-    from gaitdisc.report.clinic.person_pdf import write_person_pdf
+    from gaitdisc.clinic.person_pdf import write_person_pdf
 
     return [page, write_person_pdf(person, provenance, page.with_suffix(".pdf"), say)]
 
 
 def _with_failed(run: StudyRun, failed: list[tuple[str, str]], run_folder: Path) -> StudyRun:
     """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
-    from gaitdisc.results.provenance import Refusal
+    from gaitdisc.saved.provenance import Refusal
 
     places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
     refusals = []

@@ -11,7 +11,7 @@ from gaitdisc.commands.options import SOME_REFUSED
 from gaitdisc.errors import LOG
 
 if TYPE_CHECKING:
-    from gaitdisc.results.mismatch import Mismatch, Smallest
+    from gaitdisc.comparison.mismatch import Mismatch, Smallest
 
 
 def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
@@ -43,11 +43,11 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""
     from rich.console import Console
 
-    from gaitdisc.batch.compare_recordings import compare_files
+    from gaitdisc.comparison.compare_recordings import compare_files
+    from gaitdisc.comparison.mismatch import Smallest
+    from gaitdisc.comparison.page import mismatch_text, write_mismatch_report
+    from gaitdisc.comparison.sentences import mismatch_sentences
     from gaitdisc.own_files import claim_folder
-    from gaitdisc.report.mismatch_page import mismatch_text, write_mismatch_report
-    from gaitdisc.report.mismatch_sentences import mismatch_sentences
-    from gaitdisc.results.mismatch import Smallest
 
     folder = out or (Path() if second else first.parent if first.is_file() else first) / "compare"
     claim_folder(folder, "mismatch.json", "regions.csv", "summary.csv", "arrays.npz", "report.html")
@@ -72,7 +72,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
 
 
 def _of_study(place: Path, participant: str, channels: tuple[str, ...], smallest: Smallest) -> Mismatch:
-    from gaitdisc.batch.compare_recordings import compare_study
+    from gaitdisc.comparison.compare_recordings import compare_study
     from gaitdisc.errors import SchemaError
     from gaitdisc.ingest.study_file import load_study
 

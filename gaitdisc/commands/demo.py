@@ -33,12 +33,12 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     LOG.setLevel("WARNING" if quiet else "INFO")
     if clinic:
         return _clinic(folder, jobs)
-    from gaitdisc.batch.demonstration import write_demonstration
-    from gaitdisc.batch.run_study import run_study
-    from gaitdisc.batch.workers import Workers
+    from gaitdisc.cohort.demonstration import write_demonstration
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
-    from gaitdisc.results.study_run import claim_run
+    from gaitdisc.run.run_study import run_study
+    from gaitdisc.run.workers import Workers
+    from gaitdisc.saved.study_run import claim_run
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
@@ -56,14 +56,14 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
 def _clinic(folder: Path, jobs: int) -> None:
     """A made week of a clinic, from recordings to pages that find what was planted."""
-    from gaitdisc.batch.clinic_demonstration import write_week
-    from gaitdisc.batch.run_study import run_study
-    from gaitdisc.batch.workers import Workers
+    from gaitdisc.clinic.clinical_reference import save_reference
+    from gaitdisc.clinic.demonstration import write_week
     from gaitdisc.clinic.reference import reference_of
     from gaitdisc.commands.clinic_pages import keep_reference, write_people
     from gaitdisc.own_files import claim_folder
-    from gaitdisc.results.clinical_reference import save_reference
-    from gaitdisc.results.study_run import claim_run
+    from gaitdisc.run.run_study import run_study
+    from gaitdisc.run.workers import Workers
+    from gaitdisc.saved.study_run import claim_run
 
     claim_folder(folder, "planted.json", "reference", "controls", "controls/study.toml", "week", "week/study.toml")
     for part in ("controls", "week"):

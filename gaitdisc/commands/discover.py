@@ -14,7 +14,7 @@ from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.own_files import claim_folder
 
 if TYPE_CHECKING:
-    from gaitdisc.results.discovery import Discovery
+    from gaitdisc.discovery.result import Discovery
     from gaitdisc.simulation.simulation import Simulation
 
 EVERYONE, ANKLE = "all", "ankle_angle"
@@ -63,19 +63,19 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         if not quiet:
             LOG.info("%6.1f s  %s", time.perf_counter() - began, step)
 
-    from gaitdisc.batch.discover_files import discover_files, discover_study
     from gaitdisc.discovery.catalogue import Request
+    from gaitdisc.discovery.discover_files import discover_files, discover_study
     from gaitdisc.engines.mapping import names_engine
     from gaitdisc.simulation.writing import write_simulation
 
     request = Request.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()), alpha)
     if measured is not None and names_engine(simulation):
-        from gaitdisc.batch.discover_engine import discover_model_file, write_answer
+        from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
         from gaitdisc.engines.tracked_mapping import read_tracked
 
         walk = read_tracked(simulation)
         if walk is not None:
-            from gaitdisc.batch.discover_tracked import discover_tracked, write_tracked
+            from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
 
             answered = discover_tracked(walk, measured, request, progress)
             said = (*answered.written.notes, *answered.said)
@@ -115,13 +115,13 @@ def _write(
     notes: Sequence[str] = (),
 ) -> None:
     """Write what was found together with the augmented model, and say it."""
-    from gaitdisc.results.discovery_folder import save_discovery
+    from gaitdisc.discovery.folder import save_discovery
     from gaitdisc.whole_file import written_together
 
     with written_together():
         place = save_discovery(found, out, models())
     if draw:
-        from gaitdisc.report.discovery_page import write_discovery_report
+        from gaitdisc.discovery.page import write_discovery_report
 
         progress("drawing the report")
         place = write_discovery_report(found, out)
@@ -135,9 +135,9 @@ def _write(
 
 def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
     """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
+    from gaitdisc.discovery.device_people import lines, over_people
     from gaitdisc.errors import GaitdiscError
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.results.device_people import lines, over_people
     from gaitdisc.spreadsheet import write_csv
 
     claim_folder(out, "people.csv")

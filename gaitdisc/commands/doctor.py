@@ -11,8 +11,8 @@ def doctor() -> None:
     """Check versions, fonts and browser, and the readers with test files; nothing is changed."""
     import shutil
 
-    from gaitdisc.batch.installation import Check, checks
     from gaitdisc.report.panels import fonts_found
+    from gaitdisc.run.installation import Check, checks
 
     found = list(checks())
     fonts = fonts_found()

@@ -44,7 +44,7 @@ def export(
     if out.suffix.lower() == ".onnx":
         _model(files, out)
         return
-    from gaitdisc.batch.public_words import with_public_labels
+    from gaitdisc.ingest.public_words import with_public_labels
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.processing.process import on_one_base
 
@@ -60,8 +60,8 @@ def export(
 
 def _model(folders: list[Path], out: Path) -> None:
     from gaitdisc.errors import SchemaError
-    from gaitdisc.sensing.model_folder import load_model
-    from gaitdisc.sensing.onnx_file import write_onnx
+    from gaitdisc.reconstruction.model_folder import load_model
+    from gaitdisc.reconstruction.onnx_file import write_onnx
 
     if len(folders) != 1:
         raise SchemaError("an .onnx file can contain one model", f"{len(folders)} are named", "Name one folder.")
@@ -75,8 +75,8 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     from gaitdisc.errors import SchemaError
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.own_files import claim_folder
-    from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings
-    from gaitdisc.results.participant_response import load_run
+    from gaitdisc.processing.tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings
+    from gaitdisc.response.participant_response import load_run
     from gaitdisc.spreadsheet import write_csv
     from gaitdisc.whole_file import whole_file
 

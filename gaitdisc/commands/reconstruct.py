@@ -12,7 +12,7 @@ from gaitdisc.commands.options import SOME_REFUSED, Quiet
 from gaitdisc.errors import LOG
 
 if TYPE_CHECKING:
-    from gaitdisc.results.reconstruction import Reconstruction
+    from gaitdisc.reconstruction.reconstruction import Reconstruction
 
 
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
@@ -50,14 +50,14 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     Each participant's recommended model is saved; `gaitdisc apply` reconstructs a recording with it.
     """
-    from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study, search_study
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
+    from gaitdisc.reconstruction.model_folder import save_model
+    from gaitdisc.reconstruction.page import write_reconstruction_report
+    from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study, search_study
+    from gaitdisc.reconstruction.reconstruction import enough_sensors
+    from gaitdisc.reconstruction.window_model import KINDS
     from gaitdisc.report.figure import file_names
-    from gaitdisc.report.reconstruction_page import write_reconstruction_report
-    from gaitdisc.results.reconstruction import enough_sensors
-    from gaitdisc.sensing.model_folder import save_model
-    from gaitdisc.sensing.reconstructor import KINDS
 
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
@@ -95,7 +95,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 def _print_sentences(done: Reconstruction) -> None:
     from rich.console import Console
 
-    from gaitdisc.report.reconstruction_page import reconstruction_sentences, reconstruction_text
+    from gaitdisc.reconstruction.page import reconstruction_sentences, reconstruction_text
 
     typer.echo(" ".join(reconstruction_sentences(done)))
     Console().print(reconstruction_text(done))

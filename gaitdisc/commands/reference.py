@@ -12,7 +12,7 @@ from gaitdisc.commands.run_report import claimed
 from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
-    from gaitdisc.results.study_run import StudyRun
+    from gaitdisc.saved.study_run import StudyRun
 
 
 def reference(
@@ -22,11 +22,11 @@ def reference(
     jobs: Jobs = 1,
 ) -> None:
     """Process controls like a study, and save the mean cycles of their legs for `--reference`."""
+    from gaitdisc.clinic.clinical_reference import FILE, save_reference
     from gaitdisc.clinic.like_controls import described, groups_of
     from gaitdisc.clinic.reference import FEWEST, reference_of
     from gaitdisc.own_files import claim_folder
-    from gaitdisc.results.clinical_reference import FILE, save_reference
-    from gaitdisc.results.pooled_cycles import CYCLES
+    from gaitdisc.processing.pooled_cycles import CYCLES
 
     claim_folder(out, FILE)
     run = _run_of(controls, jobs)
@@ -51,12 +51,12 @@ def reference(
 
 def _run_of(controls: Path, jobs: int) -> StudyRun:
     """Run of a folder, or of a study, which is computed as far as it is not."""
-    from gaitdisc.results.study_run import StudyRun, load_run_as
+    from gaitdisc.saved.study_run import StudyRun, load_run_as
 
     if (controls / "run.json").is_file():
         return load_run_as(StudyRun, controls)
-    from gaitdisc.batch.run_study import run_study
-    from gaitdisc.batch.workers import Workers
+    from gaitdisc.run.run_study import run_study
+    from gaitdisc.run.workers import Workers
 
     study, folder = claimed(controls, None)
     return run_study(study, folder, Workers(jobs))

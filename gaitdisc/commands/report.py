@@ -67,7 +67,7 @@ def _people(
 ) -> None:
     """Draw pages of a run's people again: all, those of one person, or two sessions or conditions of one."""
     from gaitdisc.report.saved_page import draw_beside
-    from gaitdisc.results.participant_response import RUN, load_run
+    from gaitdisc.response.participant_response import RUN, load_run
 
     run = load_run(run_folder)
     if named and not run.cycles:

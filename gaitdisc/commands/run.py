@@ -22,8 +22,8 @@ def run(
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, test and report; finished parts of an earlier run are kept."""
-    from gaitdisc.batch.run_study import run_study
-    from gaitdisc.batch.workers import Workers
+    from gaitdisc.run.run_study import run_study
+    from gaitdisc.run.workers import Workers
 
     loaded, folder = claimed(study, out)
     if participant:

@@ -17,10 +17,10 @@ from gaitdisc.errors import LOG
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-    from gaitdisc.batch.workers import StudyProgress
     from gaitdisc.ingest.study import Study
-    from gaitdisc.results.participant_response import ResponseRun
-    from gaitdisc.results.provenance import Refusal
+    from gaitdisc.response.participant_response import ResponseRun
+    from gaitdisc.run.workers import StudyProgress
+    from gaitdisc.saved.provenance import Refusal
 
 Result = TypeVar("Result")
 
@@ -28,7 +28,7 @@ Result = TypeVar("Result")
 def claimed(place: Path, out: Path | None) -> tuple[Study, Path]:
     """A study and the folder of its run, which is held until the command ends."""
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.results.study_run import claim_run
+    from gaitdisc.saved.study_run import claim_run
 
     study = load_study(place)
     folder = out or study.folder / "run"
@@ -46,7 +46,7 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
     if done.responses:
         from rich.console import Console
 
-        from gaitdisc.report.sentences import r2_text
+        from gaitdisc.response.sentences import r2_text
 
         Console().print(r2_text(done))
     for quantity in done.quantities:
@@ -59,10 +59,10 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
 
 def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
     """Answer a question beside the study with the progress shown, and write its page."""
-    from gaitdisc.batch.vary_study import vary_study
-    from gaitdisc.batch.workers import Workers
     from gaitdisc.own_files import claim_file
-    from gaitdisc.report.variants import variant_sentences, write_variants
+    from gaitdisc.response.variants_page import variant_sentences, write_variants
+    from gaitdisc.run.vary_study import vary_study
+    from gaitdisc.run.workers import Workers
 
     study, folder = claimed(place, out)
     started, side_by_side = time.perf_counter(), Workers(*workers)

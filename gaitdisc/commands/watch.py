@@ -30,7 +30,7 @@ def watch(
     A file is used when its size and time no longer change. An unreadable file may be incomplete: it is named and tried
     again. Pseudonyms of the study are kept; trials are only added. The exit code is that of the last run.
     """
-    from gaitdisc.batch.watched_folder import WatchedFolder
+    from gaitdisc.run.watched_folder import WatchedFolder
 
     if not recordings.is_dir():
         raise ReadError("the path must be a folder of recordings", f"{recordings} is not a folder", "Create it.")

@@ -1,1 +1,4 @@
-"""Where two walks disagree over the stride, measured or simulated, and whether that is more than chance."""
+"""Comparison: where two walks differ over the stride, by permutation tests, and the page that shows it.
+
+Noun: `Mismatch`. Imports processing, report and what is below them.
+"""

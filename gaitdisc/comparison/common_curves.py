@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, list_names, nearest_word
+from gaitdisc.comparison.mismatch import Alignment
 from gaitdisc.errors import ChannelError
+from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import Finding
 from gaitdisc.recording.wrapping import turn_of
-from gaitdisc.results.mismatch import Alignment
-from gaitdisc.results.pooled_cycles import WalkSummary
 
 LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
 SPOILED = ("frozen", "clipped", "dead")  # kinds of findings: what is left of the channel does not move as the joint did

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.comparison.common_curves import CommonCurves, aligned, common_curves, common_shift, walk_name
+from gaitdisc.comparison.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignment, Exchange, Mismatch, Smallest
 from gaitdisc.errors import ComparisonError
+from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import PERCENT
-from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignment, Exchange, Mismatch, Smallest
-from gaitdisc.results.pooled_cycles import WalkSummary
-from gaitdisc.results.provenance import made_now
+from gaitdisc.saved.provenance import made_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,

@@ -13,7 +13,7 @@ from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
-from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
+from gaitdisc.discovery.effect_words import amount, spoken, with_unit
 from gaitdisc.discovery.estimates import NORMAL_95, estimates_of
 from gaitdisc.discovery.held_out import (
     Proof,
@@ -27,12 +27,12 @@ from gaitdisc.discovery.held_out import (
 )
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
+from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import TURNS, Search
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
-from gaitdisc.results.effect_words import amount, spoken, with_unit
+from gaitdisc.simulation.effect_units import places_unit, unit_of_channel
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 

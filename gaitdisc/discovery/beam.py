@@ -22,10 +22,10 @@ from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapSc
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest
 from gaitdisc.discovery.penalty import penalty_of
+from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import Search
-from gaitdisc.results.discovery import ALPHA
 
 WIDTH = 5  # sets that are extended side by side
 MOST = 4  # explanations

@@ -8,8 +8,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from gaitdisc.discovery.catalogue import Shape, with_names
-from gaitdisc.discovery.effect_units import unit_of_state
 from gaitdisc.discovery.places import Place, kinematic_rates
+from gaitdisc.simulation.effect_units import unit_of_state
 from gaitdisc.simulation.expression import Tree, parsed, substituted, written
 from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.running import compile_simulation

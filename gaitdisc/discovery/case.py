@@ -24,11 +24,11 @@ from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import sensor_noise, white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.scored_model import ScoredModel, leaves, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.results.discovery import ALPHA
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation

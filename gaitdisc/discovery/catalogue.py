@@ -11,9 +11,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from gaitdisc.discovery.result import ALPHA
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.regular_file import check_regular
-from gaitdisc.results.discovery import ALPHA
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.refusal import SimulationError

@@ -16,9 +16,9 @@ from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale, cross_validated
 from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, proof_of, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
+from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
 from gaitdisc.discovery.search import Search, is_certain
-from gaitdisc.results.discovery import Estimate
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
 MOST_NEAR = 4

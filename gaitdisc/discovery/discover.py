@@ -17,6 +17,7 @@ from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
+from gaitdisc.discovery.result import Discovery
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search, is_certain
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives, without_small
@@ -24,7 +25,6 @@ from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.uncertain_inputs import weigh_input_errors
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
 from gaitdisc.simulation.measured import Measured

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
+from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.results.discovery import Estimate
+from gaitdisc.simulation.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
 from gaitdisc.simulation.simulation import Simulation
 
 NORMAL_95 = 1.959964

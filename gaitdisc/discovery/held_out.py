@@ -14,11 +14,11 @@ from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
+from gaitdisc.discovery.result import GapSize, Runs
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.finding import Finding
-from gaitdisc.results.discovery import GapSize, Runs
 
 TURNS = 30
 DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent

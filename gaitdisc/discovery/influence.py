@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.linearised import pushable
 from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.result import FoundEffect
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import FoundEffect
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.results.discovery import ALPHA
+from gaitdisc.discovery.result import ALPHA
 
 ALIKE_BELOW = 0.05  # of the greatest difference
 FEWEST_DIFFERING = 6  # pieces

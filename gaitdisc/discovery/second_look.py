@@ -15,9 +15,9 @@ from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated, errs_more
 from gaitdisc.discovery.grids import delays
 from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, proof_of, strays
+from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
-from gaitdisc.results.discovery import ALPHA
 
 AT_ONCE, LATE = "linear_stiffness", "delayed_feedback"
 STEP = 4  # of the delays that a search begins with

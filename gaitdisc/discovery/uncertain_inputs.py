@@ -20,6 +20,7 @@ from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
+from gaitdisc.discovery.effect_words import spoken
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.held_out import Proof, proof_of
 from gaitdisc.discovery.input_errors import wandering
@@ -32,7 +33,6 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
-from gaitdisc.results.effect_words import spoken
 from gaitdisc.words import listed
 
 PIECES = 12  # of held-out runs: their squares are all but independent under the covariance

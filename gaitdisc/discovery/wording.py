@@ -8,8 +8,7 @@ from dataclasses import replace
 
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
-from gaitdisc.results.effect_words import (
+from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
     brief_text,
@@ -20,6 +19,7 @@ from gaitdisc.results.effect_words import (
     with_unit,
     would_distinguish,
 )
+from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.simulation import Simulation
 
 FEW = 12  # independent samples of held-out data

@@ -1,1 +1,4 @@
-"""Models of OpenSim and MuJoCo: what they are driven by, expanded along a record, and written back; floor 3."""
+"""Engines: models of OpenSim and MuJoCo, mapped, run, expanded along a record, and written back.
+
+The only home of both engines. Imports simulation, saved results and what is below them.
+"""

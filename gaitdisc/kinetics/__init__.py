@@ -1,1 +1,4 @@
-"""From ground forces and segments in space to joint moments and powers: wrenches on feet, inertia, inverse dynamics."""
+"""Kinetics: from ground forces and segments to joint moments and powers: platforms, inertia, inverse dynamics.
+
+Imports kinematics, signals and what is below them.
+"""

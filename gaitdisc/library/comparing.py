@@ -10,8 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from gaitdisc.batch.compare_recordings import compare_files
 from gaitdisc.comparison.compare import compare_walks
+from gaitdisc.comparison.compare_recordings import compare_files
+from gaitdisc.comparison.mismatch import Smallest
 from gaitdisc.errors import ShapeError
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.walk_pair import walk_pair
@@ -19,13 +20,12 @@ from gaitdisc.recording.arrays import real_array
 from gaitdisc.recording.recording import several
 from gaitdisc.recording.strides import PERCENT
 from gaitdisc.response.over_participants import compare_columns
-from gaitdisc.results.mismatch import Smallest
 from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
 from gaitdisc.statistics.holm_sidak import check_level
 from gaitdisc.statistics.labels import check_numbers, check_same, in_one_order
 
 if TYPE_CHECKING:
-    from gaitdisc.results.mismatch import Mismatch
+    from gaitdisc.comparison.mismatch import Mismatch
 
 POINTS = len(PERCENT)  # of a stride; as many rows of another length are a set on its side
 COLUMNS = ("channel", "first_point", "last_point", "sign", "mass", "p")

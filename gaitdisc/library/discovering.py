@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaitdisc.batch.discover_files import discovered
 from gaitdisc.discovery.catalogue import Request
+from gaitdisc.discovery.discover_files import discovered
 from gaitdisc.engines.mapping import names_engine
 from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.library.simulating import ModelLike, model_of
@@ -21,7 +21,7 @@ from gaitdisc.simulation.simulation import Simulation
 if TYPE_CHECKING:
     import pandas as pd
 
-    from gaitdisc.results.discovery import Discovery
+    from gaitdisc.discovery.result import Discovery
 
 
 def discover(
@@ -96,7 +96,7 @@ def discover(
 
 
 def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str], None]) -> tuple[Discovery, Simulation]:
-    from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
+    from gaitdisc.discovery.discover_engine import discover_engine, measured_of_file
     from gaitdisc.engines.tracked_mapping import read_tracked
 
     walk = read_tracked(model)
@@ -107,7 +107,7 @@ def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str],
                 f"found {type(data).__name__}",
                 "Give the path of that file.",
             )
-        from gaitdisc.batch.discover_tracked import discover_tracked
+        from gaitdisc.discovery.discover_tracked import discover_tracked
 
         answered = discover_tracked(walk, Path(data), request, report)
         return answered.found, answered.augmented

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.inspection import inspected_file, inspected_trial
-from gaitdisc.results.kind import load_saved
+from gaitdisc.saved.kind import load_saved
 
 if TYPE_CHECKING:
-    from gaitdisc.library.reconstructor import Reconstructor
+    from gaitdisc.comparison.mismatch import Mismatch
+    from gaitdisc.discovery.result import Discovery
     from gaitdisc.processing.inspection import Inspection
-    from gaitdisc.results.discovery import Discovery
-    from gaitdisc.results.mismatch import Mismatch
-    from gaitdisc.results.participant_response import ResponseRun
-    from gaitdisc.results.pooled_cycles import PooledCycles
-    from gaitdisc.results.reconstruction import Reconstruction
-    from gaitdisc.results.variants import VariantRun
+    from gaitdisc.processing.pooled_cycles import PooledCycles
+    from gaitdisc.reconstruction.reconstruction import Reconstruction
+    from gaitdisc.reconstruction.reconstructor import Reconstructor
+    from gaitdisc.response.participant_response import ResponseRun
+    from gaitdisc.response.variants import VariantRun
 
 
 def load(

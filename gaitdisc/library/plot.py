@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
-    from gaitdisc.library.reconstructor import Reconstructor
-    from gaitdisc.results.discovery import Discovery
-    from gaitdisc.results.mismatch import Mismatch
-    from gaitdisc.results.participant_response import ResponseRun
-    from gaitdisc.results.reconstruction import Reconstruction
+    from gaitdisc.comparison.mismatch import Mismatch
+    from gaitdisc.discovery.result import Discovery
+    from gaitdisc.reconstruction.reconstruction import Reconstruction
+    from gaitdisc.reconstruction.reconstructor import Reconstructor
+    from gaitdisc.response.participant_response import ResponseRun
 
 STRIDE = "stride [%]"
 __all__ = ["curves", "cycles", "discovery", "latent", "mismatch", "r2", "reconstruction", "recording"]
@@ -61,7 +61,7 @@ def recording(
     >>> gd.plot.recording(walk, "knee_angle_r").get_xlabel()
     'time [s]'
     """
-    from gaitdisc.report.curves import draw_recording
+    from gaitdisc.processing.curves_figure import draw_recording
 
     recording = recording_of(recording)
     names = [channels] if isinstance(channels, str) else list(channels or recording.names[:4])
@@ -100,7 +100,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlabel()
     'stride [%]'
     """
-    from gaitdisc.report.cycles_page import draw_cycles
+    from gaitdisc.processing.page import draw_cycles
 
     _refuse_other(strides, "Strides", "gaitdisc.cycles")
     one = recording_of(recording).selected([channel])
@@ -142,7 +142,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     >>> import gaitdisc as gd
     >>> gd.plot.curves(gd.load("run"), "ankle_angle_r")  # doctest: +SKIP
     """
-    from gaitdisc.report.curves import curve_numbers, draw_walks, walks_key
+    from gaitdisc.processing.curves_figure import curve_numbers, draw_walks, walks_key
     from gaitdisc.report.panels import SIDES
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
@@ -174,7 +174,7 @@ def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
     >>> import gaitdisc as gd
     >>> gd.plot.r2(gd.load("run"))  # doctest: +SKIP
     """
-    from gaitdisc.report.r2 import draw_r2, r2_key, r2_numbers
+    from gaitdisc.response.r2_tables import draw_r2, r2_key, r2_numbers
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers, axes = r2_numbers(run), axes_or_new(ax)
@@ -213,7 +213,7 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
     >>> import gaitdisc as gd
     >>> gd.plot.discovery(gd.load("found"), left=True)  # doctest: +SKIP
     """
-    from gaitdisc.report.discovery_figure import (
+    from gaitdisc.discovery.figure import (
         discovery_key,
         draw_left,
         draw_runs,
@@ -265,7 +265,7 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     >>> import gaitdisc as gd
     >>> gd.plot.mismatch(gd.load("compare"), "ankle_angle_r", gap=True)  # doctest: +SKIP
     """
-    from gaitdisc.report.mismatch_page import draw_both, draw_gap, mismatch_key, mismatch_numbers
+    from gaitdisc.comparison.page import draw_both, draw_gap, mismatch_key, mismatch_numbers
     from gaitdisc.report.panels import SIDES
 
     _refuse_other(found, "Mismatch", "gaitdisc.compare")
@@ -310,7 +310,7 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     >>> import gaitdisc as gd
     >>> gd.plot.reconstruction(gd.load("reconstruct"), "knee_angle_l")  # doctest: +SKIP
     """
-    from gaitdisc.report.reconstruction_page import draw_state, shown_curves, states_key
+    from gaitdisc.reconstruction.page import draw_state, shown_curves, states_key
 
     _refuse_other(done, "Reconstruction", "`gaitdisc reconstruct`")
     numbers = shown_curves(done, participant or _first(done.participants))
@@ -355,8 +355,8 @@ def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | No
     >>> import gaitdisc as gd
     >>> gd.plot.latent(gd.load("model"), readings, percent)  # doctest: +SKIP
     """
-    from gaitdisc.report.curves import LATENT, course_numbers, draw_course
-    from gaitdisc.sensing.reconstructor import latent_states, leading
+    from gaitdisc.processing.curves_figure import LATENT, course_numbers, draw_course
+    from gaitdisc.reconstruction.window_model import latent_states, leading
 
     _refuse_other(model, "Reconstructor", "gaitdisc.Reconstructor")
     windows = model.windows(x, percent)

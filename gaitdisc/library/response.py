@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
-from gaitdisc.batch.public_words import public_settings
-from gaitdisc.batch.run_study import response_settings
 from gaitdisc.errors import ChannelError, SamplingError
+from gaitdisc.ingest.public_words import public_settings
 from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.filter_null import filter_null_of
+from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
 from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted
-from gaitdisc.results.participant_response import RESPONSE, ResponseRun
-from gaitdisc.results.pooled_cycles import WALK
-from gaitdisc.results.provenance import made_now
+from gaitdisc.response.participant_response import RESPONSE, ResponseRun
+from gaitdisc.run.run_study import response_settings
+from gaitdisc.saved.provenance import made_now
 
 WITHOUT, WITH = "nominal", "exo"
 

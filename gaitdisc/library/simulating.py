@@ -18,13 +18,13 @@ from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
 from gaitdisc.ingest.table import has_times
-from gaitdisc.library.functions import simulation_from_function
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.evaluating import Points
+from gaitdisc.simulation.functions import simulation_from_function
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from gaitdisc.batch.demonstration import write_trial
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.cohort.demonstration import write_trial
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.columns import stream_of
 from gaitdisc.ingest.reading import read_trial

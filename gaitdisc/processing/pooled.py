@@ -22,6 +22,7 @@ from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
 from gaitdisc.kinematics.exchanged_labels import UNFIT
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
+from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.processing.process import knees_and_hips, quality_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
@@ -41,8 +42,7 @@ from gaitdisc.processing.trial_cycles import (
     without_doubted,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
-from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.saved.provenance import Refusal
 from gaitdisc.signals.contacts import rise_of
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import LEAST_COVERAGE, duration_reasons, verify_walking

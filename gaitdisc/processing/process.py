@@ -14,12 +14,12 @@ from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
 from gaitdisc.ingest.study import Filters, Participant, PlannedTrial, Study
 from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
 from gaitdisc.processing.two_sources import KIND as CONTRADICTED
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
 from gaitdisc.recording.strides import interpolated
-from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.signals.butterworth import lowpassed, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
 from gaitdisc.signals.contacts import order_findings

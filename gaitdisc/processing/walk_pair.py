@@ -12,9 +12,9 @@ import numpy as np
 
 from gaitdisc.errors import GaitdiscError, SamplingError, StrideError
 from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
+from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings, walk_summary
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.results.pooled_cycles import WalkSummary
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts

@@ -1,4 +1,7 @@
-"""The nouns that everything else speaks of: recordings, trials, strides, trajectories, samples, findings."""
+"""Recordings: `Recording`, `Trial`, `Strides`, `Samples`, `Field`, `Finding`, frozen and time first.
+
+This room imports the ground (errors, units, channel names, files) alone.
+"""
 
 from gaitdisc.recording.field import Axis, Field
 from gaitdisc.recording.finding import Finding

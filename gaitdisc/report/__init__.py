@@ -1,1 +1,4 @@
-"""Reports: tables, figures and one self-contained page; reads results, never fits; the only home of matplotlib."""
+"""Reports: `Page`, `Block`, `Table`, `Figure`, panels, and the page of whatever was saved.
+
+Lays out what it is handed and computes nothing. Imports saved results and what is below them.
+"""

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.kind import KINDS, Kind, find_kind
-from gaitdisc.results.provenance import code_sha256
-from gaitdisc.results.unit_folder import OWN, file_sha256, read_sealed, sealed_text
+from gaitdisc.saved.kind import KINDS, Kind, find_kind
+from gaitdisc.saved.provenance import code_sha256
+from gaitdisc.saved.unit_folder import OWN, file_sha256, read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 
 DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and hashes of all its files

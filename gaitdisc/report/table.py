@@ -11,8 +11,8 @@ from typing import Any
 import pandas as pd
 
 from gaitdisc.recording import Finding
-from gaitdisc.results.provenance import Provenance, Refusal
-from gaitdisc.results.study_run import StudyRun
+from gaitdisc.saved.provenance import Provenance, Refusal
+from gaitdisc.saved.study_run import StudyRun
 from gaitdisc.spreadsheet import write_csv
 
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import LOG, ChannelError, TrainingError
 from gaitdisc.model import Augmented, Model, augment
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.models.ridge import fit_ridge
+from gaitdisc.models.training_settings import TrainingSettings
+from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Samples, Trajectory
-from gaitdisc.regression.ridge import fit_ridge
-from gaitdisc.response.samples import gait_samples
-from gaitdisc.results.participant_response import FIT_COLUMNS, MODELS, R2_COLUMNS, HeldOut, ParticipantResponse
+from gaitdisc.response.participant_response import FIT_COLUMNS, MODELS, R2_COLUMNS, HeldOut, ParticipantResponse
 from gaitdisc.statistics.r2 import r2
 from gaitdisc.statistics.stride_residuals import stride_curves, strides_of_phase
 from gaitdisc.units import rate_unit
@@ -280,7 +280,7 @@ class ResponseModels:
         return {"nominal": self.nominal, "exo": self.exo, "discrepancy": self.discrepancy}
 
     def on_exo(self) -> dict[str, Model]:
-        """Return the models that predict device walking, by the names of `gaitdisc.results`."""
+        """Return the models that predict device walking, by the names of `ParticipantResponse`."""
         return {"nominal": self.nominal.model, "augmented": self.augmented, "exo": self.exo.model}
 
 
@@ -317,8 +317,8 @@ def fit_network(
     samples: Samples, settings: TrainingSettings | None = None, progress: Callable[[float], None] | None = None
 ) -> Fit:
     """Fit the dissertation's feed-forward network."""
-    from gaitdisc.networks.feedforward import FeedForward  # brings torch, which takes two seconds
-    from gaitdisc.networks.trainer import train
+    from gaitdisc.models.feedforward import FeedForward  # brings torch, which takes two seconds
+    from gaitdisc.models.trainer import train
 
     done = train(samples, FeedForward, settings, progress)
     return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner, done.seconds)
@@ -326,8 +326,8 @@ def fit_network(
 
 def refitted_network(model: Model, samples: Samples) -> Model:
     """Return a network whose last layer is solved for other samples."""
-    from gaitdisc.networks.trained_network import TrainedNetwork
-    from gaitdisc.networks.trainer import resolved
+    from gaitdisc.models.trained_network import TrainedNetwork
+    from gaitdisc.models.trainer import resolved
 
     assert isinstance(model, TrainedNetwork)  # fit_network makes nothing else
     return resolved(model, samples)

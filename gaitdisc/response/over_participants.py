@@ -10,7 +10,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.results.over_participants import (
+from gaitdisc.response.participant_response import BASELINES, MODELS, DataQuantity, ParticipantResponse
+from gaitdisc.response.participants_result import (
     BASELINE_COLUMNS,
     FAMILIES,
     FAMILY_COLUMNS,
@@ -25,7 +26,6 @@ from gaitdisc.results.over_participants import (
     PairTests,
     no_rows,
 )
-from gaitdisc.results.participant_response import BASELINES, MODELS, DataQuantity, ParticipantResponse
 from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
 from gaitdisc.statistics.groups import find_groups
 from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by

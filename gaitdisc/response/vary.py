@@ -12,6 +12,7 @@ import pandas as pd
 from gaitdisc.channel import side_of
 from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.model import Model
+from gaitdisc.processing.samples import PHASE
 from gaitdisc.recording import Samples, Trajectory
 from gaitdisc.response.fit_response import (
     ResponseSettings,
@@ -24,9 +25,8 @@ from gaitdisc.response.fit_response import (
     training_samples,
 )
 from gaitdisc.response.over_participants import ALPHA, FEWEST, by_participant, compare_columns
-from gaitdisc.response.samples import PHASE
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
-from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
+from gaitdisc.response.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
+from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
 from gaitdisc.statistics.r2 import r2
 
 ALL = "all inputs"

@@ -1,1 +1,4 @@
-"""What is made of raw channels before anything is fitted: filters, derivatives, strides, quality."""
+"""Signals: what is computed from raw channels before a fit: filters, derivatives, contacts, strides, quality.
+
+Imports recordings and the ground.
+"""

@@ -1,1 +1,4 @@
-"""The simulation file: read, run, add an effect, write back."""
+"""Simulation: the simulation file, read, checked, compiled, run, given effects and written back.
+
+Nouns: `Simulation`, `Term`, `Trials`. Imports recordings and the ground.
+"""

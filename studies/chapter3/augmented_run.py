@@ -164,7 +164,7 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
 
 def _layer_tables(model: Model) -> tuple[NDArray[np.float64], ...]:
     """Weights with offsets in a last column, network under network; the scale of the outputs goes into the readout."""
-    from gaitdisc.networks.trained_network import TrainedNetwork
+    from gaitdisc.models.trained_network import TrainedNetwork
 
     networks = model.models if isinstance(model, ByOutput) else (model,)
     first, second, third, offset, scale = [], [], [], [], np.empty((2, 0))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.recording import Samples, scale_of
 
 NODES = 10  # of either hidden layer, as in the published code of chapter 3
@@ -119,7 +119,7 @@ def _outputs(weights: NDArray[np.float64], x: NDArray[np.float64]) -> tuple[NDAr
 def _module(weights: NDArray[np.float64], inputs: int, nodes: int):
     import torch
 
-    from gaitdisc.networks.feedforward import FeedForward
+    from gaitdisc.models.feedforward import FeedForward
 
     network = FeedForward(inputs, 1, nodes)
     names = [f"{layer}.{part}" for layer in ("sigmoid", "radial", "readout") for part in ("weight", "bias")]

@@ -11,9 +11,9 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.result import Discovery
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.model import Model
-from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured

@@ -19,16 +19,16 @@ from numpy.typing import NDArray
 from torch import nn
 
 import gaitdisc as gd
-from gaitdisc.batch.demonstration import MUSCLES, OUTPUTS
-from gaitdisc.batch.run_study import response_settings
 from gaitdisc.cohort.cohort import walks_of
+from gaitdisc.cohort.demonstration import MUSCLES, OUTPUTS
 from gaitdisc.cohort.person import drawn
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study
-from gaitdisc.networks.feedforward import FeedForward
-from gaitdisc.networks.trainer import train
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.models.feedforward import FeedForward
+from gaitdisc.models.fourier_ridge import fit_fourier_ridge
+from gaitdisc.models.trainer import train
+from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.process import processed
-from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
+from gaitdisc.processing.samples import gait_samples
 from gaitdisc.response.fit_response import (
     Refit,
     ResponseModels,
@@ -42,7 +42,7 @@ from gaitdisc.response.fit_response import (
     refitted_network,
     response_bands,
 )
-from gaitdisc.response.samples import gait_samples
+from gaitdisc.run.run_study import response_settings
 
 SETTINGS = ResponseSettings(ANGLES)
 Parts = tuple[gd.Samples, gd.Samples]

@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc import Channel, Recording, Samples
-from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.channel import vocabulary
+from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.ingest.study_file import load_study
+from gaitdisc.reconstruction.page import NOT_MSE, write_reconstruction_report
+from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study
+from gaitdisc.reconstruction.reconstruction import mean_over_people
+from gaitdisc.reconstruction.state_errors import angle_columns
+from gaitdisc.reconstruction.window_model import MASKED, Sensing, WindowModel, fit_reconstructor
+from gaitdisc.reconstruction.windows import Parts, filled, split_within, with_missing
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_style, legend, panels
-from gaitdisc.report.reconstruction_page import NOT_MSE, write_reconstruction_report
 from gaitdisc.report.table import Table
-from gaitdisc.results.reconstruction import mean_over_people
-from gaitdisc.sensing.reconstructor import MASKED, Sensing, WindowModel, fit_reconstructor
-from gaitdisc.sensing.state_errors import angle_columns
-from gaitdisc.sensing.windows import Parts, filled, split_within, with_missing
 from gaitdisc.words import counted, listed, number, unit_text
 
 if TYPE_CHECKING:

@@ -14,12 +14,18 @@ from further import Number
 from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
-from gaitdisc.networks.trained_network import TrainedNetwork
-from gaitdisc.sensing.calibration import calibrated
-from gaitdisc.sensing.reconstruct import persistence, phase_average
-from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Sensing, WindowModel, fit_reconstructor, latent_states
-from gaitdisc.sensing.windows import Lags, Parts, split_by_subject, split_by_trial, split_within, stacked
+from gaitdisc.models.trained_network import TrainedNetwork
+from gaitdisc.reconstruction.calibration import calibrated
+from gaitdisc.reconstruction.reconstruct import persistence, phase_average
+from gaitdisc.reconstruction.sensed_walks import SensedWalk, sensed_walks
+from gaitdisc.reconstruction.window_model import (
+    WITHOUT_NETWORK,
+    Sensing,
+    WindowModel,
+    fit_reconstructor,
+    latent_states,
+)
+from gaitdisc.reconstruction.windows import Lags, Parts, split_by_subject, split_by_trial, split_within, stacked
 
 from .gait import DATA, RUNS, SENSORS, TREADMILL, cohort, exotendon, first_person
 

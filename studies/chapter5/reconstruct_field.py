@@ -14,10 +14,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError
+from gaitdisc.reconstruction.window_model import KINDS, Sensing, fit_reconstructor
+from gaitdisc.reconstruction.windows import Lags, Parts, split_within, stacked
 from gaitdisc.recording import Field, Samples
-from gaitdisc.results.unit_folder import DamagedError, read_sealed, sealed_text
-from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
-from gaitdisc.sensing.windows import Lags, Parts, split_within, stacked
+from gaitdisc.saved.unit_folder import DamagedError, read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 
 from .modes import ENERGY, Modes, Season, fit_modes, season_of
@@ -282,9 +282,9 @@ def latent_sizes(
 
     Source: Ebers 2023, section 5.2 and Fig. 5.1: both elbows are seen near 5, and a relation is conjectured.
     """
-    from gaitdisc.networks.shred import Shred
-    from gaitdisc.networks.trainer import train
-    from gaitdisc.networks.training_settings import TrainingSettings
+    from gaitdisc.models.shred import Shred
+    from gaitdisc.models.trainer import train
+    from gaitdisc.models.training_settings import TrainingSettings
 
     ready = prepare(field, route, task)
     settings = TrainingSettings(epochs=epochs, batch=128, decays=(0.01,), seed=task.seed)

@@ -6,8 +6,8 @@ from chapter3.burgers import burgers
 from chapter3.naming import HiddenEffect, answer_of, discover_answer
 from chapter3.record import Conditions, recorded, system_of
 
+from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.errors import ShapeError
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import bundled
 

@@ -1,7 +1,7 @@
 import numpy as np
 from chapter5.reconstruct_field import BINS, FieldCell, error_counts, field_cells_table, load_cells, save_cells
 
-from gaitdisc.results.unit_folder import sealed_text
+from gaitdisc.saved.unit_folder import sealed_text
 from gaitdisc.whole_file import write_whole
 
 

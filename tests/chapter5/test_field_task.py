@@ -2,7 +2,7 @@ from dataclasses import replace
 
 from chapter5.reconstruct_field import FieldTask, Label
 
-from gaitdisc.sensing.windows import RANDOM, Lags
+from gaitdisc.reconstruction.windows import RANDOM, Lags
 
 TASK = FieldTask("wave", Lags(8, 3), energy=0.9999)
 

@@ -6,7 +6,7 @@ from chapter5.routes import fixed, joined, random_walk
 from manufactured_field import travelling_wave
 
 from gaitdisc.errors import SamplingError
-from gaitdisc.sensing.windows import Lags, split_within
+from gaitdisc.reconstruction.windows import Lags, split_within
 
 WAVE = travelling_wave(120, quantities=2)
 ROUTE = joined([fixed(WAVE, [3]), random_walk(WAVE, 1)])

@@ -7,7 +7,7 @@ from chapter5.reconstruct_field import reconstruct_field as reconstruct
 from chapter5.routes import circuit, fixed
 from manufactured_field import travelling_wave
 
-from gaitdisc.sensing.windows import RANDOM, Lags
+from gaitdisc.reconstruction.windows import RANDOM, Lags
 
 WAVE = travelling_wave()
 TASK = FieldTask("wave", Lags(8, 3), energy=0.9999)

@@ -4,7 +4,7 @@ from chapter5.routes import fixed, fixed_at_random
 from manufactured_field import travelling_wave
 
 from gaitdisc.errors import ChannelError
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.reconstruction.windows import Lags
 
 WAVE = travelling_wave(240)
 

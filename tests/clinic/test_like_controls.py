@@ -7,14 +7,14 @@ import pytest
 from made_clinic import PROVENANCE, made_person
 from texts import says
 
+from gaitdisc.clinic.clinical_reference import ReferenceLeg
 from gaitdisc.clinic.like_controls import at_leg_length, described, dimensionless_speed, groups_of, like_controls
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import Sample, bands, reference_of, spatiotemporal_limits
 from gaitdisc.clinic.rules import outstanding
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reference import ReferenceLeg
-from gaitdisc.results.leg_curves import LegCurves
-from gaitdisc.results.provenance import made_now
+from gaitdisc.processing.leg_curves import LegCurves
+from gaitdisc.saved.provenance import made_now
 
 ADULT_LEG, CHILD_LEG = 0.9, 0.6
 

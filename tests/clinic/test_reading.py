@@ -7,6 +7,7 @@ import pytest
 from made_clinic import made_controls, made_person
 from texts import says
 
+from gaitdisc.clinic.clinical_reference import ReferenceLeg
 from gaitdisc.clinic.reading import (
     contrast_of,
     deviation_index,
@@ -16,10 +17,9 @@ from gaitdisc.clinic.reading import (
     read_beside,
     variable_score,
 )
+from gaitdisc.processing.leg_curves import PELVIS, PROFILE, LegCurves, legs_of
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results.clinical_reference import ReferenceLeg
-from gaitdisc.results.leg_curves import PELVIS, PROFILE, LegCurves, legs_of
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.saved.provenance import Refusal
 
 
 def test_a_person_beside_a_reference_has_all_of_a_page():

@@ -7,9 +7,9 @@ from texts import says
 
 from gaitdisc.clinic.rules import Rule, outstanding, part_of, rules, rules_in
 from gaitdisc.errors import SchemaError
+from gaitdisc.processing.leg_curves import BY_NAME, legs_of
+from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
 from gaitdisc.recording import PERCENT
-from gaitdisc.results.leg_curves import BY_NAME, legs_of
-from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
 
 GOOD = {"name": "a", "variable": "knee_flexion", "part": "swing", "take": "max", "least": 5.0, "less": "reduced"}
 

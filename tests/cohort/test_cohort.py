@@ -15,9 +15,9 @@ from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
+from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording.trial import LEG_OF_STATURE
 from gaitdisc.response.fit_response import ResponseSettings, fit_linear, held_out_part
-from gaitdisc.response.samples import gait_samples
 from gaitdisc.statistics.r2 import r2
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")

@@ -1,10 +1,10 @@
 import pytest
 from texts import says
 
-from gaitdisc.batch import chapter_run
-from gaitdisc.batch.chapter_parts import PARTS
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 from gaitdisc.errors import SchemaError
+from gaitdisc.run import chapter_run
+from gaitdisc.run.chapter_parts import PARTS
 
 
 @pytest.fixture

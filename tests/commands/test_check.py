@@ -10,10 +10,10 @@ from texts import says
 from typer.testing import CliRunner
 
 import gaitdisc
-from gaitdisc.batch import installation
-from gaitdisc.batch.installation import Check
 from gaitdisc.cli import app
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
+from gaitdisc.run import installation
+from gaitdisc.run.installation import Check
 
 
 def test_each_trial_has_its_strides(study):

@@ -15,17 +15,17 @@ import pytest
 from made_clinic import SOURCE, made_controls, made_person, made_run, published_table, written_table
 from texts import says
 
+from gaitdisc.clinic.clinical_reference import load_reference, save_reference
 from gaitdisc.commands.clinic_pages import keep_reference, kept_reference, say_new_recordings, write_people
 from gaitdisc.errors import WriteError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.results.clinical_reference import load_reference, save_reference
-from gaitdisc.results.participant_response import load_run
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.response.participant_response import load_run
+from gaitdisc.saved.provenance import Refusal
 from gaitdisc.whole_file import PART
 
 
 def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
-    from gaitdisc.report.clinic import person_page
+    from gaitdisc.clinic import person_page
 
     real = person_page.write_person_page
 
@@ -124,10 +124,10 @@ KILLS = 12
 SERVER = """
 import os, sys
 from pathlib import Path
-import gaitdisc.report.clinic.person_pdf, gaitdisc.report.clinic.person_page, gaitdisc.clinic.reading
+import gaitdisc.clinic.person_pdf, gaitdisc.clinic.person_page, gaitdisc.clinic.reading
 import matplotlib.backends.backend_pdf
 from gaitdisc.commands.clinic_pages import write_people
-from gaitdisc.results.participant_response import load_run
+from gaitdisc.response.participant_response import load_run
 for line in sys.stdin:
     count, folder = line.split(maxsplit=1)
     children = []

@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 from gaitdisc.cli import app
 from gaitdisc.commands.options import REFUSED
 from gaitdisc.discovery.decision import Verdict
+from gaitdisc.discovery.folder import load_discovery
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.results.discovery_folder import load_discovery
 from gaitdisc.simulation.simulation_file import read_simulation
 
 SPRING = """title = "Spring"
@@ -194,7 +194,7 @@ def test_of_a_study_everyone_is_searched_and_who_is_refused_costs_nobody_else(la
             raise GaitdiscError("walks of W02 are needed", "one is there", "Name the other.")
         return manufactured(), read_simulation(lab / "good.toml")
 
-    monkeypatch.setattr("gaitdisc.batch.discover_files.discover_study", searched)
+    monkeypatch.setattr("gaitdisc.discovery.discover_files.discover_study", searched)
     words = [str(tmp_path / "study.toml"), "--participant", "all:knee_angle", "--out", str(tmp_path / "found")]
     done = CliRunner().invoke(app, ["discover", *words, "--no-report", "-q"])
     assert done.exit_code == 0, done.output

@@ -10,14 +10,14 @@ from gaitdisc.channel import Channel
 from gaitdisc.cli import app
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
+from gaitdisc.processing.pooled_cycles import CYCLES, cycles_name
+from gaitdisc.reconstruction.model_folder import SensingModel, save_model
+from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor
+from gaitdisc.reconstruction.windows import Lags
 from gaitdisc.recording import Samples
-from gaitdisc.results.participant_response import ResponseRun
-from gaitdisc.results.pooled_cycles import CYCLES, cycles_name
-from gaitdisc.results.provenance import made_now
-from gaitdisc.results.study_run import save_run
-from gaitdisc.sensing.model_folder import SensingModel, save_model
-from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.response.participant_response import ResponseRun
+from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.study_run import save_run
 
 
 def test_export_brings_streams_to_one_time_base(tmp_path, called):

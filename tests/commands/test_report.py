@@ -7,8 +7,8 @@ from texts import says
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
+from gaitdisc.clinic.clinical_reference import save_reference
 from gaitdisc.commands.options import REFUSED
-from gaitdisc.results.clinical_reference import save_reference
 
 
 def test_the_report_of_a_run_is_drawn_again_without_fitting(study):
@@ -51,7 +51,7 @@ def run_folder(tmp_path_factory):
 @pytest.fixture
 def without_figures(monkeypatch):
     """The page of everybody has its words alone: its figures take seconds a person."""
-    monkeypatch.setattr("gaitdisc.report.cycles_page.cycles_figures", lambda *_: [])
+    monkeypatch.setattr("gaitdisc.processing.page.cycles_figures", lambda *_: [])
 
 
 def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path):

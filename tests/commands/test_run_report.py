@@ -2,11 +2,11 @@ import pytest
 import typer
 from made_clinic import made_controls, made_person, made_run
 
+from gaitdisc.clinic.clinical_reference import save_reference
 from gaitdisc.commands.clinic_pages import keep_reference
 from gaitdisc.commands.options import STOPPED
 from gaitdisc.commands.run_report import report_on
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.results.clinical_reference import save_reference
 
 
 def test_whoever_stops_it_reads_that_nothing_is_lost(study, tmp_path, caplog):

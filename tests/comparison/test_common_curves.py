@@ -13,9 +13,9 @@ from gaitdisc.cohort.person import drawn
 from gaitdisc.comparison.common_curves import aligned, common_curves, common_shift, shifted
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 
 NO_STRIDES = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
 

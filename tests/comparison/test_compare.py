@@ -9,9 +9,9 @@ from gaitdisc.channel import Channel
 from gaitdisc.comparison.compare import best_shift, compare_people, compare_walks
 from gaitdisc.errors import ComparisonError
 from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import PERCENT, Event
-from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.signals.contact_movement import angle_contacts
 
 CHANNELS = tuple(Channel(f"{joint}_r", "angle", "deg", "r") for joint in ("hip_flexion", "knee_angle", "ankle_angle"))

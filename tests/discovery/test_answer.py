@@ -23,8 +23,8 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.process_noise import rank_process_noise
+from gaitdisc.discovery.result import Correction, Estimate
 from gaitdisc.discovery.scored_model import compared, scored
-from gaitdisc.results.discovery import Correction, Estimate
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.parts import Input, Parameter
 from gaitdisc.simulation.running import compile_simulation

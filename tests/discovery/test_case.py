@@ -8,11 +8,11 @@ from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import SHORT, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.noise import sensor_noise
+from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import scored
-from gaitdisc.report.discovery_page import write_discovery_report
-from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Sensor

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.discovery.effect_units import channel_unit, divided, places_unit, unit_of, unit_of_channel
+from gaitdisc.simulation.effect_units import channel_unit, divided, places_unit, unit_of, unit_of_channel
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.simulation_file import bundled
 from gaitdisc.units import unit_factor

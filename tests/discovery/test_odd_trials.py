@@ -11,10 +11,10 @@ from texts import says
 
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted, without_trial_apart
+from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.search import Search
-from gaitdisc.report.discovery_page import write_discovery_report
-from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation

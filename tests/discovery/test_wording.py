@@ -8,8 +8,8 @@ from texts import says
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.result import Correction, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.simulation_file import bundled
 
 SHAPE = next(one for one in known_shapes() if one.name == "one_sided_spring")

@@ -101,7 +101,7 @@ def test_a_tracked_walk_takes_the_file_of_its_angles_and_nothing_else(tracked_wa
         given["walk"], given["kinematics"], given["catalogue"], given["progress"] = arguments
         return SimpleNamespace(found="found", augmented="augmented")
 
-    monkeypatch.setattr("gaitdisc.batch.discover_tracked.discover_tracked", discover_tracked)
+    monkeypatch.setattr("gaitdisc.discovery.discover_tracked.discover_tracked", discover_tracked)
     assert gd.discover(str(tracked_walk), "walk.mot", progress=print) == ("found", "augmented")
     assert (given["kinematics"], given["catalogue"], given["progress"]) == (Path("walk.mot"), ALL, print)
     assert given["walk"].model == tracked_walk.parent / "leg.osim" and given["walk"].lowpass_hz == 6.0

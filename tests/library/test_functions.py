@@ -11,8 +11,8 @@ from texts import says
 
 from gaitdisc.discovery import search
 from gaitdisc.library.discovering import discover
-from gaitdisc.library.functions import simulation_from_function
 from gaitdisc.library.simulating import simulate
+from gaitdisc.simulation.functions import simulation_from_function
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation

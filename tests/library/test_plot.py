@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SchemaError, ShapeError
-from gaitdisc.results.provenance import Provenance
+from gaitdisc.saved.provenance import Provenance
 
 
 def test_a_discovery_comes_back_and_is_saved_with_the_same_bytes(tmp_path):
@@ -47,7 +47,7 @@ def test_a_folder_without_a_result_is_refused(tmp_path):
 
 
 def test_a_discovery_that_was_edited_or_is_of_another_format_is_refused(tmp_path):
-    from gaitdisc.results.unit_folder import read_sealed, sealed_text
+    from gaitdisc.saved.unit_folder import read_sealed, sealed_text
 
     file = manufactured().save(tmp_path) / "discovery.json"
     data = read_sealed(file)

@@ -7,7 +7,7 @@ import pytest
 import gaitdisc as gd
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, StrideError
 from gaitdisc.kinematics.motion import moved_body
-from gaitdisc.results.participant_response import R2_COLUMNS
+from gaitdisc.response.participant_response import R2_COLUMNS
 
 
 @pytest.fixture(scope="module")

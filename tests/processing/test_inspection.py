@@ -3,12 +3,12 @@ import pytest
 from changed_trials import with_column
 from texts import says
 
-from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import load_study, write_study
 from gaitdisc.processing.inspection import inspected_file, inspected_study
+from gaitdisc.run.run_study import run_study
 
 
 @pytest.fixture

@@ -19,13 +19,13 @@ import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.cli import COMMANDS, main
 from gaitdisc.commands.options import ENDED, REFUSED
+from gaitdisc.discovery.folder import load_discovery, save_discovery
 from gaitdisc.errors import WriteError
 from gaitdisc.own_files import KINDS, LIST
 from gaitdisc.recording import Recording, Source
-from gaitdisc.results import kind as kinds
-from gaitdisc.results.discovery_folder import load_discovery, save_discovery
-from gaitdisc.results.kind import Saved
-from gaitdisc.results.provenance import Provenance
+from gaitdisc.saved import kind as kinds
+from gaitdisc.saved.kind import Saved
+from gaitdisc.saved.provenance import Provenance
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.whole_file import whole_file, write_whole, written_together
@@ -109,7 +109,7 @@ def run_once(_):
 def refused_words(monkeypatch, capsys, *words):
     """Run a command that is refused, and return the one line that it prints."""
     monkeypatch.setattr("sys.argv", ["gaitdisc", *words])
-    monkeypatch.setattr("gaitdisc.batch.watched_folder.WatchedFolder.changes", run_once)
+    monkeypatch.setattr("gaitdisc.run.watched_folder.WatchedFolder.changes", run_once)
     monkeypatch.setattr("gaitdisc.commands.watch._grown", lambda *_: [])
     before = signal.getsignal(signal.SIGTERM)
     try:

@@ -7,9 +7,9 @@ import pytest
 from approve import SAVED
 
 import gaitdisc as gd
+from gaitdisc.clinic.clinical_reference import load_reference
 from gaitdisc.own_files import file_sha256
-from gaitdisc.results.clinical_reference import load_reference
-from gaitdisc.results.unit_folder import damaged_units
+from gaitdisc.saved.unit_folder import damaged_units
 
 PAGE = (SAVED.parents[2] / "docs" / "compatibility.md").read_text(encoding="utf-8")
 PROMISED = set(re.findall(r"\| `(\w+\.json)` \|", PAGE))

@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 
 from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.response.over_participants import compare_models, compare_participants
-from gaitdisc.results.participant_response import HeldOut, ParticipantResponse, ResponseRun
-from gaitdisc.results.pooled_cycles import WalkSummary
-from gaitdisc.results.provenance import Provenance, Refusal
+from gaitdisc.response.participant_response import HeldOut, ParticipantResponse, ResponseRun
+from gaitdisc.saved.provenance import Provenance, Refusal
 
 RATE_HZ = 100.0
 STRIDE_S = 1.07
@@ -233,7 +233,7 @@ def tested():
 @pytest.fixture(scope="session")
 def reconstruction():
     """One sensor `a`, one state `late`, five strides, two models."""
-    from gaitdisc.results.reconstruction import MEASURES, Reconstruction
+    from gaitdisc.reconstruction.reconstruction import MEASURES, Reconstruction
 
     whose = pd.DataFrame({"participant": "P01", "model": ["linear", "delay ridge"]})
     numbers = dict.fromkeys(MEASURES, 0.5) | {"rmse_deg": [4.0, 1.25], "check_loss": [0.9, 0.1]}

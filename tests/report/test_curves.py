@@ -5,8 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from gaitdisc.channel import Channel
-from gaitdisc.recording import Recording
-from gaitdisc.report.curves import (
+from gaitdisc.processing.curves_figure import (
     course_numbers,
     curve_numbers,
     curves_figures,
@@ -15,8 +14,9 @@ from gaitdisc.report.curves import (
     sides_together,
     walk_of,
 )
+from gaitdisc.processing.pooled_cycles import WALK
+from gaitdisc.recording import Recording
 from gaitdisc.report.panels import SIDES
-from gaitdisc.results.pooled_cycles import WALK
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "pelvis_tilt")
 

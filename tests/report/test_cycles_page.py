@@ -6,17 +6,17 @@ import pytest
 from made_cycles import made_cycles
 from texts import says
 
-from gaitdisc.recording import Finding
-from gaitdisc.report.cycles_page import (
+from gaitdisc.processing.page import (
     cycles_figures,
     cycles_sentences,
     person_block,
     saved_cycle_blocks,
     write_cycles_page,
 )
-from gaitdisc.report.response_page import write_report
-from gaitdisc.results.participant_response import ResponseRun
-from gaitdisc.results.provenance import Refusal, made_now
+from gaitdisc.recording import Finding
+from gaitdisc.response.page import write_report
+from gaitdisc.response.participant_response import ResponseRun
+from gaitdisc.saved.provenance import Refusal, made_now
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 

@@ -3,7 +3,7 @@ import pytest
 from made_cycles import made_cycles
 from texts import says
 
-from gaitdisc.report.cycles_tables import (
+from gaitdisc.processing.tables import (
     all_cycles,
     all_means,
     all_spatiotemporal,

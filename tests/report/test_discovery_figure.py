@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from manufactured_discovery import manufactured
 
-from gaitdisc.report.discovery_figure import binned, discovery_figures, typical_stretch
-from gaitdisc.results.discovery import Correction, Estimate, Runs
+from gaitdisc.discovery.figure import binned, discovery_figures, typical_stretch
+from gaitdisc.discovery.result import Correction, Estimate, Runs
 
 
 def test_there_is_a_figure_over_the_stride_only_where_there_is_a_phase():

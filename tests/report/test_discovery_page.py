@@ -9,8 +9,9 @@ import pytest
 from manufactured_discovery import CUBIC, SPRING, manufactured
 from texts import says
 
-from gaitdisc.report.discovery_method import method_of
-from gaitdisc.report.discovery_page import (
+from gaitdisc.discovery import result as noun
+from gaitdisc.discovery.method import method_of
+from gaitdisc.discovery.page import (
     VERDICTS,
     closed_share,
     corrections_table,
@@ -23,8 +24,7 @@ from gaitdisc.report.discovery_page import (
     where_table,
     write_discovery_report,
 )
-from gaitdisc.results import discovery as noun
-from gaitdisc.results.discovery import (
+from gaitdisc.discovery.result import (
     DEVICE,
     ENGINE,
     SIMULATION,
@@ -35,7 +35,7 @@ from gaitdisc.results.discovery import (
     FoundEffect,
     GapSize,
 )
-from gaitdisc.results.provenance import made_now
+from gaitdisc.saved.provenance import made_now
 
 
 def test_an_angle_is_given_in_degrees_too():

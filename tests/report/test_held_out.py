@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.report.held_out import (
+from gaitdisc.response.held_out import (
     WINDOW_S,
     held_out_figures,
     held_out_numbers,
@@ -12,7 +12,7 @@ from gaitdisc.report.held_out import (
     residual_figures,
     residual_numbers,
 )
-from gaitdisc.results.participant_response import HeldOut
+from gaitdisc.response.participant_response import HeldOut
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "emg_sol_r")
 

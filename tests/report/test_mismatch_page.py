@@ -12,10 +12,8 @@ from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.comparison.compare import compare_walks
-from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.recording import PERCENT
-from gaitdisc.report.figure import save_figure
-from gaitdisc.report.mismatch_page import (
+from gaitdisc.comparison.mismatch import Alignment, Smallest
+from gaitdisc.comparison.page import (
     channels_table,
     findings_of,
     mismatch_figures,
@@ -24,9 +22,11 @@ from gaitdisc.report.mismatch_page import (
     regions_table,
     write_mismatch_report,
 )
-from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
-from gaitdisc.results.mismatch import Alignment, Smallest
-from gaitdisc.results.pooled_cycles import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.comparison.sentences import method_sentences, mismatch_sentences
+from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
+from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.figure import save_figure
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,7 @@ from gaitdisc.report.table import (
     seen_table,
     words_table,
 )
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.saved.provenance import Refusal
 
 
 def test_a_page_lies_in_its_folder_and_says_the_version(tmp_path):

@@ -7,7 +7,9 @@ import pandas as pd
 import pytest
 from texts import says
 
-from gaitdisc.report.over_participants import (
+from gaitdisc.report.panels import MODELS
+from gaitdisc.response.over_participants import compare_participants
+from gaitdisc.response.over_participants_page import (
     baseline_sentences,
     baseline_table,
     over_blocks,
@@ -17,11 +19,9 @@ from gaitdisc.report.over_participants import (
     responder_sentences,
     responder_table,
 )
-from gaitdisc.report.pair_tests import PLACES, comparison_figures, comparison_sentences, comparison_tables, p_text
-from gaitdisc.report.panels import MODELS
-from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results.over_participants import OVER, TESTS
-from gaitdisc.results.participant_response import RESPONSE
+from gaitdisc.response.pair_tests import PLACES, comparison_figures, comparison_sentences, comparison_tables, p_text
+from gaitdisc.response.participant_response import RESPONSE
+from gaitdisc.response.participants_result import OVER, TESTS
 
 
 def test_a_table_a_pair_and_one_of_the_families(tested):

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from texts import says
 
-from gaitdisc.report.reconstruction_page import (
+from gaitdisc.reconstruction.page import (
     models_table,
     participants_table,
     reconstruction_figures,
@@ -17,7 +17,7 @@ from gaitdisc.report.reconstruction_page import (
     states_table,
     write_reconstruction_report,
 )
-from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST
+from gaitdisc.reconstruction.window_model import KINDS, ON_REQUEST
 
 
 def test_every_error_stands_under_its_own_name(reconstruction):

@@ -11,12 +11,12 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.recording import Finding
-from gaitdisc.report import response_page
-from gaitdisc.report.response_page import method_sentences, write_report
-from gaitdisc.results.participant_response import RESPONSE
-from gaitdisc.results.pooled_cycles import WALK
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.response import page as response_page
+from gaitdisc.response.page import method_sentences, write_report
+from gaitdisc.response.participant_response import RESPONSE
+from gaitdisc.saved.provenance import Refusal
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 

@@ -10,20 +10,20 @@ from manufactured_discovery import manufactured
 from texts import says
 
 from gaitdisc.comparison.compare import compare_walks
+from gaitdisc.comparison.page import write_mismatch_report
+from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.errors import SchemaError
+from gaitdisc.processing.pooled_cycles import CYCLES
 from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.report.discovery_page import write_discovery_report
-from gaitdisc.report.mismatch_page import write_mismatch_report
-from gaitdisc.report.reconstruction_page import write_reconstruction_report
-from gaitdisc.report.response_page import write_report
+from gaitdisc.reconstruction.page import write_reconstruction_report
 from gaitdisc.report.saved_page import draw_saved, page_of
-from gaitdisc.report.variants import write_variants
-from gaitdisc.results import kind as kinds
-from gaitdisc.results.pooled_cycles import CYCLES
-from gaitdisc.results.provenance import made_now
-from gaitdisc.results.study_run import StudyRun, save_run
-from gaitdisc.results.unit_folder import read_sealed, sealed_text
-from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
+from gaitdisc.response.page import write_report
+from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
+from gaitdisc.response.variants_page import write_variants
+from gaitdisc.saved import kind as kinds
+from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.study_run import StudyRun, save_run
+from gaitdisc.saved.unit_folder import read_sealed, sealed_text
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 

@@ -11,12 +11,12 @@ from fresh_process import modules_loaded_by
 from rich.console import Console
 from texts import says
 
+from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.recording import Finding
-from gaitdisc.report.response_page import write_report
-from gaitdisc.report.sentences import participant_sentences, r2_text, study_sentences
-from gaitdisc.results.participant_response import RESPONSE
-from gaitdisc.results.pooled_cycles import WALK
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.response.page import write_report
+from gaitdisc.response.participant_response import RESPONSE
+from gaitdisc.response.sentences import participant_sentences, r2_text, study_sentences
+from gaitdisc.saved.provenance import Refusal
 from gaitdisc.spreadsheet import read_csv
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
@@ -162,7 +162,7 @@ def test_nobody_says_why(run_maker, refusal):
 
 
 def test_the_terminal_needs_no_matplotlib():
-    assert "matplotlib" not in modules_loaded_by("gaitdisc.report.sentences")
+    assert "matplotlib" not in modules_loaded_by("gaitdisc.response.sentences")
 
 
 NAMES = (

@@ -8,15 +8,19 @@ import pandas as pd
 import pytest
 from texts import says
 
-from gaitdisc.report.data_quantity import (
+from gaitdisc.response.data_quantity_page import (
     length_sentences,
     length_table,
     quantity_figure,
     quantity_numbers,
     quantity_sentences,
 )
-from gaitdisc.report.response_page import write_report
-from gaitdisc.report.variants import (
+from gaitdisc.response.over_participants import compare_lengths
+from gaitdisc.response.page import write_report
+from gaitdisc.response.participant_response import QUANTITY, QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.response.participants_result import OVER
+from gaitdisc.response.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
+from gaitdisc.response.variants_page import (
     ALL,
     falls,
     modalities_figure,
@@ -30,12 +34,8 @@ from gaitdisc.report.variants import (
     variant_tables,
     write_variants,
 )
-from gaitdisc.response.over_participants import compare_lengths
 from gaitdisc.response.vary import AS_STUDIED, compare_variants
-from gaitdisc.results.over_participants import OVER
-from gaitdisc.results.participant_response import QUANTITY, QUANTITY_COLUMNS, DataQuantity
-from gaitdisc.results.provenance import Refusal
-from gaitdisc.results.variants import VARIANT_TEST_COLUMNS, VariantRun, Variants
+from gaitdisc.saved.provenance import Refusal
 
 VARIABLES = ("knee_angle_r", "ankle_angle_r", "emg_sol_r")
 FALLS = {ALL: 0.0, "percent stride": 0.0, "ankle_angle": 0.05, "emg_sol": 0.2}

@@ -8,9 +8,11 @@ import pytest
 from matplotlib.text import Text
 from texts import says
 
+from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.recording import Finding
 from gaitdisc.report.panels import MODELS
-from gaitdisc.report.r2 import (
+from gaitdisc.report.table import findings_table, refusals_table
+from gaitdisc.response.r2_tables import (
     LOWEST,
     R2_TABLE,
     held_out_text,
@@ -26,9 +28,14 @@ from gaitdisc.report.r2 import (
     study_r2_table,
     variables,
 )
-from gaitdisc.report.table import findings_table, refusals_table
-from gaitdisc.report.walks import dropped_table, fits_table, reason_kind, stride_numbers, strides_figure, walks_table
-from gaitdisc.results.pooled_cycles import WALK
+from gaitdisc.response.walks_page import (
+    dropped_table,
+    fits_table,
+    reason_kind,
+    stride_numbers,
+    strides_figure,
+    walks_table,
+)
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 

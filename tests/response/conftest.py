@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.recording import Strides, Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response
 

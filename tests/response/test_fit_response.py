@@ -8,6 +8,7 @@ from texts import says
 
 from gaitdisc.errors import ChannelError, SamplingError, TrainingError
 from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import PERCENT, Samples
 from gaitdisc.response.fit_response import (
     BLOCKS,
@@ -25,7 +26,6 @@ from gaitdisc.response.fit_response import (
     response_bands,
     training_samples,
 )
-from gaitdisc.response.samples import gait_samples
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.derivatives import trajectory

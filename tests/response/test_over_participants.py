@@ -23,8 +23,8 @@ from gaitdisc.response.over_participants import (
     too_few,
     why_no_lengths,
 )
-from gaitdisc.results.over_participants import BASELINE_COLUMNS, LENGTH_COLUMNS, PAIRS, REDUCTION_COLUMNS, WHOLE
-from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.response.participant_response import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.response.participants_result import BASELINE_COLUMNS, LENGTH_COLUMNS, PAIRS, REDUCTION_COLUMNS, WHOLE
 from gaitdisc.statistics.groups import find_groups
 
 VARIABLES = ("hip", "knee", "ankle", "HAM", "RF", "VAS", "GAS", "SOL")

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import SamplingError
+from gaitdisc.response.variants import VARIANT_COLUMNS, Variants
 from gaitdisc.response.vary import (
     ALL,
     AS_STUDIED,
@@ -16,7 +17,6 @@ from gaitdisc.response.vary import (
     input_families,
     settings_around,
 )
-from gaitdisc.results.variants import VARIANT_COLUMNS, Variants
 
 INPUTS = tuple(
     [f"{name}_{side}" for name in ("knee_angle", "emg_sol") for side in "rl"]

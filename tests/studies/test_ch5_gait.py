@@ -8,7 +8,7 @@ import pytest
 from chapter5.gait import MEASURES, disturbance_figure, sensor_sets_figure, sensor_sets_table
 from texts import says
 
-from gaitdisc.report.reconstruction_page import search_sentences, search_table
+from gaitdisc.reconstruction.page import search_sentences, search_table
 
 
 def test_a_box_a_model_and_set_angles_and_translations_apart():

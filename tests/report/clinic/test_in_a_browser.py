@@ -9,10 +9,10 @@ import subprocess
 import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 
+from gaitdisc.clinic.clinical_reference import PersonSession
+from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast_of, read_beside
-from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.results.clinical_reference import PersonSession
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.saved.provenance import Refusal
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 HOSTILE = '<img src=x onerror="document.title=1">'

@@ -2,8 +2,8 @@
 
 import pytest
 
+from gaitdisc.clinic.laboratory import LARGEST_LOGO, clinical_axes, load_laboratory
 from gaitdisc.errors import SchemaError
-from gaitdisc.report.clinic.laboratory import LARGEST_LOGO, clinical_axes, load_laboratory
 
 PNG = b"\x89PNG\r\n\x1a\n"
 

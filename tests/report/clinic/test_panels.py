@@ -6,9 +6,9 @@ import pytest
 from made_clinic import made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.reading import contrast_of, read_beside
-from gaitdisc.report.clinic.laboratory import PageWords
-from gaitdisc.report.clinic.panels import (
+from gaitdisc.clinic.clinical_reference import Band
+from gaitdisc.clinic.laboratory import PageWords
+from gaitdisc.clinic.panels import (
     BOTTOM,
     LEFT,
     MARGIN,
@@ -23,8 +23,8 @@ from gaitdisc.report.clinic.panels import (
     svg,
     ticks,
 )
-from gaitdisc.results.clinical_reference import Band
-from gaitdisc.results.leg_curves import KINEMATICS, POWERS
+from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.processing.leg_curves import KINEMATICS, POWERS
 
 
 def _panel(**fields):

@@ -10,16 +10,16 @@ import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
+from gaitdisc.clinic.clinical_reference import PersonSession
+from gaitdisc.clinic.laboratory import Laboratory, PageWords
+from gaitdisc.clinic.panels import Panel, sheet
+from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
+from gaitdisc.clinic.person_pdf import draw_panel, write_person_pdf
 from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.processing.leg_curves import KINEMATICS
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.laboratory import Laboratory, PageWords
-from gaitdisc.report.clinic.panels import Panel, sheet
-from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.report.clinic.person_pdf import draw_panel, write_person_pdf
 from gaitdisc.report.figure import file_names
-from gaitdisc.results.clinical_reference import PersonSession
-from gaitdisc.results.leg_curves import KINEMATICS
-from gaitdisc.results.provenance import Refusal
+from gaitdisc.saved.provenance import Refusal
 
 REFERENCE = made_controls(6)
 
@@ -80,7 +80,7 @@ def test_a_hostile_name_is_words_and_a_page_drawn_again_has_the_same_bytes(tmp_p
 
 
 def test_a_person_without_a_kept_cycle_has_a_page_with_the_reason(tmp_path):
-    from gaitdisc.results.provenance import Refusal
+    from gaitdisc.saved.provenance import Refusal
 
     person = made_person()
     nothing = made_person(

@@ -3,7 +3,7 @@ import xml.etree.ElementTree as ET
 from made_clinic import made_controls, made_person
 
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.report.clinic.values import (
+from gaitdisc.clinic.values import (
     LEFT,
     RIGHT,
     numbers_table,

@@ -6,13 +6,12 @@ import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
+from gaitdisc.clinic.clinical_reference import Limits, Noted, PersonSession
+from gaitdisc.clinic.laboratory import PageWords, english_words, read_words, write_words
+from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.clinic.rules import rule_words
-from gaitdisc.errors import SchemaError
-from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.laboratory import PageWords, english_words, read_words, write_words
-from gaitdisc.report.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.report.clinic.sentences import (
+from gaitdisc.clinic.sentences import (
     MOST,
     contrast_sentences,
     noted_sentences,
@@ -20,7 +19,8 @@ from gaitdisc.report.clinic.sentences import (
     quality_sentence,
     score_sentences,
 )
-from gaitdisc.results.clinical_reference import Limits, Noted, PersonSession
+from gaitdisc.errors import SchemaError
+from gaitdisc.recording import PERCENT
 
 ENGLISH = english_words(rule_words())
 

@@ -1,1 +1,0 @@
-"""Many participants: progress, resume, one run at a time in a folder."""

@@ -1,0 +1,284 @@
+"""Page of a person and session, one file that is mailed; and the week's index: refused first, then amber, links."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from markupsafe import Markup
+
+from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Contrast, PersonSession
+from gaitdisc.clinic.laboratory import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.panels import (
+    MOST_SINGLE,
+    Panel,
+    contrast_sheet,
+    emg_sheet,
+    panel_numbers,
+    sheet,
+    svg,
+)
+from gaitdisc.clinic.sentences import (
+    contrast_sentences,
+    laboratory_sentences,
+    noted_sentences,
+    outstanding_sentences,
+    quality_sentence,
+    score_sentences,
+)
+from gaitdisc.clinic.values import (
+    MARKS,
+    change_table,
+    numbers_table,
+    profile_svg,
+    profile_table,
+    values_table,
+)
+from gaitdisc.processing.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
+from gaitdisc.report.figure import file_names
+from gaitdisc.report.page import page_text
+from gaitdisc.report.table import Table, save_table, save_tables, words_table
+from gaitdisc.saved.provenance import Provenance
+from gaitdisc.saved.study_run import StudyRun
+from gaitdisc.whole_file import write_whole
+from gaitdisc.words import NONE, SIDE_WORDS, counted, number
+
+SCRIPT = Path(__file__).parents[1] / "report" / "templates" / "cursor.js"
+MOMENT_SIGNS = (
+    "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
+    "positive where generated; forces are of the ground on the foot. Only cycles whose whole stance lay on one plate, "
+    "with this foot alone on it."
+)
+EMG = (
+    "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
+    "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
+)
+CYCLES = (
+    f"Means thick, single cycles thin (the first {MOST_SINGLE}). CMC: coefficient of multiple correlation of a leg's "
+    f"cycles, L, R (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
+)
+CONTRAST = (
+    "Dotted: {}; unbroken or dashed: {}. Bars above: where they differ by a permutation test of the cycles, corrected "
+    "for the whole cycle, all curves and both legs; black where by 5 deg or more."
+)
+RANKS = {"red": 0, "amber": 1, "green": 2}
+COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")
+HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]", "stands out", "why")
+
+
+def write_person_page(
+    person: PersonSession,
+    name: str,
+    reference: ClinicalReference | None,
+    provenance: Provenance,
+    folder: Path,
+    say: PageWords = ENGLISH,
+) -> Path:
+    """Write `people/<name>.html` and the folder of its numbers; the same bytes for the same numbers."""
+    beside = folder / "people" / name
+    main, *others = person.readings
+    script = SCRIPT.read_text(encoding="utf-8")
+    files = {file: sha256 for reading in person.readings for file, sha256 in reading.pooled.files.items()}
+    shown = {
+        "say": say,
+        "title": person.title,
+        "laboratory": say.laboratory.name,
+        "logo": Markup(say.laboratory.logo),
+        "said": laboratory_sentences(person, say),
+        "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
+        "reference": _reference(reference, main.pooled.condition),
+        "created": provenance.created[:10],
+        "main": _condition(main, beside, "", say),
+        "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
+        "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
+        "contrasts": [_contrast(one, beside, say) for one in person.contrasts if one is not person.before_after],
+        "method": _method(person),
+        "files": _saved(
+            words_table("files", f"Files, n = {len(files)}.", ("file", "SHA-256"), files.items()), beside, "", say
+        ),
+        "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
+        "script": Markup(script),
+        "script_hash": f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",
+    }
+    return write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
+
+
+class Sheet(NamedTuple):
+    """Panels under one heading."""
+
+    name: str
+    heading: str
+    panels: list[Panel]
+    caption: str
+
+
+def sheets_of(reading: ClinicalReading) -> list[Sheet]:
+    """Kinematics, kinetics and EMG of a reading, as page and PDF show them; what was not recorded has no panel."""
+    people = sorted({band.people for band in reading.bands.values()})
+    bands = "No band: there is no reference for this condition."
+    if people:
+        count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
+        bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs of {count} controls."
+    kinetics = sheet(reading, MOMENTS, POWERS, FORCES)
+    return [
+        Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
+        Sheet("kinetics", "Moments, powers and forces", kinetics, MOMENT_SIGNS),
+        Sheet("emg", "EMG", emg_sheet(reading.pooled), EMG),
+    ]
+
+
+def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWords) -> dict[str, Any]:
+    stem = next(iter(file_names([prefix]).values())) if prefix else ""
+    words = {
+        "where": reading.pooled.where,
+        "light": reading.light,
+        "red": not reading.legs,
+        "reasons": reading.reasons,
+        "quality": quality_sentence(reading),
+        "beside": " ".join(reading.beside),
+        "outstanding": outstanding_sentences(reading, say),
+        "scores": score_sentences(reading),
+    }
+    if not reading.legs:
+        return words
+    profile, sheets = profile_table(reading), sheets_of(reading)
+    save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
+    return {
+        **words,
+        **{one.name: _sheet(one.panels, one.caption, (beside, f"{stem}{one.name}"), say) for one in sheets},
+        "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
+        "distances": _saved(values_table(reading), beside, stem, say),
+        "numbers": _saved(numbers_table(reading), beside, stem, say),
+        "profile": _saved(profile, beside, stem, say) if profile else None,
+    }
+
+
+def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str], say: PageWords) -> dict[str, Any]:
+    beside, name = place
+    if panels:
+        means = [replace(one, lines=tuple(line for line in one.lines if line.look != "single")) for one in panels]
+        save_table(panel_numbers(means), beside / f"{name}.csv")
+    drawn = [{"panel": one, "svg": Markup(svg(one))} for one in map(say.panel, panels)]
+    return {"panels": drawn, "caption": caption, "file": f"{beside.name}/{name}.csv"}
+
+
+def _saved(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
+    save_table(table.numbers, beside / f"{stem}{table.name}.csv")
+    return say.table(table)
+
+
+def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any]:
+    first, second = contrast.first.pooled.where, contrast.second.pooled.where
+    stem = next(iter(file_names([f"{first}-{second}"]).values()))
+    sheets = []
+    for side in contrast.second.legs:
+        panels = contrast_sheet(contrast, side)
+        if panels:
+            one = _sheet(panels, CONTRAST.format(first, second), (beside, f"{stem}-{SIDE_WORDS[side]}"), say)
+            sheets.append({**one, "heading": say(SIDE_WORDS[side]).capitalize()})
+    changes = _saved(change_table(contrast), beside, f"{stem}-", say)
+    words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}
+    return {**words, "sheets": sheets, "changes": changes}
+
+
+def _reference(reference: ClinicalReference | None, condition: str) -> str:
+    if reference is None:
+        return "No reference."
+    if reference.published:
+        return ""  # its source stands among what the person is read beside
+    count = reference.people(condition)
+    people = f"{count} controls of the laboratory's own" if count else "nobody who walked so"
+    return f"Reference: {people}, saved {reference.created[:10]}."
+
+
+def _method(person: PersonSession) -> list[str]:
+    found = []
+    for reading in person.readings:
+        pooled = reading.pooled
+        by = ", ".join(f"{name} ({count} trials)" for name, count in pooled.detectors.items())
+        moved = pooled.contact_offset_s
+        words = f", moved by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps that a plate saw" if moved else ""
+        found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
+        filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
+        found += [f"{pooled.where}: {words}; Butterworth, forwards and backwards." for words in filters]
+        found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
+    found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
+    found.append(
+        "What stands out: rules that take one number of a leg's mean cycle. □ outside mean ± 2 standard deviations of "
+        "the reference; ■ beyond limits within which all numbers of one more healthy person lie with probability 0.95 "
+        "(t · sd · √(1 + 1/n), n people). From 10 controls on, mean and limits are those at the person's own speed."
+    )
+    return found
+
+
+def index_rows(person: PersonSession, name: str, say: PageWords = ENGLISH) -> list[dict[str, str]]:
+    """Rows of the index for a person and session, with the name of the page."""
+    rows = []
+    for reading in person.readings:
+        pooled = reading.pooled
+        score = reading.profile.both if reading.profile else None
+        tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
+        first = [
+            f"{mark} {sentences[0].partition(';')[0]}" + (f" (+{len(sentences) - 1})" if len(sentences) > 1 else "")
+            for mark, sentences in tiers
+            if sentences
+        ]
+        rows.append(
+            {
+                "light": reading.light,
+                "subject": pooled.subject,
+                "person": person.title,
+                "condition": pooled.condition,
+                "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
+                "score": number(score.value, 1) if score else NONE,
+                "noted": "\n".join(first) or NONE if not reading.silent else NONE,
+                "why": "; ".join(reading.reasons) or NONE,
+                "page": f"people/{name}.html" if name else "",
+            }
+        )
+    return rows
+
+
+def write_index(
+    run: StudyRun,
+    rows: list[dict[str, str]],
+    reference: ClinicalReference | None,
+    folder: Path,
+    say: PageWords = ENGLISH,
+) -> Path:
+    """Write `index.html`: a row a person, session and condition with its page's name, those without a result first."""
+    known = {row["subject"] for row in rows}
+    whole = [refusal for refusal in run.refusals if refusal.participant not in known]
+    for refusal in whole:
+        who = {"light": "red", "subject": refusal.participant, "person": refusal.participant, "page": ""}
+        own = {"condition": refusal.condition or NONE, "why": refusal.reason}
+        rows.append({**who, **own, **dict.fromkeys(("cycles", "score", "noted"), NONE)})
+    rows = sorted(rows, key=lambda row: RANKS[row["light"]])
+    cells = [tuple(row[key] for key in COLUMNS) for row in rows]
+    table = words_table("people", "People of the run.", HEADINGS, cells)
+    save_tables([table], folder)
+    lights = {light: sum(row["light"] == light for row in rows) for light in RANKS}
+    shown = {
+        "say": say,
+        "title": run.title,
+        "created": run.provenance.created[:10],
+        "rows": rows,
+        "headings": HEADINGS,
+        "whole": (folder / "report.html").is_file(),
+        "lights": lights,
+        "reference": _reference_words(reference),
+        "people": counted(len({row["subject"] for row in rows}), "person").replace("persons", "people"),
+    }
+    return write_whole(folder / "index.html", page_text("people", shown))
+
+
+def _reference_words(reference: ClinicalReference | None) -> str:
+    if reference is None:
+        return "No reference: no bands, no scores, and nothing is said to stand out."
+    if reference.published:
+        return f"Published reference: {reference.title}."
+    counts = ", ".join(f"{word} {reference.people(word)}" for word in reference.legs)
+    return f"Reference of the laboratory's own controls: {counts}; saved {reference.created[:10]}."

@@ -1,0 +1,183 @@
+"""Sentences of a person's page: what stands out, scores, quality, before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from gaitdisc.clinic.clinical_reference import (
+    FEW,
+    SCORE_LEAST,
+    ClinicalReading,
+    Contrast,
+    DifferingSpan,
+    Noted,
+    PersonSession,
+    Score,
+)
+from gaitdisc.clinic.laboratory import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.values import MARKS
+from gaitdisc.processing.leg_curves import BY_NAME, FEET
+from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text
+
+MOST = 6  # sentences of a tier
+MANY = 20  # controls from whom on limits lie within four standard deviations (docs/clinic.md)
+MOST_SPANS = 6
+
+
+def noted_sentences(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = str) -> list[str]:
+    """One sentence for all that says one thing, both legs in one, at its highest tier; at most six, farthest first."""
+    together: dict[str, list[Noted]] = {}
+    for one in noted:
+        together.setdefault(one.group or one.rule, []).append(one)
+    return [_noted(own, say) for own in together.values() if own[0].tier == tier][:MOST]
+
+
+def _noted(own: Sequence[Noted], say: Callable[[str], str]) -> str:
+    """Value of the farthest rule beside its limits; what else says the same after it."""
+    by_rule: dict[str, list[Noted]] = {}
+    for one in own:
+        by_rule.setdefault(one.words, []).append(one)
+    first, limits = own[0], own[0].limits
+    unit, (low, high) = unit_text(first.unit), (limits.low, limits.high) if first.tier == 2 else limits.band
+    low, high, mean = (number(value, first.digits) for value in (low, high, limits.mean))
+    sd, word = number(limits.sd, max(first.digits, 1)), say("limits") if first.tier == 2 else "2 sd:"
+    parts = [f"{say(words)}: {_each(each, first.tier, say)}" for words, each in by_rule.items()]
+    text = (
+        f"{parts[0]}; {word} {low} {say('to')} {high} {unit}, "
+        f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}"
+    )
+    more = "".join(f"; {part}" for part in parts[1:])
+    return f"{text[0].upper()}{text[1:]}{more}."
+
+
+def _each(own: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
+    found = []
+    for one in sorted(own, key=lambda one: one.side):
+        cycles = f"{one.cycles} {say('cycle' if one.cycles == 1 else 'cycles')}"
+        less = f", {MARKS[one.tier]}" if one.tier < tier else ""
+        value = f"{number(one.value, one.digits)} {unit_text(one.unit)} ({cycles}{less})"
+        found.append(f"{say(SIDE_WORDS[one.side])} {value}".strip())
+    return ", ".join(found)
+
+
+def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = str) -> dict[str, list[str]]:
+    """What stands out by its tier, and after it what could not be said, or why nothing is."""
+    if reading.silent:
+        return {"": [say("Nothing is said to stand out: {}.").format(reading.silent)]}
+    tiers = {f"{MARKS[tier]} {say(words)}": noted_sentences(reading.noted, tier, say) for tier, words in TIERS.items()}
+    found = {words: sentences for words, sentences in tiers.items() if sentences}
+    rest = []
+    if not found:
+        rest.append(
+            say("None of {} values lies outside 2 standard deviations of the reference.").format(len(reading.numbers))
+        )
+    few = [f"{leg.count} {say(SIDE_WORDS[side])}" for side, leg in reading.legs.items() if leg.count < FEW]
+    if few:
+        rest.append(say("A sentence needs {} cycles of a leg; there are {}.").format(FEW, ", ".join(few)))
+    people = max((band.people for band in reading.bands.values()), default=0)
+    if people < MANY:
+        rest.append(say("With {} controls the 95 % limits are wide: smaller differences may be there.").format(people))
+    return {**found, **({"": rest} if rest else {})}
+
+
+def laboratory_sentences(person: PersonSession, say: PageWords = ENGLISH) -> list[str]:
+    """Side affected and comment, as the laboratory says them of the person."""
+    subject, house = person.readings[0].pooled.subject, say.laboratory
+    affected, comment = house.affected.get(subject), house.comments.get(subject, "").strip()
+    return [*([f"{say('Side affected')}: {say(affected)}."] if affected else []), *([comment] if comment else [])]
+
+
+def quality_sentence(reading: ClinicalReading) -> str:
+    """What was recorded, and how good it is, in one line."""
+    pooled = reading.pooled
+    counts = " and ".join(f"{pooled.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
+    kinetic = int(pooled.kept["kinetic"].astype(bool).sum())
+    plates = f", {kinetic} on a plate" if kinetic else ""
+    out = f", {len(pooled.left_out)} left out" if len(pooled.left_out) else ""
+    gone = len({refusal.condition for refusal in pooled.refusals})
+    out += f", {counted(gone, 'trial')} left out" if gone else ""
+    ground = "over ground" if pooled.over_ground else "on a treadmill"
+    why = f": {'; '.join(reading.reasons)}" if reading.reasons else ""
+    return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}. {reading.light}{why}."
+
+
+def score_words(score: Score, unit: str = "deg") -> str:
+    """Score with the range of single cycles and the reference's own.
+
+    >>> score_words(Score(7.2, 6.5, 8.1, 4, 5.1, 1.0, 20))
+    '7.2 deg (4 cycles 6.5 to 8.1; reference 5.1 ± 1.0, 20 people)'
+    """
+    parts = []
+    if score.cycles > 1 and np.isfinite(score.low):
+        parts.append(f"{score.cycles} cycles {number(score.low, 1)} to {number(score.high, 1)}")
+    if np.isfinite(score.reference_mean):
+        own = f"{number(score.reference_mean, 1)} ± {number(score.reference_sd, 1)}"
+        parts.append(f"reference {own}, {score.people} people")
+    return f"{number(score.value, 1)} {unit}" + (f" ({'; '.join(parts)})" if parts else "")
+
+
+def score_sentences(reading: ClinicalReading) -> list[str]:
+    """Gait profile score and gait deviation index and what they mean, or why there is none."""
+    found = []
+    if reading.profile is None:
+        found.append(f"No gait profile score: {reading.no_profile}.")
+    else:
+        each = [f"{SIDE_WORDS[side]} {score_words(score)}" for side, score in reading.profile.legs.items()]
+        both = reading.profile.both
+        means = f" {_meaning(both)}" if both and np.isfinite(both.reference_sd) else ""
+        found.append(
+            f"Gait profile score: {'; '.join([*([f'both {score_words(both)}'] if both else []), *each])}.{means}"
+        )
+    if reading.deviation_index:
+        each = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
+        far = max(0.0, (100 - min(reading.deviation_index.values())) / 10)
+        found.append(
+            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lower leg lies "
+            f"{number(far, 1)} standard deviations of the controls below their mean."
+        )
+    else:
+        found.append(f"No gait deviation index: {reading.no_index}.")
+    return found
+
+
+def _meaning(score: Score) -> str:
+    more = score.value - score.reference_mean
+    word = "more" if more >= 0 else "less"
+    return (
+        f"All curves together lie {number(score.value, 1)} deg (root mean square) from the controls' mean, "
+        f"{number(abs(more), 1)} deg {word} than a control's do; differences from {SCORE_LEAST:g} deg on matter "
+        f"(Baker 2012)."
+    )
+
+
+def contrast_sentences(contrast: Contrast) -> list[str]:
+    """Where two sets of cycles differ and by how much; the largest first, and what was not tested."""
+    first, second = contrast.first.pooled.where, contrast.second.pooled.where
+    found = []
+    for side, why in contrast.untested.items():
+        found.append(f"{SIDE_WORDS[side].capitalize()}: not tested. {why}")
+    spans = sorted((one for one in contrast.spans if one.matters), key=lambda one: -abs(one.difference))
+    found += [_span(one, contrast) for one in spans[:MOST_SPANS]]
+    small = len(contrast.spans) - len(spans)
+    if contrast.tested and not spans:
+        sides = " and ".join(SIDE_WORDS[side] for side in contrast.tested)
+        found.append(
+            f"{sides.capitalize()}: no stretch differs by as much as matters (5 deg) between {first} and {second}."
+        )
+    if small:
+        found.append(f"{counted(small, 'stretch').replace('stretchs', 'stretches')} differ by less than 5 deg.")
+    return found
+
+
+def _span(one: DifferingSpan, contrast: Contrast) -> str:
+    variable = BY_NAME[one.variable]
+    counts = [reading.legs[one.side].count for reading in (contrast.first, contrast.second)]
+    more = "more" if one.difference > 0 else "less"
+    amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
+    return (
+        f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
+        f" {contrast.second.pooled.where} than in {contrast.first.pooled.where}, at {one.first} to "
+        f"{one.last} % of the cycle; {p_words(one.p)}, {counts[0]} and {counts[1]} cycles."
+    )

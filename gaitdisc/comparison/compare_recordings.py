@@ -1,0 +1,109 @@
+"""Two recordings, or the two conditions of a study, from their files to their mismatch."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from gaitdisc.comparison.compare import CLINICAL, compare_people, compare_walks
+from gaitdisc.comparison.mismatch import Mismatch, Smallest
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.public_words import PublicWords, package_words, public_settings
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.trial_sets import not_compared, refused_participant
+from gaitdisc.processing.pooled_cycles import WalkSummary
+from gaitdisc.processing.processed_walks import processed_walks
+from gaitdisc.processing.walk_pair import COMPARED, walk_pair
+from gaitdisc.recording import Finding
+from gaitdisc.signals.butterworth import KINEMATICS_HZ
+
+
+def compare_files(
+    first: Path,
+    second: Path,
+    channels: tuple[str, ...] = (),
+    cutoff_hz: float = KINEMATICS_HZ,
+    detector: str = "auto",
+    smallest: Smallest = CLINICAL,
+) -> Mismatch:
+    """Mismatch of two recordings, second minus first; `cutoff_hz` [Hz]: -3 dB of one pass, angles and moments."""
+    one, other = _apart(
+        [word for word in re.split(r"[\W_]+", path.stem) if word.isalpha() and word.lower() in package_words()]
+        for path in (first, second)
+    )
+    names = (one, other) if one and other and one != other else ("first walk", "second walk")
+    public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
+    trials = []
+    for path, name in zip((first, second), names, strict=True):
+        trial = replace(public, files={path.name: name}).trial(replace(read_trial(path), name=name))
+        trials.append(public.known_channels(trial, COMPARED))
+    walks = walk_pair(trials[0], trials[1], cutoff_hz, detector)
+    if walks[0].files and set(walks[0].files.values()) == set(walks[1].files.values()):
+        raise SchemaError(
+            "a comparison needs two different recordings",
+            f"{first.name} and {second.name} are identical files",
+            "Name a simulated and a measured walk, or two conditions.",
+        )
+    found = compare_walks(walks[0], walks[1], channels, smallest=smallest)
+    found = replace(found, findings=tuple(map(public.finding, found.findings)))
+    return _with_settings(found, {"cutoff_hz": cutoff_hz, "detector": walks[0].detector})
+
+
+def compare_study(
+    study: Study, participant: str = "", channels: tuple[str, ...] = (), smallest: Smallest = CLINICAL
+) -> Mismatch:
+    """Mismatch of the nominal and the device walk: of one participant's strides, or over participants.
+
+    study: with both conditions; its filters and its detector are used
+    returns: device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings
+    """
+    settings = public_settings(study, {"filters", "strides", "conditions"})
+    if participant:
+        walks = _walks_of(study, participant)
+        if isinstance(walks, str):
+            raise SchemaError(
+                f"both walks of {participant} must be usable for a comparison",
+                walks.rstrip("."),
+                "Correct the walk, or choose another participant.",
+            )
+        return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
+    pairs, left_out = [], []
+    for person in study.participants:
+        walks = _walks_of(study, person.id)
+        if isinstance(walks, str):
+            left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
+        else:
+            pairs.append(walks)
+    mismatch = compare_people(pairs, channels, smallest=smallest)
+    return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
+
+
+def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary] | str:
+    """Nominal and device walk, or why there are none."""
+    person = study.participant(participant)
+    nominal, device = study.conditions.both
+    lacking = refused_participant(study, person) or not_compared(study, person)
+    if lacking:
+        return lacking
+    walks, refusals = processed_walks(study, person)
+    if refusals:
+        return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
+    return walks[nominal].summary(), walks[device].summary()
+
+
+def _apart(names: Iterable[list[str]]) -> tuple[str, str]:
+    """Names without the words that both begin or end with."""
+    words = list(names)
+    for end in (0, -1):
+        while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
+            for one in words:
+                del one[end]
+    return "_".join(words[0]), "_".join(words[1])
+
+
+def _with_settings(mismatch: Mismatch, settings: dict[str, object]) -> Mismatch:
+    made = mismatch.provenance
+    return replace(mismatch, provenance=replace(made, settings={**made.settings, **settings}))

@@ -1,0 +1,204 @@
+"""What changed at a joint between two walks of a person: the gains of both walks and the change, estimated together.
+
+Gains that come from the Nominal walk alone carry their error into whatever the device walk is said to hold: where a
+device relieves a muscle, a gain too small by a fifth hides a fifth of the relief. So each possible change is fitted
+together with the gains to the strides of both walks, the gains being those of one person; a change that lowers the
+error of device strides that were left out is kept, and its number gets an interval from blocks of strides drawn anew
+from both walks (Efron B (1979). Bootstrap methods. Ann Stat 7(1), 1-26) and from what nobody measured.
+
+References
+----------
+McGinley JL, Baker R, Wolfe R, Morris ME (2009). The reliability of three-dimensional kinematic gait measurements: a
+systematic review. Gait Posture 29(3), 360-369.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.processing.muscle_moment import (
+    GAIN_RIDGE,
+    USUAL_HARMONICS,
+    Driven,
+    Form,
+    MuscleMoment,
+    Sums,
+    Values,
+    model_of,
+    solved,
+    sums_of,
+)
+
+LEARNED = 0.75  # of the device walk's strides, from its beginning
+CLOSES = 0.10  # of the squared error on device strides that were left out, to be kept
+DRAWS, BLOCK = 60, 3  # of the bootstrap, and strides that are drawn together
+# what nobody measured, of which the number's move joins the spread: the fastest speed of a muscle, the lag of its
+# activation, and how alike its gains are at both ends of the angle, each so many times what the model takes
+SPEEDS, LAGS, RESPECTS = (0.7, 1.4), (0.5, 2.0), (1 / 3, 3.0)
+# usual stride of the device walk [rad], root mean square of its change in the first harmonics: what the mean ankle
+# curve of a person moves by from one session to the next (McGinley et al. 2009: 2 deg and less)
+SHIFT_RAD, SHIFT_HARMONICS, SHIFTS = np.radians(1.0), 4, 12
+NORMAL_95 = 1.96
+FINER = np.linspace(-1.5, 1.5, 7)  # steps of a grid about its best value
+
+
+class Walk(NamedTuple):
+    """One walk at a joint; a stride of -1 is outside."""
+
+    driven: Driven
+    moment: Values  # [N m]
+    stride: NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """One way in which a walk may differ; `values` is the grid of the number that is not linear, else one value."""
+
+    name: str
+    place: str
+    number: str  # whose estimate the change is known by
+    values: Values
+    driven: Callable[[Driven, float], Driven] = field(default_factory=lambda: lambda driven, _: driven)
+    columns: Callable[[Driven, float], Values] = field(default_factory=lambda: lambda d, _: np.empty((len(d.angle), 0)))
+    neutral: float = 0.0  # its number where nothing changed
+    piece: str = ""  # with which the catalogue's expression begins, where two effects share a name
+
+
+@dataclass(frozen=True, eq=False)
+class Changed:
+    """A change that device strides left out of the fit bear out, and the moment model of both walks beside it."""
+
+    change: Change
+    model: MuscleMoment
+    value: float
+    spread: float  # standard deviation over blocks of strides of both walks drawn anew
+    closed: float  # share of the squared error on device strides left out
+    rival: Change | None  # the next best of another name
+    rival_leaves: float  # squared error beside the rival, of that beside the change
+
+
+def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Sequence[Change]) -> Changed | None:
+    """Return the change that explains both walks best.
+
+    None where strides left out do not bear it out, or its interval holds that nothing changed.
+    """
+    both = _Both.of(model.form, nominal, device)
+    tried = [(both.misfit(change, value), change, float(value)) for change in changes for value in change.values]
+    left, best, value = min(tried, key=lambda one: one[0])
+    others = [one for one in tried if (one[1].name, one[1].place) != (best.name, best.place)]
+    rival_left, rival, _ = min(others, key=lambda one: one[0], default=(np.nan, None, 0.0))
+    nothing = Change("", "", "", np.zeros(1))
+    held = 1 - both.held_out(best, value) / both.held_out(nothing, 0.0)
+    if held < CLOSES:
+        return None
+    found, number, draws = _drawn_anew(both, best, value, DRAWS)
+    errors = [float(np.std(draws)), _doubted(model.form, (nominal, device), best, value)]
+    if len(best.values) > 1 and not best.columns(device.driven, value).shape[1]:  # known to a step of the finer grid
+        errors.append((FINER[1] - FINER[0]) * abs(best.values[1] - best.values[0]) / np.sqrt(12))
+    spread = float(np.linalg.norm(errors))
+    if abs(number - best.neutral) < NORMAL_95 * spread:
+        return None
+    changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
+    return Changed(best, changed, number, spread, held, rival, rival_left / left)
+
+
+def _doubted(form: Form, walks: tuple[Walk, Walk], change: Change, about: float) -> float:
+    """Standard deviation of a number by what nobody measured: the muscles' form, and the device walk's usual stride."""
+    both = _Both.of(form, *walks)
+    number = _drawn_anew(both, change, about, 0)[1]
+    others = [
+        [_Both.of(replace(form, fastest=pace * form.fastest), *walks) for pace in SPEEDS],
+        [_Both.of(replace(form, lag_s=more * form.lag_s), *walks) for more in LAGS],
+        [replace(both, respect=more * both.respect) for more in RESPECTS],
+        [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
+    ]
+    moved = [[_drawn_anew(one, change, about, 0)[1] - number for one in each] for each in others]
+    return float(np.linalg.norm([np.sqrt(np.mean(np.square(one))) for one in moved]))
+
+
+def shifts_of_usual() -> list[Values]:
+    """Changes that the usual stride of a person may have between two walks, as the coefficients of its curve [rad]."""
+    order = np.arange(1, SHIFT_HARMONICS + 1)
+    size = SHIFT_RAD / np.sqrt(np.sum(order**-2.0))
+    shifts = np.zeros((SHIFTS, 2, USUAL_HARMONICS))
+    shifts[:, :, :SHIFT_HARMONICS] = np.random.default_rng(0).normal(size=(SHIFTS, 2, SHIFT_HARMONICS)) * size / order
+    return [np.concatenate([[0.0], *one]) for one in shifts]
+
+
+@dataclass(frozen=True, eq=False)
+class _Both:
+    """Both walks as normal equations of strides."""
+
+    form: Form
+    nominal: Sums
+    device: Walk
+    learned: Values  # (device stride,) 1 where learned from
+    own: Form  # of the device walk, whose usual stride may be another one
+    respect: float = GAIN_RIDGE
+
+    @classmethod
+    def of(cls, form: Form, nominal: Walk, device: Walk) -> _Both:
+        """Sum up the strides of the Nominal walk."""
+        own = sums_of(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
+        count = int(device.stride.max()) + 1
+        return cls(form, own, device, (np.arange(count) < LEARNED * count).astype(float), form)
+
+    def sums(self, change: Change, value: float) -> tuple[Sums, Sums]:
+        """Of both walks with a change, which the Nominal walk has not."""
+        driven = self.device.driven
+        more = change.columns(driven, value)
+        columns = np.hstack([self.own.columns(change.driven(driven, value)), more])
+        mine = sums_of(columns, self.device.moment, self.device.stride, len(self.learned))
+        wide = more.shape[1]
+        squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
+        return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
+
+    def found(self, sums: tuple[Sums, Sums], weights: tuple[Values, Values]) -> tuple[Values, float]:
+        """Coefficients and what they leave, strides so many times."""
+        parts = [one.of(weight) for one, weight in zip(sums, weights, strict=True)]
+        found = solved(Sums(*(a + b for a, b in zip(*parts, strict=True))), len(self.device.driven.signs), self.respect)
+        left = sum(float(weight @ one.left(found)) for one, weight in zip(sums, weights, strict=True))
+        return found, left
+
+    @property
+    def once(self) -> tuple[Values, Values]:
+        """Each stride once, those of the device walk that are learned from."""
+        return np.ones(len(self.nominal.power)), self.learned
+
+    def misfit(self, change: Change, value: float) -> float:
+        """What is left of the strides that are learned from [(N m)2]."""
+        return self.found(self.sums(change, value), self.once)[1]
+
+    def held_out(self, change: Change, value: float) -> float:
+        """What is left of the device strides that are not [(N m)2]."""
+        sums = self.sums(change, value)
+        return float((1 - self.learned) @ sums[1].left(self.found(sums, self.once)[0]))
+
+
+def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[Values, float, list[float]]:
+    """The coefficients, the number of a change, and that number from blocks of strides drawn anew."""
+    step = change.values[1] - change.values[0] if len(change.values) > 1 else 0.0
+    values = about + step * (FINER if step else np.zeros(1))
+    sums = [both.sums(change, value) for value in values]
+    linear = change.columns(both.device.driven, about).shape[1] > 0
+
+    def best(weights: tuple[Values, Values]) -> tuple[Values, float]:
+        tried = [both.found(one, weights) for one in sums]
+        at = int(np.argmin([left for _, left in tried]))
+        return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
+
+    found, number = best(both.once)
+    return found, number, [best((first, second))[1] for first, second in drawn_blocks(both.once)[:draws]]
+
+
+def drawn_blocks(once: Sequence[Values]) -> list[list[Values]]:
+    """How often each stride of each walk is drawn, blocks of neighbours together; `DRAWS` times (Efron 1979)."""
+    rng, blocks = np.random.default_rng(0), [np.arange(len(one)) // BLOCK for one in once]
+    counts = [block[-1] + 1 for block in blocks]
+    drawn = ([np.bincount(rng.integers(0, n, n), minlength=n) for n in counts] for _ in range(DRAWS))
+    return [[one * each[block] for one, block, each in zip(once, blocks, times, strict=True)] for times in drawn]

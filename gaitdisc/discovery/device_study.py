@@ -1,0 +1,284 @@
+"""What a device does, from a laboratory's own files: both walks of a person, to the discovery at a joint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, changed_moment
+from gaitdisc.discovery.effect_words import estimate_text, spoken
+from gaitdisc.discovery.foot_mass import foot_mass
+from gaitdisc.discovery.joint_and_trials import WORDS, changes_of, driven_of, nominal_moment, walk_of, weighed
+from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect
+from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.public_words import of_trial, words_of
+from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.trial_sets import not_compared
+from gaitdisc.kinetics.newton_euler import GRAVITY
+from gaitdisc.models.ridge import fit_ridge
+from gaitdisc.processing.joint_record import JointRecord, joint_record
+from gaitdisc.processing.muscle_moment import MuscleMoment, fitted_moment
+from gaitdisc.processing.process import StudyWalks
+from gaitdisc.processing.processed_walks import public_trial
+from gaitdisc.recording import Finding, Samples, Trial
+
+LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
+HARMONICS = 8  # of the plain regression of what is left
+AGREES = 1.25  # times what is left of Nominal strides; 0.97 to 1.12 in four made people where nothing was hidden
+APART = 0.02  # of a number, from which on the answer says that the written model has another
+FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
+# the strongest muscles of the hip, and their channels; without them a spring of 80 N m/rad came out as 119 and 125
+DEEP = {"gluteus maximus": ("gmax",), "iliopsoas": ("ilio", "psoas")}
+LEAST_FOOT_KG = 0.3  # three made people show up to 0.2 kg at these joints where there is none
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceWalks:
+    """One joint of both walks of a person, and the moment model that the Nominal walk calibrates."""
+
+    nominal: JointRecord
+    device: JointRecord
+    model: MuscleMoment
+
+    @cached_property
+    def changed(self) -> Changed | None:
+        """What the strides of both walks together say that changed; None where nothing is borne out."""
+        return changed_moment(self.model, walk_of(self.nominal), walk_of(self.device), changes_of(self.device))
+
+    @property
+    def both_walks_model(self) -> MuscleMoment:
+        """The moment model with gains of both walks where a change was fitted beside them, else of the Nominal walk."""
+        return self.changed.model if self.changed else self.model
+
+    @cached_property
+    def agrees(self) -> bool:
+        """Whether the device walk bears out no change and is followed as Nominal strides left out of the fit are."""
+        walk = walk_of(self.device)
+        left = walk.moment - self.model.net(walk.driven)
+        kept = np.isfinite(left) & (walk.stride >= 0)
+        return self.changed is None and float(np.sqrt(np.mean(left[kept] ** 2))) < AGREES * self.model.left_nm
+
+    def weighed(self, candidate: Candidate) -> bool:
+        """Whether an explanation is possible: the change that both walks bear out, or all where there is none."""
+        if self.agrees:
+            return False
+        if self.changed is None or not weighed(candidate):
+            return weighed(candidate)
+        change = self.changed.change
+        same = (candidate.name, candidate.place) == (change.name, change.place)
+        return same and (not change.piece or candidate.pieces[0].startswith(change.piece))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Of both files, and of the calibration."""
+        what, per_kg = "not estimated: no marker shows the foot", self.device.per_kg
+        if per_kg.size:  # which mass at the foot would be as large as what the moment model leaves
+            least = self.model.left_nm / float(np.nanstd(per_kg))
+            what = f"at the {WORDS[self.device.joint]}, {least:.1f} kg at the foot would have the size of the residual"
+        mass = Finding("note", "added mass", self.device.subject, what, "")
+        own = (*self.nominal.findings, *self.device.findings, self._calibration(), mass)
+        return (*own, self._together(self.changed)) if self.changed else own
+
+    def _together(self, found: Changed) -> Finding:
+        what = (
+            f"the gains are fitted to both walks together with {spoken(found.change.name)} at {found.change.place}, "
+            f"which removes {100 * found.closed:.0f} % of the squared error on held-out device strides"
+        )
+        if found.rival:
+            rival = f"{spoken(found.rival.name)} at {found.rival.place}"
+            what += f"; with the next best, {rival}, the error of the fit is {found.rival_leaves:.2f} times as large"
+        return Finding("note", "moment model", self.nominal.subject, what, "")
+
+    def _calibration(self) -> Finding:
+        model, word = self.model, WORDS[self.nominal.joint]
+        driven = driven_of(self.nominal)
+        unseen = np.nanstd(model.others(driven)[np.isfinite(self.nominal.moment)])
+        what = (
+            f"the residual of the {word}'s moment model is {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on "
+            f"held-out Nominal strides (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms "
+            f"later; {unseen:.1f} N m come from muscles without an electrode"
+        )
+        return Finding("note", "moment model", self.nominal.subject, what, "")
+
+    def with_model_error(self, found: Discovery) -> Discovery:
+        """Return what was found with the number of both walks, whose interval holds the error of the moment model."""
+        if self.agrees:
+            said = "The Nominal moment model predicts the device walk as well as held-out Nominal strides: "
+            return replace(found, verdict="no_gap", effects=(), sentence=f"{said}it shows no missing effect.")
+        if self.changed is None:
+            return replace(found, sentence=found.sentence + self._doubt(found))
+        change, effects, sentence = self.changed.change, list(found.effects), found.sentence
+        same = [(one.name, one.place) == (change.name, change.place) for one in effects]
+        if True in same and change.number in (first := effects[same.index(True)]).estimates:
+            old = first.estimates[change.number]
+            half = float(np.hypot((old.high - old.low) / 2, NORMAL_95 * self.changed.spread))
+            new = Estimate(self.changed.value, self.changed.value - half, self.changed.value + half, old.unit)
+            effects[same.index(True)] = replace(first, estimates={**first.estimates, change.number: new})
+            sentence = sentence.replace(estimate_text(old), estimate_text(new))
+            if abs(old.value - new.value) > APART * abs(new.value):
+                sentence += f" The written model has {old.value:.3g} {old.unit}, fitted with the other parameters."
+        return replace(found, effects=tuple(effects), sentence=sentence + self._doubt(found))
+
+    def _doubt(self, found: Discovery) -> str:
+        """Say that the size of an effect is not to be trusted where a joint's strongest muscles have no electrode."""
+        if not found.effects or self.nominal.joint != "hip_flexion":
+            return ""
+        seen = {name.split("_")[1] for name in self.nominal.muscles}
+        unseen = [said for said, short in DEEP.items() if not seen & set(short)]
+        which = " and ".join(unseen)
+        return f" Its size is unreliable: the hip's {which} has no electrode." if unseen else ""
+
+
+def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> DeviceWalks:
+    """Read one joint of both walks of a participant; a walk that lacks EMG or moments is refused with its name."""
+    if joint not in WORDS:
+        raise SchemaError(f"the joint must be one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
+    nominal, device = joint_records(study, participant, (joint,))[joint]
+    model = nominal_moment(nominal)
+    check_calibrated(model, nominal)
+    return DeviceWalks(nominal, device, model)
+
+
+def joint_records(
+    study: Study, participant: str, joints: tuple[str, ...]
+) -> dict[str, tuple[JointRecord, JointRecord]]:
+    """Read some joints of both walks of a participant: the Nominal one and the one with the device, by joint."""
+    person = study.participant(participant)
+    lacking = not_compared(study, person)
+    if lacking:
+        raise SchemaError(f"both walks of {participant} are required", lacking, "Name one trial of each condition.")
+    words = words_of(study, person)
+    records = []
+    with C3DReader() as reader:
+        own = StudyWalks(study, person, partial(public_trial, study, person, words, reader))
+        for word in study.conditions.both:
+            planned = person.trials_of(word)[0]
+            read = own.read_walk(planned)
+            check_kinetics(read.trial)
+            mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
+            public = of_trial(words, person, planned)
+            each = [public.of(partial(joint_record, read.trial, study, joint, mass_kg)) for joint in joints]
+            records.append([replace(one, subject=participant) for one in each])
+    return dict(zip(joints, zip(*records, strict=True), strict=True))
+
+
+def weighed_foot(walks: Mapping[str, tuple[JointRecord, JointRecord]]) -> Estimate | None:
+    """Return the mass at the foot that the knee shows and the hip bears out [kg]; None where they show none.
+
+    At the hip it comes out too small: the two strongest muscles, which take part in carrying it, have no electrode.
+    """
+    found = {}
+    for joint, (nominal, device) in walks.items():
+        model = nominal_moment(nominal)
+        if device.per_kg.size and model.r2 >= LEAST_R2:
+            found[joint] = foot_mass(model, walk_of(nominal), walk_of(device), device.per_kg)
+    if set(found) != set(FOOT_SHOWS_AT):
+        return None
+    (value, spread), (beside, its_spread) = (found[joint] for joint in FOOT_SHOWS_AT)
+    half = NORMAL_95 * spread
+    named = beside > its_spread and value > max(LEAST_FOOT_KG, half)
+    return Estimate(value, value - half, value + half, "kg") if named else None
+
+
+def with_foot_mass(found: Discovery, study: Study, participant: str) -> Discovery:
+    """Return what was found at the ankle where nothing is missing there, with a mass that knee and hip show."""
+    try:
+        mass = weighed_foot(joint_records(study, participant, FOOT_SHOWS_AT))
+    except ChannelError:  # files that know the ankle alone
+        return found
+    if mass is None:
+        return found
+    said = (
+        f"added_foot_mass is {estimate_text(mass)}, estimated at the knee and supported by the hip; the ankle is "
+        "insensitive to it."
+    )
+    effect = FoundEffect("parameter", "added_foot_mass", "wrong_parameter", "", {"value": mass})
+    return replace(found, verdict="wrong_parameter", effects=(effect,), sentence=said)
+
+
+def check_kinetics(trial: Trial) -> None:
+    """Refuse a walk without EMG, without moments, or whose forces do not carry the body."""
+    wrong = [one for one in trial.findings if one.kind == "force balance" and one.severity == "warning"]
+    if wrong:
+        raise SchemaError(
+            "moments need ground forces that balance the body weight within 12 %",
+            f"{trial.name}: {wrong[0].what}",
+            "Correct mass_kg in the study file, or the scale of the plates. Otherwise an effect would be named after "
+            "this error.",
+        )
+    per_kg = [one for one in trial.findings if one.kind == "per body mass"]
+    if per_kg:
+        raise SchemaError(
+            "the unit of moments must be the one that is stated, N m",
+            f"{trial.name}: {per_kg[0].channel} {per_kg[0].what}",
+            "Write their unit as N m/kg in [channels], or multiply them by the body mass.",
+        )
+    for key, word, mend in (
+        ("emg", "EMG", "Add the file with the EMG, or name its channels in [channels]."),
+        ("moments", "joint moments", "Add force plates, a static trial and mass_kg, or a .sto of moments."),
+    ):
+        if key not in trial.streams:
+            why = next((f": {one.what}" for one in trial.findings if one.kind == "no moments"), "")
+            raise NoMomentsError(
+                f"naming the effect of a device at a joint needs {word} in both walks",
+                f"{trial.name} has no {word}{why if key == 'moments' else ''}",
+                mend,
+            )
+
+
+def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
+    """Refuse a moment model that says too little of the Nominal walk: what it leaves is not the device's."""
+    if model.r2 >= LEAST_R2:
+        return
+    raise SchemaError(
+        f"the moment model must explain at least {100 * LEAST_R2:.0f} % of the variance of held-out Nominal strides "
+        "before a device is named",
+        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, with {nominal.stride.max() + 1} "
+        "strides",
+        "Record more strides, add muscles that span the joint, or check that EMG and forces share a clock.",
+    )
+
+
+class NoMomentsError(ChannelError):
+    """A walk lacks EMG or moments; its motion can still be compared."""
+
+
+def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
+    """Root mean square error of the net moment on the held-out strides, model by model [N m].
+
+    Nominal with the named effect is that of the discovery. Augmented adds a plain regression of what
+    is left (angle, rate, their squares and product, each muscle's moment, harmonics of the stride); Exo is the moment
+    model fitted to the device walk itself. Both learn from all strides of the device walk that are not held out.
+    """
+    device, model = walks.device, walks.model
+    at = found.runs.time[np.isfinite(found.runs.time)]
+    held = np.isin(device.stride, np.unique(device.stride[np.isin(np.round(device.time, 4), np.round(at, 4))]))
+    held &= device.stride >= 0
+    known = np.isfinite(device.moment) & np.isfinite(device.phase) & np.isfinite(device.rate)
+    learned = known & ~held
+    driven = driven_of(device)
+    nominal = model.net(driven)
+    angle, rate, phase = (np.nan_to_num(each) for each in (device.angle, device.rate, device.phase))
+    seen = (angle, rate, angle**2, rate**2, angle * rate, *model.by_muscle(driven).T, 100 * phase)
+    library = np.column_stack(seen)  # the last, percent stride, brings its harmonics
+    names = (*map(str, range(library.shape[1] - 1)), "phi")
+    samples = Samples(library, (device.moment - nominal)[:, None], names, ("left",), device.time, library[:, -1])
+    augmented = nominal + fit_ridge(samples.rows(learned), HARMONICS)(library)[:, 0]
+    blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
+    exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, (model.delay_s, model.lag_s))
+    exo = exo_model.net(driven)
+    own = known & held
+    _, after, _ = found.held_out.channels["net_moment"]
+    sizes: dict[str, float] = {}
+    for name, one in (("Nominal", nominal), ("Augmented (plain regression)", augmented), ("Exo", exo)):
+        sizes[name] = float(np.sqrt(np.mean((device.moment - one)[own] ** 2)))
+        if name == "Nominal":
+            sizes["Nominal + named effect"] = after if found.effects else sizes[name]
+    return sizes

@@ -1,0 +1,255 @@
+"""A model of an engine and measured data, from their files to what was discovered and to the model with it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from gaitdisc.discovery.catalogue import ALL, Request
+from gaitdisc.discovery.discover_files import discovered, sealed
+from gaitdisc.discovery.effect_words import at_place, spoken
+from gaitdisc.discovery.first_states import guess_states
+from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
+from gaitdisc.discovery.grids import rhythm_of
+from gaitdisc.discovery.result import ENGINE, Discovery, GapSize, Runs
+from gaitdisc.discovery.spiked_samples import without_spikes
+from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
+from gaitdisc.engines.engine import Engine, Values
+from gaitdisc.engines.expansion import expanded
+from gaitdisc.engines.mapping import other_values, read_mapping
+from gaitdisc.engines.own_runs import OwnRuns, trial_called
+from gaitdisc.engines.written import WrittenModel, written_model
+from gaitdisc.errors import ChannelError
+from gaitdisc.recording import Finding
+from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.measured_table import measured_of_recordings, read_measured
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.writing import write_simulation
+from gaitdisc.whole_file import write_whole
+
+_NONE, _NO_SIZE = np.empty((0, 0)), GapSize(0.0, 0.0, 0.0)
+_NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
+_NOTHING = Discovery("no_gap", "", (), (), (), _NO_SIZE, _NO_SIZE, (), (), _NO_RUNS)
+NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
+SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
+MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
+
+
+@dataclass(frozen=True)
+class EngineAnswer:
+    """What was found of a model, in the forms in which it goes on."""
+
+    found: Discovery
+    augmented: Simulation  # the mapping with what was found
+    written: WrittenModel  # the model's own text with it
+    runs: OwnRuns  # of the engine itself, before and after
+    engine: Engine  # the model as read
+
+
+def discover_engine(
+    model: Path,
+    measured: Callable[[Simulation], Measured],
+    request: Request = ALL,
+    files: dict[Path, str] | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> EngineAnswer:
+    """Find what a model of MuJoCo or OpenSim lacks.
+
+    model: the model, or its mapping file
+    measured: reads the trials, once the mapping says what their columns are
+    files: what was read, and what it is called in the result
+    """
+    mapping, engine = read_mapping(model)
+    data = measured(mapping)
+    refuse_unmeasured(mapping, engine, data)
+    states = smoothed_states(mapping, engine, data)
+    refuse_other_units(mapping, engine, data, states)
+    refuse_other_conventions(mapping, engine, data, states)
+    met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
+    fit = EngineFit(mapping, engine, data, states, progress=progress)
+    progress(f"running {engine.path.name} by {engine.called} along every trial")
+    as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
+    answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
+    if request.effects or not answer.runs.leave_mere_noise:
+        answer = searched(fit, answer, request, read, progress)
+    else:
+        units = tuple(answer.runs.units.values())
+        nothing = replace(_NOTHING, channels=data.channels, units=units, findings=data.findings)
+        found = sealed(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
+        answer = replace(answer, found=found)
+    found = answer.found
+    findings = (
+        *found.findings,
+        *other_values(mapping, engine),
+        *met,
+        *_warned(engine, answer.written.engine),
+        *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
+        Finding("note", "own runs", "model", answer.runs.said, ""),
+    )
+    made = found.provenance and replace(found.provenance, section=ENGINE)
+    return replace(answer, found=replace(found, findings=findings, provenance=made))
+
+
+def searched(
+    fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str], progress: Callable[[str], None]
+) -> EngineAnswer:
+    """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
+    mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
+    progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
+    linear, driven = expanded(mapping, engine, data, states)
+    found, answer = discovered(linear, driven, request, read, progress, refitted=fit.noted)
+    now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
+    moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
+    if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
+        progress(f"expanding again where {' and '.join(moved)} came to lie")
+        linear, driven = expanded(mapping, engine, data, states, moved)
+        found, answer = discovered(linear, driven, request, read, progress, refitted=fit.noted)
+    progress(f"running it by {engine.called}")
+    runs = base.runs.among(np.isin(base.runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
+    augmented, written, _ = fit.written(found, fit.parts)
+    hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
+    pushed = [f"{one.name} at {one.place}" for one in found.effects if one.name == "process_noise"]
+    unchecked = " and ".join((*written.absent, *pushed))
+    if unchecked:
+        why = f"{engine.called} itself has not run {unchecked}: that rests on the expansion alone."
+        found = replace(found, sentence=f"{found.sentence} {why}")
+        return EngineAnswer(found, augmented, written, runs, engine)
+    if found.effects and found.verdict != "wrong_initial_condition":
+        if not engine.fibres:  # their runs take too long
+            found = fit.fitted(found, linear, runs.among(~held_out(found, runs, data)))
+        runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
+        both = zip(found.effects, fit.parts, strict=True)
+        sure = tuple(part for one, part in both if request.effects or not one.small)
+        kept = sure if borne_out(runs, runs.before) else ()
+        for part in kept if len(kept) > 1 and not request.effects else ():
+            others = tuple(one for one in fit.parts if one is not part)
+            if not borne_out(runs, fit.left(found, others, runs)):
+                kept = tuple(one for one in kept if one is not part)
+        if not kept:
+            runs = replace(runs, after=runs.before)
+            if not runs.before_at_noise:
+                found = unconfirmed(with_own_runs(found, runs, fit, linear), runs)
+                return EngineAnswer(found, mapping, base.written, runs, engine)
+            found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
+        elif len(kept) < len(fit.parts):
+            both = list(zip(found.effects, fit.parts, strict=True))
+            idle = tuple(replace(one, small=True) for one, part in both if part not in kept)
+            effects = tuple(one for one, part in both if part in kept)
+            fit.parts, found = kept, replace(found, effects=effects, rivals=(*idle, *found.rivals))
+            runs = replace(runs, after=fit.left(found, kept, runs))
+        if kept:
+            augmented, written, _ = fit.written(found, fit.parts)
+    if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
+        found = replace(found, verdict="no_gap", rivals=(), explanations=())
+    runs = runs.with_floor(hidden)
+    return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
+
+
+def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
+    """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
+    named = " and ".join(f"the {spoken(one.name)} {at_place(one.kind, one.place)}" for one in found.effects)
+    sentence = (
+        f"Not proven: {named}. {runs.engine}'s own runs miss the record as much with as without, by more than the "
+        "sensors' noise; runs of the expanded model spoke for it. Trials of other movement would decide."
+    )
+    rivals = (*found.effects, *found.rivals)
+    return replace(
+        found, verdict="unexplained", sentence=sentence, effects=(), corrections=(), explanations=(), rivals=rivals
+    )
+
+
+def discover_model_file(
+    model: Path, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
+) -> EngineAnswer:
+    """Find what a model lacks against a file of measured trials."""
+    files = {measured: "measured table"}
+    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), request, files, progress)
+
+
+def measured_of_file(file: Path, mapping: Simulation) -> Measured:
+    """Trials of a table, or the one trial of a storage file with angles and controls."""
+    if file.suffix.lower() not in (".mot", ".sto"):
+        return read_measured(file, mapping)
+    from gaitdisc.ingest.storage import read_storage
+
+    streams = list(read_storage(file).streams.values())
+    channels = tuple(channel for one in streams for channel in one.channels)
+    whole = replace(
+        streams[0],
+        values=np.concatenate([one.values for one in streams], axis=1),
+        channels=channels,
+        suspect=np.concatenate([np.asarray(one.suspect) for one in streams], axis=1),
+    )
+    return measured_of_recordings([whole], mapping)
+
+
+def write_answer(answer: EngineAnswer, out: Path) -> list[str]:
+    """Write the mapping with what was found, and the model's own text with what has a form there; their names."""
+    engine = answer.engine
+    name = os.path.relpath(engine.path.resolve(), out.resolve())
+    mapping = write_simulation(replace(answer.augmented, model=name, layout=""), out / "augmented.toml")
+    return [mapping.name, write_whole(out / augmented_name(engine.path), answer.written.text).name]
+
+
+def augmented_name(model: Path) -> str:
+    """Name of a model's file with what was found in it."""
+    return f"{model.stem}_augmented{model.suffix}"
+
+
+def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> None:
+    """Refuse a record that does not show every free coordinate."""
+    seen = {name for channel, text in mapping.observations if channel in data.channels for name in names(parsed(text))}
+    for one in engine.coordinates:
+        if one.name not in seen:
+            raise ChannelError(
+                "every free coordinate of the model is measured",
+                f"no column shows {one.called!r}; the observations show {', '.join(sorted(seen)) or 'none'}",
+                "Name its column under [observations], or lock the coordinate in the model.",
+            )
+
+
+def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> Values:
+    """Coordinates and speeds along the record (trial, sample, state)."""
+    data, plain = without_spikes(data), replace(mapping, model="")
+    period = rhythm_of(data.observed, data.rate).period
+    rate_of = {one.name: one.speed for one in engine.coordinates}
+    return guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
+
+
+def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:
+    """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
+    found, inside = [], np.arange(states.shape[1]) < data.samples[:, None]
+    for number, one in enumerate(engine.coordinates):
+        q = states[inside][:, number]
+        share = 100 * np.mean((q <= one.low) | (q >= one.high))
+        if share:
+            what = (
+                f"{one.called} is at its limit ({one.low:.3g} to {one.high:.3g} {one.unit}) in {share:.2g} % of samples"
+            )
+            found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
+    driven = data.drive.inputs[inside]
+    for number, (low, high) in getattr(engine, "control_ranges", {}).items():
+        share = 100 * np.mean((driven[:, number] < low) | (driven[:, number] > high))
+        if share:
+            name = engine.controls[number].name
+            what = f"{name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            found.append(Finding("note", "saturated", "model", f"{what}: the engine clips it there", ""))
+    touched = getattr(engine, "contacts", 0)
+    if touched:
+        what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"
+        found.append(Finding("warning", "contact", "model", what, "what rests on runs through a contact"))
+    return tuple(found)
+
+
+def _warned(*engines: Engine) -> tuple[Finding, ...]:
+    """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
+    said = dict.fromkeys(what for one in engines for what in getattr(one, "warnings", ()))
+    return tuple(
+        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "what rests on such a run")
+        for what in said
+    )

@@ -1,0 +1,169 @@
+"""A simulation file and measured data, from their files to what was discovered."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import CandidateModel
+from gaitdisc.discovery.catalogue import ALL, Request
+from gaitdisc.discovery.discover import discover, refuse_blow_up
+from gaitdisc.discovery.result import DEVICE, SIMULATION, Discovery, GapSize
+from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.errors import SamplingError
+from gaitdisc.ingest.public_words import PublicWords
+from gaitdisc.ingest.raw_file import file_sha256
+from gaitdisc.recording import Finding
+from gaitdisc.saved.provenance import made_now
+from gaitdisc.simulation.even_time import MILLISECONDS
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.measured_table import read_measured
+from gaitdisc.simulation.python_simulation import PythonSimulation
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.unit_check import unit_findings
+from gaitdisc.simulation.writing import simulation_text
+
+
+def discover_files(
+    simulation: Path, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
+) -> tuple[Discovery, Simulation]:
+    """Find what a simulation file lacks against a table of measured trials."""
+    progress(f"reading {simulation.name} and {measured.name}")
+    model = read_simulation(simulation)
+    data = read_measured(measured, model)
+    files = {simulation: "simulation", measured: "measured table"}
+    return discovered(model, data, request, files, progress)
+
+
+def discover_study(
+    study: Path,
+    participant: str,
+    request: Request = ALL,
+    progress: Callable[[str], None] = lambda _: None,
+    joint: str = "ankle_angle",
+) -> tuple[Discovery, Simulation]:
+    """Find what the device does at a participant's joint: what the Nominal moment model lacks on the device walk.
+
+    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says that nothing is named.
+
+    returns augmented: the Nominal model with what was found in it
+    """
+    # imported here: a simulation file needs no filters and no pandas
+    from gaitdisc.discovery.device_study import NoMomentsError, beside, device_walks, with_foot_mass
+    from gaitdisc.discovery.joint_and_trials import tracked_joint, tracked_trials
+    from gaitdisc.discovery.nominal_model import nominal_and_trials
+    from gaitdisc.ingest.public_words import words_of
+    from gaitdisc.ingest.study_file import load_study
+
+    progress(f"reading both walks of {participant} and fitting the Nominal model")
+    read = load_study(study)
+    person = read.participant(participant)
+    called = words_of(read, person).files
+    walks = {read.path_of(file): called[Path(file).name] for trial in person.trials for file in trial.files}
+    try:
+        both = device_walks(read, participant, joint)
+    except NoMomentsError as lacking:
+        progress("comparing the motion alone")
+        model, data = nominal_and_trials(read, participant, joint)
+        found, augmented = discovered(model, data, request, walks, progress)
+        said = f"{lacking.needed.capitalize()}, but {lacking.found}; no effect can be named. From the motion alone: "
+        return replace(found, sentence=said + found.sentence), augmented
+    model = tracked_joint(both.device, both.both_walks_model)
+    data = tracked_trials(both.device, both.both_walks_model, model)
+    found, augmented = discovered(model, data, request, walks, progress, both.weighed)
+    found, augmented = both.with_model_error(found), model if both.agrees else augmented
+    errors = beside(both, found)
+    if joint == "ankle_angle" and not found.effects:
+        progress("estimating the mass of the foot at knee and hip")
+        found = with_foot_mass(found, read, participant)
+    if found.provenance is not None:
+        found = replace(found, provenance=replace(found.provenance, section=DEVICE))
+    return replace(found, findings=(*both.findings, *found.findings), beside=errors), augmented
+
+
+def discovered(
+    model: Simulation,
+    data: Measured,
+    request: Request,
+    files: dict[Path, str],
+    progress: Callable[[str], None],
+    weighed: Callable[[Candidate], bool] = lambda _: True,
+    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
+) -> tuple[Discovery, Simulation]:
+    """Find what a model lacks against measured trials, with what the answer rests on.
+
+    files: files that were read, and what each is called in the result
+    weighed: whether an explanation is possible; all are by default
+    refitted: fits the numbers of what was found once more; they stay as they are by default
+    """
+    if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
+        data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
+            found, augmented = discover(model, data, request, progress, weighed, refitted)
+    except np.linalg.LinAlgError as error:
+        raise SamplingError(
+            "each sample of a simulation must be predictable from the previous one",
+            f"samples are {1 / data.rate:.4g} s apart, and its derivatives overflow within one step",
+            "Write times in seconds, not in milliseconds, or record at a higher rate.",
+        ) from error
+    files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}
+    listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
+    return sealed(replace(found, findings=(*listed, *found.findings)), augmented, data, files), augmented
+
+
+def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
+    """Return an answer with what it rests on; it is written without a name of a person.
+
+    model: with what was found
+    """
+    settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
+    hashes = {called: file_sha256(path) for path, called in files.items()}
+    made = made_now(settings, 0, hashes, SIMULATION)
+    public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
+    numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
+    trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
+    seen = [(one, public.finding(replace(one, what=_without(one.what, trials)))) for one in found.findings]
+    return replace(found, provenance=made, hide=partial(_hidden, trials=trials, findings=seen))
+
+
+def _hidden(found: Discovery, trials: Mapping[str, str], findings: list[tuple[Finding, Finding]]) -> Discovery:
+    """Return an answer without a name of a person.
+
+    trials: names of trials that may be one, and what they are called
+    findings: each about the data, and as it is written
+    """
+
+    def sized(size: GapSize) -> GapSize:
+        return replace(size, of=_without(size.of, trials))
+
+    return replace(
+        found,
+        sentence=_without(found.sentence, trials),
+        train=sized(found.train),
+        held_out=sized(found.held_out),
+        runs=replace(found.runs, names=tuple(_without(one, trials) for one in found.runs.names)),
+        findings=tuple(next((public for known, public in findings if known == one), one) for one in found.findings),
+        explanations=tuple(replace(one, held_out=one.held_out and sized(one.held_out)) for one in found.explanations),
+        hide=None,
+    )
+
+
+def _without(text: str, trials: Mapping[str, str]) -> str:
+    for name, called in trials.items():
+        text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", called, text)
+    return text
+
+
+def _own_words(model: Simulation) -> frozenset[str]:
+    """Words of the simulation file, which is the user's model and names no person; and of the catalogue's effects."""
+    written = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
+    return frozenset(re.findall(r"\w+", simulation_text(written)))

@@ -1,0 +1,204 @@
+"""What an engine's own runs say of what was found, its numbers fitted by them: neither rests on an expansion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.answer import left_out
+from gaitdisc.discovery.candidate import SIGNAL_ERRORS
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.estimates import named_estimates
+from gaitdisc.discovery.grids import rhythm_of
+from gaitdisc.discovery.joint_and_trials import lagged
+from gaitdisc.discovery.noise import sensor_noise
+from gaitdisc.discovery.paired_test import paired_test, sum_error
+from gaitdisc.discovery.result import Discovery, Runs
+from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.engines.engine import Engine, Values
+from gaitdisc.engines.mapping import replaced_inputs, with_input_changed
+from gaitdisc.engines.own_runs import (
+    FEWER,
+    MOST_RUNS,
+    Driven,
+    OwnRuns,
+    Start,
+    left_by,
+    root_mean_square,
+    stretches_of,
+    trial_called,
+)
+from gaitdisc.engines.written import WrittenModel, written_model
+from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.words import counted
+
+TURNS = 3
+STEP = 0.01  # of a number, for its slope: over less, runs that meet limits or friction do not change smoothly
+ENOUGH = 0.1  # of the misfit, a third of a standard error
+DRAWN = 4  # runs of a picture
+
+
+@dataclass
+class EngineFit:
+    """A model of an engine and its record, and what a search of its expansion found."""
+
+    mapping: Simulation
+    engine: Engine
+    measured: Measured  # driven by the controls
+    states: Values  # (trial, sample, state), smoothed: where starts and fibres are taken from
+    parts: tuple[Part, ...] = ()  # of what was found
+    progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
+
+    def noted(self, found: ScoredModel) -> CandidateModel:
+        """Return what was found as it is, once its parts are kept."""
+        self.parts = found.model.parts
+        return found.model
+
+    def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
+        """What was found, in the model's mapping; with the states that effects bring along behind the model's own."""
+        changed = self.mapping.with_values({one.parameter: one.found.value for one in found.corrections})
+        for part in parts:
+            one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
+            form = SIGNAL_ERRORS[one.name][2] if one.verdict == "input_error" else ""
+            if form:
+                changed = with_input_changed(changed, one.place, form.format(s=one.place, **numbers))
+            elif one.verdict != "input_error":
+                changed = one.written(changed, numbers)
+        starts = {one.place: one.estimates["initial"].value for one in found.effects if one.kind == "state"}
+        return changed.with_starts(starts)
+
+    def written(self, found: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
+        """Return the mapping with what was found, the model with it, and that as the engine runs it."""
+        whole, data = self.in_mapping(found, parts), self.measured
+        written, own = written_model(self.engine, whole), {one.name for one in whole.states[len(self.mapping.states) :]}
+        kept = tuple(one for one in whole.effects if not own & set(names(parsed(one.term))))
+        augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
+        controls, lags, called = data.drive.inputs.copy(), {}, [one.name for one in self.engine.controls]
+        for trial, samples in enumerate(data.samples):
+            time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
+            controls[trial, :samples] = replaced_inputs(augmented, time, u, data.rate)
+        for part in parts:
+            if part.candidate.name == "input_lag":
+                column = called.index(part.candidate.place)
+                lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
+                controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
+                lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
+                written = replace(written, notes=(*written.notes, f"{lag}it stands in discovery.json alone"))
+        return augmented, written, Driven(written.engine, augmented, controls, lags, self.progress)
+
+    def left(
+        self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Start] | None = None
+    ) -> Values:
+        """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
+        return left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
+
+    def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
+        """Return what was found with numbers of the engine's own runs, whose starts follow them (Gauss-Newton).
+
+        base: says what the numbers are
+        runs: of what was learned from
+        """
+        slots = [(number, slot) for number, part in enumerate(self.parts) for slot in part.candidate.slots]
+        values = np.array([self.parts[number].values[slot] for number, slot in slots])
+
+        def parts_at(values: Values) -> tuple[Part, ...]:
+            each = dict(zip(slots, values.tolist(), strict=True))
+            of_part = ({slot: each[number, slot] for slot in one.values} for number, one in enumerate(self.parts))
+            return tuple(replace(one, values=own) for one, own in zip(self.parts, of_part, strict=True))
+
+        def white(values: Values, near: dict[int, Start]) -> Values:
+            left = self.left(found, parts_at(values), runs, near) / runs.floor
+            return np.nan_to_num(left, posinf=1e6, neginf=-1e6).ravel()
+
+        near: dict[int, Start] = {}
+        now, slopes = white(values, near), np.zeros((0, len(slots)))
+        for turn in range(TURNS):
+            self.progress(
+                f"fitting {counted(len(slots), 'number')} by its own runs, round {turn + 1} of {TURNS} at most"
+            )
+            steps = STEP * np.maximum(np.abs(values), STEP) * np.eye(len(slots))
+            slopes = np.column_stack([(white(values + step, near.copy()) - now) / step.sum() for step in steps])
+            moved = values + np.asarray(np.linalg.lstsq(slopes, -now, rcond=None)[0], np.float64)
+            ahead = near.copy()
+            tried = white(moved, ahead)
+            gained = float(now @ now - tried @ tried)
+            if gained > 0:
+                values, now, near = moved, tried, ahead
+            if gained < ENOUGH:
+                break
+        self.parts = parts_at(values)
+        left = np.where(np.isfinite(runs.before), now.reshape(runs.before.shape), np.nan)
+        influence = np.linalg.pinv(slopes).reshape(len(slots), *left.shape)  # of each sample on each number
+        covariance = np.diag([sum_error(one, left) ** 2 for one in influence])
+        effects = []
+        for number, (one, part) in enumerate(zip(found.effects, self.parts, strict=True)):
+            own = [k for k, (other, _) in enumerate(slots) if other == number]
+            numbers, idle = named_estimates(part, covariance[np.ix_(own, own)], base), part.candidate.idle
+            away = [abs(values[k] - idle[slots[k][1]]) for k in own if slots[k][1] in idle]
+            sure = [CRITERIA.certain * np.sqrt(covariance[k, k]) for k in own if slots[k][1] in idle]
+            effects.append(replace(one, term=part.term, estimates=numbers, small=bool(np.less(away, sure).all())))
+        return replace(found, effects=tuple(effects))
+
+
+def borne_out(runs: OwnRuns, without: Values) -> bool:
+    """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
+    test = paired_test(without, runs.after, runs.floor)
+    return test.bears_out and test.fall > CRITERIA.margin
+
+
+def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
+    """Run a model as read along every trial."""
+    mapping, data = fit.mapping, fit.measured
+    at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, FEWER if engine.fibres else MOST_RUNS)
+    left = left_by(Driven(engine, mapping, data.drive.inputs, progress=fit.progress), data, at, fit.states)
+    sensors = {name: mapping.sensor(name) for name in data.channels}
+    given = np.array([one.sd or np.nan for one in sensors.values()], float)
+    floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
+    units = {name: one.unit for name, one in sensors.items()}
+    return OwnRuns(left, left, at, engine.called, units, floor, fit.states.shape[2])
+
+
+def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:
+    """Which of the engine's runs (run,) the search held out."""
+    drawn = zip(found.runs.trial, found.runs.time[:, 0], strict=True) if found.runs.time.size else ()
+    begun = {trial_called(data, found.runs.names[k]): time for k, time in reversed([*drawn])}
+    times = zip(runs.at.trial, data.drive.time0[runs.at.trial] + (runs.at.first + 1) / data.rate, strict=True)
+    return np.array([time > begun.get(trial, np.inf) for trial, time in times])
+
+
+def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulation) -> Discovery:
+    """Return the answer with errors and shares of the engine's own runs, held out as the search did."""
+    at, data, sizes = runs.at, fit.measured, []
+    spread, times = np.nanstd(data.observed, axis=(0, 1)), data.drive.time0[at.trial] + at.first / data.rate
+    held = held_out(found, runs, data)
+    for some, size in ((~held, found.train), (held, found.held_out)):
+        which = some if some.any() else ~some
+        rows = np.array([*(root_mean_square(one[which]) for one in (runs.before, runs.after)), runs.floor])
+        whole = np.sqrt(np.mean((rows / spread) ** 2, axis=1)).tolist()
+        channels = dict(zip(data.channels, map(tuple, rows.T.tolist()), strict=True))
+        sizes.append(replace(size, before=whole[0], after=whole[1], noise_floor=whole[2], channels=channels))
+    effects = tuple(replace(one, held_out=1 - sizes[1].unexplained) for one in found.effects)
+    named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
+    shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
+    seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
+    time = times[shown, None] + np.arange(at.length) / data.rate
+    again = (at.trial[shown][1:] == at.trial[shown][:-1])[:, None] & (time[1:] <= time[:-1, -1:])
+    seen[1:][again] = np.nan  # where two runs overlap, the first is drawn
+    simulated, augmented = seen - runs.before[shown], seen - runs.after[shown]
+    found = replace(
+        found,
+        train=sizes[0],
+        held_out=sizes[1],
+        effects=effects,
+        explanations=(*named, *found.explanations[len(named) :]),
+        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, data.trials),
+    )
+    said = sentence_of(found, base, fit.parts if effects else ())
+    return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))

@@ -1,0 +1,228 @@
+"""One joint of a device walk as a tracked simulation: muscles driven by EMG against the moment of inverse dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.changed_moment import Change, Walk
+from gaitdisc.errors import ChannelError, StrideError
+from gaitdisc.processing.joint_record import JointRecord
+from gaitdisc.processing.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
+from gaitdisc.simulation.even_time import TrialColumns
+from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State
+from gaitdisc.simulation.simulation import Simulation
+
+STRIDES = 3  # of one trial of the search
+FEWEST_TRIALS = 4
+KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
+BLOCKS = 4  # of the Nominal walk, each left out of the calibration once
+RATE_HZ = 50.0  # enough for moments below 20 Hz
+TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration
+DELAYS_S, STRENGTHS = np.arange(-0.08, 0.081, 0.01), np.arange(0.5, 1.51, 0.05)  # that a walk's muscles may have
+ENGAGED, ENGAGED_STEP = (0.02, 0.9), np.radians(1.0)  # quantiles of the angle between which a spring may engage
+STRENGTH = 0.06  # by which a muscle group may differ from the Nominal walk's before it is a finding
+SEEN_RAD = 0.005  # noise of an angle, where it follows its own reference
+# joint -> what a clinician calls the groups that turn it towards its negative and its positive angle
+GROUPS = {
+    "ankle_angle": ("plantarflexors", "dorsiflexors"),
+    "knee_angle": ("knee_extensors", "knee_flexors"),
+    "hip_flexion": ("hip_extensors", "hip_flexors"),
+}
+EFFECTS = (
+    "constant_load", "linear_stiffness", "one_sided_spring", "dead_zone_spring", "viscous_damping", "one_sided_damper",
+    "coulomb_friction", "phase_locked_moment",
+)  # fmt: skip
+WORDS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
+Values = NDArray[np.float64]
+
+
+def driven_of(record: JointRecord) -> Driven:
+    """Return what drives the muscles about the joint of a record."""
+    signs = np.array([sign_at(record.joint, name) for name in record.muscles], float)
+    if not signs.any():
+        raise ChannelError(
+            f"naming a device at the {WORDS[record.joint]} needs EMG of a muscle that spans the {WORDS[record.joint]}",
+            f"{record.subject} {record.condition} has {', '.join(record.muscles)}",
+            f"Choose another joint, such as --participant {record.subject}:ankle_angle, or name a muscle in "
+            "[channels].",
+        )
+    return Driven(
+        np.nan_to_num(record.envelopes[:, signs != 0]),
+        signs[signs != 0],
+        np.nan_to_num(record.angle),
+        np.nan_to_num(record.rate),
+        record.phase,
+        1 / float(np.median(np.diff(record.time))),
+    )
+
+
+def nominal_moment(record: JointRecord) -> MuscleMoment:
+    """Calibrate the moment model on the Nominal walk, blocks of strides left out in turn."""
+    count = int(record.stride.max()) + 1
+    blocks = np.where(record.stride >= 0, record.stride * BLOCKS // max(count, 1), -1)
+    moment = np.where(np.isfinite(record.rate), record.moment, np.nan)
+    return fitted_moment(driven_of(record), moment, blocks)
+
+
+def walk_of(record: JointRecord) -> Walk:
+    """Return one walk for the fit of both together."""
+    known = np.isfinite(record.moment) & np.isfinite(record.rate) & np.isfinite(record.phase)
+    return Walk(driven_of(record), np.where(known, record.moment, np.nan), record.stride)
+
+
+def changes_of(record: JointRecord) -> list[Change]:
+    """List what a device, a muscle or a mass may change in a walk, by the names of the simulation and the catalogue."""
+    word, once = f"{WORDS[record.joint]}_moment", np.zeros(1)
+    low, high = np.quantile(record.angle[record.stride >= 0], ENGAGED)
+    angles = np.arange(low, high, ENGAGED_STEP)
+    above, below = f"max(0, {WORDS[record.joint]} ", "max(0, _"
+    shapes = (
+        ("constant_load", "load", once, "", lambda d, _: np.ones((len(d.angle), 1))),
+        ("linear_stiffness", "stiffness", once, "", lambda d, _: np.column_stack([d.angle**0, -d.angle])),
+        ("one_sided_spring", "stiffness", angles, above, lambda d, at: -np.maximum(0, d.angle - at)[:, None]),
+        ("one_sided_spring", "stiffness", -angles, below, lambda d, at: np.maximum(0, -at - d.angle)[:, None]),
+        ("viscous_damping", "damping", once, "", lambda d, _: -d.rate[:, None]),
+        ("coulomb_friction", "friction", once, "", lambda d, _: -np.sign(d.rate)[:, None]),
+    )
+    changes = [Change(name, word, number, at, columns=by, piece=piece) for name, number, at, piece, by in shapes]
+    changes.append(Change("wrong_parameter", "emg_delay", "value", DELAYS_S, _later))
+    signs = driven_of(record).signs
+    for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
+        if (signs == sign).any():
+            strength = f"{group}_strength", "value", STRENGTHS
+            changes.append(Change("wrong_parameter", *strength, partial(_stronger, sign), neutral=1.0))
+    if record.per_kg.size:  # what each kg more at the foot changes in a net moment that does not know it
+        per_kg = -record.per_kg[:, None]
+        changes.append(Change("wrong_parameter", "added_foot_mass", "value", once, columns=lambda _, __: per_kg))
+    return changes
+
+
+def _later(driven: Driven, delay_s: float) -> Driven:
+    at = np.arange(len(driven.angle))
+    late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, one) for one in driven.envelopes.T])
+    return replace(driven, envelopes=late)
+
+
+def _stronger(sign: int, driven: Driven, by: float) -> Driven:
+    return replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
+
+
+def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
+    """Return the simulation: the joint goes with the recorded motion, and the model says its net moment.
+
+    record: of the device walk
+    model: calibrated on the Nominal walk of the same person
+    """
+    word, (against, towards) = WORDS[record.joint], GROUPS[record.joint]
+    carried = record.per_kg.size > 0
+    muscles = [(name.split("_")[1], sign_at(record.joint, name)) for name in record.muscles]
+    muscles = [(name, against if sign < 0 else towards) for name, sign in muscles if sign]
+    inputs = [
+        Input("reference", "rad/s^2", "recorded motion, low-passed: acceleration + 57*rate + 800*angle"),
+        *(Input(name, "1", "activation, from its EMG as in the Nominal walk") for name, _ in muscles),
+        *(Input(f"{name}_gain", "N m", "moment at activation 1, as in the Nominal walk") for name, _ in muscles),
+        Input("others", "N m", "moment of muscles without an electrode, as in the Nominal walk"),
+        Input("phase", "1", "percent stride / 100"),
+    ]
+    groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]
+    numbers = [Parameter("emg_delay", 0.0, "s", meaning="additional delay of EMG compared with the Nominal walk")]
+    numbers += [
+        Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "compared with the Nominal walk")
+        for group in groups
+    ]
+    said = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
+    said += ["others", f"{word}_moment"]
+    if carried:
+        inputs.append(Input("per_kg", "N m/kg", "change of the muscles' moment per kg added to the foot"))
+        numbers.append(
+            Parameter("added_foot_mass", 0.0, "kg", meaning="at the foot, in addition to the body's own mass")
+        )
+    total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
+    return Simulation(
+        title=f"{word} of {record.subject}: Nominal moment model and inverse dynamics",
+        states=(
+            State(word, "rad", meaning=f"{record.joint}_{record.side}"),
+            State("rate", "rad/s"),
+            State("net", "N m"),
+        ),
+        inputs=tuple(inputs),
+        parameters=tuple(numbers),
+        ports=(Port(f"{word}_moment", "N m", "a moment that no muscle produces"),),
+        definitions=(("model", total),),
+        equations=(
+            (word, "rate"),
+            ("rate", f"reference - {TRACKED[1]:g}*rate - {TRACKED[0]:g}*{word}"),
+            ("net", f"{RATE_HZ:g}*(model - net)"),
+        ),
+        observations=((f"{word}_angle", word), ("net_moment", "net")),
+        sensors=(Sensor(f"{word}_angle", "rad", sd=SEEN_RAD), Sensor("net_moment", "N m", sd=model.left_nm)),
+    )
+
+
+def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulation) -> Measured:
+    """Cut the walk into trials of some strides in a row, with the model's moments as inputs."""
+    driven = driven_of(record)
+    step = max(round(driven.rate_hz / RATE_HZ), 1)
+    names = [name.split("_")[1] for name in record.muscles if sign_at(record.joint, name)]
+    columns = {
+        "reference": TRACKED[0] * record.angle + TRACKED[1] * record.rate + TRACKED[2] * record.speedup,
+        **dict(zip(names, driven.activation(model.delay_s, model.lag_s).T, strict=True)),
+        **{f"{name}_gain": gain for name, gain in zip(names, model.gain(driven).T, strict=True)},
+        "others": model.others(driven),
+        "phase": record.phase,
+        "per_kg": record.per_kg,
+    }
+    inputs = np.column_stack([columns[one.name] for one in simulation.inputs])
+    known, at = np.isfinite(record.moment), np.arange(len(record.moment))
+    late = lagged(np.interp(at, at[known], record.moment[known])[None], driven.rate_hz / RATE_HZ)[0]  # as its state
+    seen = np.column_stack([record.seen, np.where(known, late, np.nan)])
+    usable = np.isfinite(inputs).all(axis=1) & np.isfinite(record.seen)
+    trials: list[TrialColumns] = []
+    first, last = 0, int(record.stride.max())
+    while first + STRIDES - 1 <= last:
+        inside = np.flatnonzero((record.stride >= first) & (record.stride < first + STRIDES))
+        whole = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
+        whole = whole and np.isfinite(record.moment[inside]).mean() > KNOWN
+        if whole:
+            kept = inside[::step]
+            trials.append(TrialColumns(str(len(trials) + 1), record.time[kept], inputs[kept], seen[kept]))
+        first += STRIDES if whole else 1
+    if len(trials) < FEWEST_TRIALS:
+        raise StrideError(
+            f"a device is tested on held-out strides: this needs {FEWEST_TRIALS} times {STRIDES} strides in a row, "
+            "half of them with a known load on the foot",
+            f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
+            "Record longer, and keep each foot on its own plate.",
+        )
+    driving = [one.name for one in simulation.inputs]
+    return measured_of_trials(trials, driving, [name for name, _ in simulation.observations], record.subject)
+
+
+def lagged(signal: Values, samples: float) -> Values:
+    """Signal (trial, sample) behind a first-order lag, linear between samples and at rest at first.
+
+    >>> bool(np.isclose(lagged(np.arange(200.0)[None], 5.0)[0, -1], 194.0))
+    True
+    """
+    from scipy.signal import lfilter
+
+    kept = np.exp(-1 / samples)
+    late = samples * (1 - kept)
+    return signal[:, :1] + lfilter([1 - late, late - kept], [1, -kept], signal - signal[:, :1])
+
+
+def weighed(candidate: Candidate) -> bool:
+    """Whether an explanation is one that a device, a muscle or the recording of a joint can have.
+
+    Inputs and the recorded angle only carry the motion and the EMG; late EMG and weak muscles are numbers of the
+    simulation. What is wrong with the moment model's own shape is no effect of a device.
+    """
+    if candidate.kind == "observation":
+        return candidate.place == "net_moment" and candidate.name in ("sensor_gain", "sensor_lag")
+    return candidate.kind == "parameter" or candidate.name in EFFECTS

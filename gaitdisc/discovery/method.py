@@ -1,0 +1,119 @@
+"""How the numbers of a discovery were made, as its page says it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gaitdisc.discovery.result import DEVICE, ENGINE, TRACKED, Discovery
+
+BOUNDS = (
+    "Parameters with two bounds in the file were fitted within these bounds, in the initial model and in every "
+    "explanation (half the width is two standard deviations). A wrong parameter is one that must leave its bounds."
+)
+WEIGHED = (
+    "Every explanation was tested at every place where it can act: the effects of the catalogue, wrong parameters, "
+    "late or scaled inputs, and sensor errors. The best explanations were fitted in full, including their constants "
+    "(a threshold, a delay, a frequency)."
+)
+EVIDENCE = (
+    "Evidence is twice the log likelihood under autocorrelated noise, estimated from the residuals, minus the "
+    "logarithm of the number of samples for each fitted parameter."
+)
+UNNAMED = "An effect that only a fitted shape explains remains unnamed."
+SHORT_RUNS = (
+    "Trials were divided into short runs. The initial state of each run was fitted, so that errors can come only "
+    "from the dynamics, the inputs and the sensors. Entire trajectories were compared with the measurement, never "
+    "their derivatives.",
+    BOUNDS,
+    WEIGHED,
+    EVIDENCE,
+    "The identified effect had to reduce the squared error on the held-out data, also in combination with another "
+    "effect. Only the initial state of each run was fitted to these data. The change must correlate with the "
+    "residual (one-sided test, each sample weighted by its size, with the autocorrelation of the residual: Newey and "
+    "West 1987). The intervals follow from the curvature of the likelihood under that noise.",
+    "The noise floor is the sensor noise, estimated from the data without a model: the residual of a cubic over "
+    "seven samples. Up to four explanations are the answer if their residual does not exceed it. Otherwise sets of "
+    "explanations were compared by the share of the gap that they close on held-out runs, minus a complexity penalty "
+    "per term: 3 % of the gap for a plain term, up to 10 % for a term that can imitate many others (a delay, a "
+    "product, a periodic force). Terms that close less than 5 % are listed as small.",
+    UNNAMED,
+)
+BY_ENGINE = (
+    "The engine ran the initial model over two periods at a time of every trial, each from the best initial state. If "
+    "the residual of these runs is white noise of the sensors' size, no effect is missing and nothing was searched.",
+    "The engine computed the accelerations along the smoothed recording of all others, and their derivatives with "
+    "respect to each coordinate, speed, control and parameter; a force on a coordinate enters exactly. The short runs "
+    "below use that expansion. Along muscles with fibres its error is treated as noise, 2 % of a channel's spread.",
+    *SHORT_RUNS,
+    "If no muscle has fibres, the parameters and their intervals were fitted again with the engine's own runs.",
+    "Effects with a form in the model's own file were inserted there and compared with the expression; others acted "
+    "as a force at each step. The same runs with all effects, and without each of several, decide: an effect that "
+    "they do not support is withdrawn. All errors and shares here are those of the engine's runs.",
+)
+ALONG_A_WALK = (
+    "The measured motion was prescribed. Inverse dynamics gave the moments that this motion requires in addition to "
+    "the recorded ground forces. Moment arms gave the moments of the muscle and actuator forces in the file. The "
+    "search used no forward simulation.",
+    "The residual of each joint was searched for every shape of the catalogue, and for groups of muscles whose force "
+    "is larger, smaller or later than in the file. Noise of the angles was simulated, low-passed like the recording "
+    "and processed by the same inverse dynamics. The noise of a joint is this, or the residual of the best "
+    "explanation.",
+    "Evidence is the reduction of twice the log likelihood under that noise, minus the logarithm of the number of "
+    "samples for each fitted parameter, and minus a penalty for the choice among all explanations at all joints.",
+    "Each block of time was predicted with parameters from the other blocks, excluding data within half a period of "
+    "the low-pass; “after” is the residual of this prediction. An effect is named if its evidence is at least 10 and "
+    "it closes 30 % of the squared residual moment. Of two effects with equal predictions the simpler one is named. "
+    "This is evidence from one walk, often from one stride; a second walk may differ.",
+    "The noise floor of a moment is the noise of the angles, propagated by inverse dynamics, and 1 % of the moment's "
+    "spread.",
+    "The effect was inserted into the model's file, and OpenSim computed the moments again (findings, above).",
+)
+OF_A_DEVICE = (
+    "A moment model of this person was calibrated on the Nominal walk. Each muscle's envelope, after a delay and a "
+    "first-order lag, is reduced with the joint's speed and multiplied by a gain. The gain varies with the angle and "
+    "has the anatomical sign. The model also contains a stiffness about the mean stride in five parts, and a moment "
+    "that repeats over the stride.",
+    "Each possible change was fitted together with the gains to the strides of both walks, with the last quarter of "
+    "the device walk held out. The best change is accepted if it removes a tenth of the squared error there. The "
+    "reported parameter is fitted to both walks.",
+    "With these gains the device walk was searched in trials of three strides; the measured motion was prescribed.",
+    WEIGHED,
+    EVIDENCE,
+    "The identified effect had to reduce the squared error of the moment on the last quarter of the walk: p < .05 in "
+    "a one-sided test, each sample weighted by its size. The interval combines the noise, resampled strides of both "
+    "walks, and the effects of another speed at which muscles lose their force, another lag, less similar gains and "
+    "a shift of the mean stride by one degree.",
+    "If the ankle shows no effect, an added mass at the foot is estimated at the knee, and named if the hip supports "
+    "it.",
+    UNNAMED,
+)
+
+
+@dataclass(frozen=True)
+class Method:
+    """How an answer was made."""
+
+    sentences: tuple[str, ...]
+    held_out: str  # what the figure's caption says of it
+    added_to: str  # what holds the model with what was found
+
+
+RUNS_HELD_OUT = "held out: neither searched nor fitted, except the initial state of each run"
+METHODS = {
+    ENGINE: Method(BY_ENGINE, RUNS_HELD_OUT, "In augmented.toml, and in the model's own file as far as it has a form:"),
+    TRACKED: Method(
+        ALONG_A_WALK,
+        "with the identified effect when each block of time is predicted from the other blocks",
+        "In the model's own file as far as it has a form there, and in the mapping next to it:",
+    ),
+    DEVICE: Method(
+        OF_A_DEVICE, "held out: neither searched nor fitted", "In augmented.toml, the moment model of this person:"
+    ),
+}
+OF_A_SIMULATION = Method(SHORT_RUNS, RUNS_HELD_OUT, "In augmented.toml, which runs like the simulation:")
+
+
+def method_of(discovery: Discovery) -> Method:
+    """How an answer was made, by what its provenance says."""
+    made = discovery.provenance
+    return METHODS.get(made.section, OF_A_SIMULATION) if made else OF_A_SIMULATION

@@ -1,0 +1,259 @@
+"""The page of a discovery: the answer first, then the evidence; self-contained, with every number beside it as CSV."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.discovery.effect_words import (
+    amount,
+    at_place,
+    estimate_text,
+    outside_text,
+    shown_unit,
+    spoken,
+    with_unit,
+    would_distinguish,
+)
+from gaitdisc.discovery.figure import discovery_figures, explanations_figure
+from gaitdisc.discovery.method import method_of
+from gaitdisc.discovery.result import Discovery, Estimate, Explanation, FoundEffect
+from gaitdisc.report.figure import save_figures
+from gaitdisc.report.page import write_page
+from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
+from gaitdisc.words import NONE, counted, p_cell
+
+VERDICTS = {
+    "no_gap": "no gap: nothing is added to the simulation",
+    "missing_physics": "missing physics: a term is missing in the dynamics",
+    "wrong_parameter": "wrong parameter: the structure is correct, the value of a parameter is not",
+    "input_error": "input error: a driving signal is late or scaled",
+    "sensor_error": "sensor error: the state is correct, its measurement is not",
+    "wrong_initial_condition": "wrong initial condition: only the initial state is wrong",
+    "process_noise": "process noise: a random input acts on the system",
+    "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
+    "unexplained": "unexplained: the residual exceeds the noise, and no known effect or fitted shape explains it",
+}
+
+
+def estimates_table(discovery: Discovery) -> Table:
+    """Every number of what was found, with its interval."""
+    rows, records = [], []
+    for effect in discovery.effects:
+        for name, one in effect.estimates.items():
+            number, unit = name.replace("_", " "), "" if one.unit == "1" else one.unit
+            size = (one.high - one.low) / 2
+            written = (f"{amount(each, size)} {unit}".strip() for each in (one.value, one.low, one.high))
+            rows.append((spoken(effect.name), effect.place, number, *written, _degrees(one)))
+            records.append(
+                (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
+            )
+    caption = "The identified effect, in the units of the simulation file; low and high: 95 % interval."
+    headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
+    if not any(row[-1] for row in rows):
+        headings, rows = headings[:-1], [row[:-1] for row in rows]
+    columns = ("effect", "kind", "place", "number", "value", "low", "high", "unit", "term")
+    return Table("estimates", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def gap_table(discovery: Discovery) -> Table:
+    """How far the gap shrank, channel by channel, on what was fitted and on what was held out."""
+    rows, records = [], []
+    for data, size in (("held out", discovery.held_out), ("fitted", discovery.train)):
+        for channel, unit in zip(discovery.channels, discovery.units, strict=True):
+            if channel not in size.channels:
+                continue
+            shown, factor = shown_unit(unit)
+            before, after, floor = size.channels[channel]
+            amounts = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
+            rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
+            records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
+    held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
+    caption = (
+        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, compared with noise "
+        "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
+        "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
+        f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
+        f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate.{_unproven(discovery)}"
+    )
+    headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
+    columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
+    return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def models_table(discovery: Discovery) -> Table:
+    """Held-out error of the models of chapter 4, of a device walk, with the named effect among them."""
+    channel, unit = (discovery.channels[-1], discovery.units[-1]) if discovery.channels else ("", "")
+    rows = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
+    caption = (
+        f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
+        "Augmented: Nominal, plus a plain regression of its residual. Exo: calibrated on the device walk itself. The "
+        "latter two are trained on the device walk's other strides."
+    )
+    return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
+
+
+def trials_table(discovery: Discovery) -> Table:
+    """Root mean square error of each held-out trial, before and after, channel by channel."""
+    runs, rows, records = discovery.runs, [], []
+    errors = [(runs.measured - one) ** 2 for one in (runs.simulated, runs.augmented)]
+    for number in np.unique(runs.trial):
+        name = runs.names[number] if runs.names else str(number + 1)
+        for place, (channel, unit) in enumerate(zip(discovery.channels, discovery.units, strict=True)):
+            shown, factor = shown_unit(unit)
+            of_trial = (one[runs.trial == number][:, :, place] for one in errors)
+            before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
+            amounts = (f"{amount(factor * one, factor * before / 20)} {shown}".strip() for one in (before, after))
+            rows.append((name, channel, *amounts))
+            records.append((name, channel, before, after, unit))
+    caption = (
+        "Root mean square of measured minus simulated, before and after, for each held-out trial "
+        f"({counted(len(runs.trial), 'run')}, each with its own initial state)."
+    )
+    columns = ("trial", "channel", "before", "after", "unit")
+    return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
+
+
+def _before(discovery: Discovery) -> str:
+    return " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
+
+
+def _unproven(discovery: Discovery) -> str:
+    """Say whose p stands there, where nothing is named."""
+    if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
+        return ""
+    first = discovery.rivals[0]
+    return f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
+
+
+def where_table(discovery: Discovery) -> Table:
+    """Where the gap arises: place, share, part of the stride, region of the states."""
+    rows, records = [], []
+    for one in discovery.where:
+        phase = f"{100 * one.phase[0]:.0f} to {100 * one.phase[1]:.0f} %" if one.phase else NONE
+        rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
+        begin, end = one.phase or (math.nan, math.nan)
+        records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
+    caption = "Where the gap arises. Share: of the mean squared gap that an effect at this place removes."
+    headings = ("place", "share of the gap", "stride", "region")
+    if not any(one.phase for one in discovery.where):  # a machine has no stride
+        headings, rows = (*headings[:2], headings[3]), [(*row[:2], row[3]) for row in rows]
+    columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
+    return Table("where", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def corrections_table(discovery: Discovery) -> Table:
+    """Numbers of the file that moved within their own bounds."""
+    rows, records = [], []
+    for one in discovery.corrections:
+        found, unit = one.found, "" if one.found.unit == "1" else one.found.unit
+        size = (found.high - found.low) / 2
+        written = (f"{amount(each, size)} {unit}".strip() for each in (found.value, found.low, found.high))
+        rows.append((one.parameter, f"{one.given:.6g} {unit}".strip(), *written))
+        records.append((one.parameter, one.given, found.value, found.low, found.high, found.unit))
+    caption = (
+        "Parameters of the file that changed within their bounds. These are not effects: every explanation, and the "
+        "initial model, was fitted with them. Low and high: 95 % interval."
+    )
+    headings = ("parameter", "in the file", "fitted", "low", "high")
+    columns = ("parameter", "from", "to", "low", "high", "unit")
+    return Table("corrections", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def explanations_table(discovery: Discovery) -> Table:
+    """What explains the gap, what was named first, and what would distinguish the others from it."""
+    named = discovery.effects[:1]
+    weighed = discovery.explanations or tuple(Explanation((one,)) for one in discovery.rivals)
+    small = [Explanation((one,)) for one in discovery.rivals if one.small and discovery.explanations]
+    rows, records = [], []
+    for number, one in enumerate((*weighed, *small), 1):
+        first, size = one.effects[0], one.held_out
+        own = number == 1 and one.effects == discovery.effects
+        apart = NONE if own or not named else would_distinguish(named[0].name, one.effects[-1].name)
+        closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
+        tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
+        numbers = "; ".join(_numbers(each) for each in one.effects)
+        rows.append((str(number), one.as_given, numbers, _percent(closed), _bic(first.bic), tied, apart))
+        records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
+    caption = (
+        f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
+        "noise, on held-out data. Evidence: reduction of the Bayesian criterion compared with the initial model; "
+        "larger is better. Tied: these data cannot distinguish it from the named effect; small: it closes too little "
+        "to be named. To use another explanation, fit it without a search: gaitdisc discover ... --effects "
+        '"effect@place, effect@place".'
+    )
+    headings = ("", "effect@place", "its parameters", "closed", "evidence", "tied", "what would distinguish them")
+    columns = ("number", "effects", "closed", "p", "evidence", "tied", "what_would_distinguish_them")
+    return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def data_findings(discovery: Discovery) -> Table:
+    """What was seen in the files on the way."""
+    return seen_table(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}.")
+
+
+def closed_share(before: float, after: float, floor: float) -> float:
+    """Return which share of the squared gap above the noise is closed, at most all of it; NaN where there is none.
+
+    >>> closed_share(2.0, 0.9, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
+    (1.0, 0.84)
+    """
+    there = before**2 - floor**2
+    return min((before**2 - after**2) / there, 1.0) if there > 0.02 * floor**2 else math.nan
+
+
+def _degrees(one: Estimate) -> str:
+    return estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+
+
+def _numbers(one: FoundEffect) -> str:
+    numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
+    outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
+    return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
+
+
+def _bic(value: float) -> str:
+    return f"{value:.0f}".replace("-", "−") if math.isfinite(value) else NONE
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %".replace("-", "−") if math.isfinite(share) else NONE
+
+
+def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.DataFrame:
+    return pd.DataFrame([*records], columns=pd.Index(columns))
+
+
+def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
+    """Write the report of a discovery: `report.html`, `figures/` and `tables/`."""
+    discovery = discovery.public
+    made, how = discovery.provenance, method_of(discovery)
+    tables = {
+        "estimates": estimates_table(discovery),
+        "gap": gap_table(discovery),
+        "models": models_table(discovery),
+        "trials": trials_table(discovery),
+        "corrections": corrections_table(discovery),
+        "where": where_table(discovery),
+        "explanations": explanations_table(discovery),
+        "findings": data_findings(discovery),
+    }
+    if made:
+        tables |= provenance_tables(made)
+    save_tables(tables.values(), folder)
+    shown = {
+        "discovery": discovery,
+        "title": str(made.settings.get("title", "A simulation")) if made else "A simulation",
+        "verdict": VERDICTS[discovery.verdict],
+        "terms": [effect for effect in discovery.effects if effect.term],
+        "figures": save_figures(discovery_figures(discovery), folder),
+        "left": save_figures(explanations_figure(discovery), folder),
+        "tables": tables,
+        "method": how.sentences,
+        "added_to": how.added_to,
+    }
+    return write_page("discovery", shown, folder)

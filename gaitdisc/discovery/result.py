@@ -1,0 +1,336 @@
+"""What `gaitdisc discover` found: the verdict, the effect with its numbers, its rivals, and how far the gap shrank."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.notebook import html_of
+from gaitdisc.recording import Finding
+from gaitdisc.saved.kind import Saved
+from gaitdisc.saved.provenance import Provenance
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ALPHA = 0.05  # the greatest rate of false finds, unless a user sets another
+VERDICTS = (
+    "no_gap",
+    "missing_physics",
+    "wrong_parameter",
+    "input_error",
+    "sensor_error",
+    "wrong_initial_condition",
+    "process_noise",
+    "unnamed",
+    "unexplained",
+)
+
+SIZES = ("before", "after", "noise_floor")  # of a gap, as its file calls them
+# What an answer follows, as its provenance has it
+SIMULATION = "discovery of missing physics"
+ENGINE = "discovery of missing physics in a model of an engine"
+TRACKED = "tracked pass"
+DEVICE = "discovery of what a device does"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class FoundEffect:
+    """One explanation of the gap."""
+
+    kind: str  # what `place` is: `port`, `equation`, `parameter`, `input`, `observation`, `state`
+    place: str
+    name: str  # name of the effect, of the catalogue
+    term: str  # for a missing term, its expression, in the unit of the place; else what was changed
+    estimates: Mapping[str, Estimate] = field(default_factory=dict)
+    held_out: float = float("nan")  # share of the gap on held-out data that goes with all that was found
+    # fall of the Bayesian criterion from the simulation as read: of what was found, all of it together; of a rival,
+    # with it in the place of what it rivals
+    bic: float = float("nan")
+    tied: bool = False  # for a rival: these data cannot separate it from what was named
+    # for a rival, and beside others that were given: it closes too little of the gap to be named, or not beyond chance
+    small: bool = False
+    # of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither
+    bounds: tuple[float, ...] = ()
+    # states that the effect brings along, and the time derivative of each
+    states: Mapping[str, str] = field(default_factory=dict)
+    # of a term without a name that was read as an expression of few pieces: this expression, in a few digits
+    reads_as: str = ""
+    reads_as_effect: str = ""  # the catalogue's effect that this expression is; empty where it is none
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A number of the file that moved within its own bounds; no finding."""
+
+    parameter: str
+    given: float
+    found: Estimate  # what it was fitted to; the interval lies inside the bounds
+
+
+@dataclass(frozen=True)
+class Whereabouts:
+    """Where the gap arises."""
+
+    kind: str
+    place: str
+    share_of_gap: float  # part of the gap's variance that pushes there explain
+    phase: tuple[float, ...] = ()  # from and to, in shares of the stride; empty without a stride
+    region: str = ""
+
+
+@dataclass(frozen=True)
+class GapSize:
+    """Size of the gap, root mean square over channels of error over the channel's standard deviation."""
+
+    before: float
+    after: float
+    noise_floor: float  # what the sensors' noise alone would leave
+    # chance of so clear a fall of the squared error without any effect (discovery/paired_test.py). Where nothing is
+    # named: of what the data that were fitted spoke for most
+    p: float = float("nan")
+    # for each channel: before, after, noise floor [the channel's unit]
+    channels: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    pieces: int = 0  # independent samples that the runs are worth
+    # which data these are: `trial 4`, `trial 1, last quarter`; empty where all that was fitted is meant
+    of: str = ""
+    alpha: float = ALPHA  # the greatest rate of false finds, which p has to be below for a name
+
+    @property
+    def ranked(self) -> list[str]:
+        """Channels, that with the largest gap against its noise first."""
+        return sorted(self.channels, key=lambda name: -self.channels[name][0] / (self.channels[name][2] or 1.0))
+
+    @property
+    def unexplained(self) -> float:
+        """Share of the variance above the noise floor that is left; 0 where nothing is, 1 where no less is.
+
+        >>> GapSize(before=3.0, after=1.0, noise_floor=1.0).unexplained
+        0.0
+        """
+        floor = self.noise_floor**2
+        return min(max(self.after**2 - floor, 0.0) / max(self.before**2 - floor, 1e-12), 1.0)
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """An explanation of the whole gap, one effect or several together, and what it leaves of held-out data."""
+
+    effects: tuple[FoundEffect, ...]
+    held_out: GapSize | None = None  # None where it was not computed: folders of earlier releases
+    # of the first held-out run, for the channel with the largest gap: times [s], and measured minus its run
+    time: tuple[float, ...] = ()
+    left: tuple[float, ...] = ()
+
+    @property
+    def as_given(self) -> str:
+        """What `--effects` takes to fit exactly this."""
+        return ", ".join(f"{one.name}@{one.place}" for one in self.effects)
+
+    @property
+    def tied(self) -> bool:
+        """Whether these data cannot distinguish it from what was named."""
+        return any(one.tied for one in self.effects)
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Measured, simulated and augmented runs of one set of trials."""
+
+    trial: NDArray[np.intp]  # (run,), number of the trial
+    time: NDArray[np.float64]  # (run, sample), [s]
+    phase: NDArray[np.float64]  # (run, sample) or empty, share of the stride
+    measured: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    simulated: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    augmented: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    names: tuple[str, ...] = ()  # of all trials of the measured data, by their number
+
+    def table(self, channels: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+        """Return the runs as columns: run, trial, time, phase, and each channel three times."""
+        runs, samples = self.time.shape
+        trial = np.asarray(self.names)[self.trial] if self.names else self.trial + 1
+        columns = {
+            "run": np.repeat(np.arange(1, runs + 1), samples),
+            "trial": np.repeat(trial, samples),
+            "time": self.time.ravel(),
+        }
+        if self.phase.size:
+            columns["phase"] = self.phase.ravel()
+        for number, channel in enumerate(channels):
+            for word in ("measured", "simulated", "augmented"):
+                columns[f"{channel}_{word}"] = getattr(self, word)[:, :, number].ravel()
+        return columns
+
+
+@dataclass(frozen=True)
+class Discovery(Saved, file="discovery.json"):
+    """The effects that a simulation lacks.
+
+    Parameters
+    ----------
+    verdict : str
+        One of nine words.
+    sentence : str
+        The answer in words.
+    where : tuple of Whereabouts
+        Where the gap arises, the largest share first.
+    effects : tuple of FoundEffect
+        What was found.
+    rivals : tuple of FoundEffect
+        Other tested explanations, best first.
+    train, held_out : GapSize
+        Reduction of the gap on training data and on held-out data.
+    channels, units : tuple of str
+        Observed channels and their units.
+    runs : Runs
+        Runs of the held-out trials.
+    findings : tuple of Finding
+        Findings about the data.
+    provenance : Provenance, optional
+        Settings, files and versions.
+    corrections : tuple of Correction
+        Parameters that changed within their bounds.
+    beside : mapping of str to float
+        For a device walk: model -> held-out error [unit of the last channel].
+    explanations : tuple of Explanation
+        The first five explanations of the entire gap (single effects or sets): the named one, then those that close
+        most on held-out data.
+    given : str
+        ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
+    hide : callable, optional
+        Returns the discovery as it is written: without words that may name a person.
+    """
+
+    verdict: str
+    sentence: str
+    where: tuple[Whereabouts, ...]
+    effects: tuple[FoundEffect, ...]
+    rivals: tuple[FoundEffect, ...]
+    train: GapSize
+    held_out: GapSize
+    channels: tuple[str, ...]
+    units: tuple[str, ...]
+    runs: Runs
+    findings: tuple[Finding, ...] = ()
+    provenance: Provenance | None = None
+    corrections: tuple[Correction, ...] = ()
+    beside: Mapping[str, float] = field(default_factory=dict)
+    explanations: tuple[Explanation, ...] = ()
+    given: str = ""
+    hide: Callable[[Discovery], Discovery] | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Refuse a verdict that the contract does not know."""
+        if self.verdict not in VERDICTS:
+            raise ValueError(f"verdict must be one of {VERDICTS}, not {self.verdict!r}")
+
+    @property
+    def public(self) -> Discovery:
+        """The same as it is written: without a name of a person."""
+        return self.hide(self) if self.hide else self
+
+    def to_frame(self) -> pd.DataFrame:
+        """Held-out runs as a table: run, trial, time [s], and each channel measured, simulated and augmented."""
+        import pandas as pd
+
+        return pd.DataFrame(self.runs.table(self.channels))
+
+    def __repr__(self) -> str:
+        return f"Discovery({self.verdict}: {self.sentence})"
+
+    def _repr_html_(self) -> str:
+        gap = (
+            f"{self.held_out.before:.3g} before, {self.held_out.after:.3g} after, noise {self.held_out.noise_floor:.3g}"
+        )
+        rows = [("verdict", self.verdict.replace("_", " ")), ("held-out gap", gap)]
+        for one in self.effects:
+            amounts = (
+                f"{name} {each.value:.3g} ({each.low:.3g} to {each.high:.3g}) {each.unit}".strip()
+                for name, each in one.estimates.items()
+            )
+            rows.append((f"{one.name} at {one.place}", "; ".join(amounts)))
+        return html_of(self.sentence, rows)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the content of `discovery.json`; a number that is not finite is null."""
+        found = {
+            "verdict": self.verdict,
+            "where": [_placed(one) for one in self.where],
+            "effects": [_effect(one) | ({"small": True} if one.small else {}) for one in self.effects],
+            "corrections": [
+                {"parameter": one.parameter, "from": one.given, "to": one.found.value}
+                | {"low": one.found.low, "high": one.found.high, "unit": one.found.unit}
+                for one in self.corrections
+            ],
+            "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
+            "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
+            "explanations": [
+                {
+                    "effects": [_effect(each) | {"tied": each.tied} for each in one.effects],
+                    "held_out": _gap(one.held_out) if one.held_out else None,
+                    "left": {"time": one.time, "measured_minus_run": one.left},
+                }
+                for one in self.explanations
+            ],
+            **({"given": self.given} if self.given else {}),
+            "sentence": self.sentence,
+            "channels": dict(zip(self.channels, self.units, strict=True)),
+            **({"beside": self.beside} if self.beside else {}),
+        }
+        return _finite(found) | {
+            "findings": [asdict(one) for one in self.findings],
+            "provenance": asdict(self.provenance) if self.provenance else None,
+        }
+
+
+def _placed(one: Whereabouts | FoundEffect) -> dict[str, Any]:
+    """Fields of what has a place; its kind is the first key."""
+    values = asdict(one)
+    return {values.pop("kind"): values.pop("place")} | values
+
+
+def _effect(one: FoundEffect) -> dict[str, Any]:
+    values = _placed(one)
+    place = {key: values[key] for key in (one.kind, "name", "term", "estimates")}
+    evidence = {"evidence": {"held_out": one.held_out, "bic": one.bic}}
+    some = {key: values[key] for key in ("bounds", "states") if values[key]}
+    if one.reads_as:
+        some["reads_as"] = {"expression": one.reads_as, "effect": one.reads_as_effect or None}
+    return place | evidence | some
+
+
+def _gap(one: GapSize) -> dict[str, Any]:
+    return {
+        **dict(zip(SIZES, (one.before, one.after, one.noise_floor), strict=True)),
+        "unexplained": one.unexplained,
+        "p": one.p,
+        "pieces": one.pieces,
+        "alpha": one.alpha,
+        **({"of": one.of} if one.of else {}),
+        "channels": {name: dict(zip(SIZES, sizes, strict=True)) for name, sizes in one.channels.items()},
+    }
+
+
+def _finite(value: Any) -> Any:
+    """Return what JSON knows: lists, and null in the place of a number that is not finite."""
+    if isinstance(value, Mapping):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(one) for one in value]
+    if isinstance(value, float):
+        return float(value) if np.isfinite(value) else None
+    return value

@@ -1,0 +1,185 @@
+"""Generalised forces along a recorded walk: what the motion demands, what files give of it, what noise makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+from gaitdisc.discovery.effect_words import amount
+from gaitdisc.discovery.record_filter import DENSE
+from gaitdisc.engines.opensim_tracked import OpensimTracked
+from gaitdisc.engines.tracked_files import TrackedMotion, check_loads, tracked_motion
+from gaitdisc.engines.tracked_mapping import Tracked
+from gaitdisc.errors import SchemaError
+from gaitdisc.recording import Finding
+from gaitdisc.signals.derivatives import differentiated
+
+Values = NDArray[np.float64]
+DRAWS, SEED, NOISE_DEG = 4, 0, 0.3
+MM = 1 / 300  # [m] of a translation, that go with a degree of an angle
+OTHER_MOTION = 0.15  # of the weight
+WRONG_MASS = 0.05  # of the weight, which the ground carries less or more than the model moves
+LEAST_ARM_M = 1e-3
+SIDES = ((1.0, "raising"), (-1.0, "lowering"))
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """Generalised forces along a prescribed motion."""
+
+    engine: OpensimTracked
+    motion: TrackedMotion
+    cutoff_hz: float
+    demanded: Values  # (sample, coordinate)
+    pulls: Values  # (sample, actuator, coordinate), of each actuator of the forces' file
+    groups: Mapping[str, Values]  # moment (sample,) of muscles that raise or lower a coordinate
+
+    @property
+    def left(self) -> Values:
+        """What neither the model nor its actuators give (sample, coordinate)."""
+        return self.demanded - self.pulls.sum(axis=1)
+
+    @property
+    def joints(self) -> tuple[int, ...]:
+        """Coordinates on which some actuator of the file acts, those with the ground apart."""
+        return tuple(k for k, most in enumerate(self.strongest) if most > 0 and k not in self.engine.base)
+
+    @property
+    def strongest(self) -> Values:
+        """Largest pull of an actuator on each coordinate (coordinate,)."""
+        return np.abs(self.pulls).max(axis=(0, 1), initial=0.0)
+
+    @cached_property
+    def weight_n(self) -> float:
+        """What moving the body up and down takes in the mean; 0 where no coordinate does [N]."""
+        motion, up = self.motion, self.engine.vertical
+        if up < 0:
+            return 0.0
+        alone = self.engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)
+        return abs(float(np.mean(self.dense(alone[:, up]))))
+
+    @property
+    def kept(self) -> slice:
+        """Samples that hold all that the low-pass leaves."""
+        return slice(None, None, max(int(self.motion.rate_hz / (DENSE * self.cutoff_hz)), 1))
+
+    @property
+    def times(self) -> Values:
+        """Of these samples [s]."""
+        return self.motion.time[self.kept]
+
+    def groups_at(self, number: int) -> list[str]:
+        """Names of the groups of muscles that move a coordinate."""
+        name = self.engine.coordinates[number].name
+        return [f"{name}_{word}_muscles" for _, word in SIDES if f"{name}_{word}_muscles" in self.groups]
+
+    def dense(self, values: Values) -> Values:
+        """Values (sample, ...) after the record's low-pass, at these samples."""
+        return sosfiltfilt(self.sections, values, axis=0)[self.kept]
+
+    def size(self, values: Values) -> float:
+        """Root mean square of values (sample,) after the record's low-pass."""
+        return float(np.sqrt(np.mean(self.dense(values) ** 2)))
+
+    @cached_property
+    def sections(self) -> Values:
+        """Low-pass of the record, in second-order sections."""
+        return np.asarray(butter(4, self.cutoff_hz, fs=self.motion.rate_hz, output="sos"))
+
+
+def tracked_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], None] = lambda _: None) -> Pass:
+    """Compute the generalised forces that a recorded motion demands, and those that the files' actuators give."""
+    check_loads(tracked)
+    engine = OpensimTracked(tracked.model, tracked.loads, tracked.actuators)
+    motion = tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
+    progress("computing the moments that the motion demands, by OpenSim")
+    demanded = engine.demanded(motion.time, (motion.q, motion.v, motion.a))
+    arms = engine.arms(motion.time, motion.q, motion.actuators)
+    pulls = arms * motion.forces[:, :, None]
+    muscles = np.array([name in engine.paths for name in motion.actuators])
+    groups = {}
+    for k, one in enumerate(engine.coordinates):
+        if k in engine.base or not muscles.any():
+            continue
+        mean = arms[:, :, k].mean(axis=0) * muscles
+        for sign, word in SIDES:
+            own = sign * mean > LEAST_ARM_M
+            if own.any():
+                groups[f"{one.name}_{word}_muscles"] = pulls[:, own, k].sum(axis=1)
+    return Pass(engine, motion, tracked.lowpass_hz, demanded, pulls, groups)
+
+
+def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
+    """Return what noise of the angles, after the record's low-pass, makes of the moments (draw, sample, coordinate)."""
+    given = noise_deg if noise_deg is not None else (NOISE_DEG if walk.motion.differentiated else 0.0)
+    if not given:
+        return np.zeros((1, len(walk.times), len(walk.engine.coordinates)))
+    rng = np.random.default_rng(SEED)
+    moved = [with_angle_noise(walk, given, rng) for _ in range(DRAWS)]
+    return np.array([walk.dense(one.demanded - walk.demanded) for one in moved])
+
+
+def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
+    """Return a walk whose angles have noise of a size [deg] that went through the record's low-pass."""
+    motion, spare = walk.motion, int(walk.motion.rate_hz)
+    sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg * MM for one in walk.engine.coordinates]
+    white = rng.normal(size=(len(motion.time) + 2 * spare, len(sizes)))
+    noise = sosfiltfilt(walk.sections, white, axis=0)
+    noise *= sizes / noise.std(axis=0)
+    inside = slice(spare, spare + len(motion.time))
+    first, second = (differentiated(noise, motion.rate_hz, order)[inside] for order in (1, 2))
+    moved = replace(motion, q=motion.q + noise[inside], v=motion.v + first, a=motion.a + second)
+    return replace(walk, motion=moved, demanded=walk.engine.demanded(moved.time, (moved.q, moved.v, moved.a)))
+
+
+def balance(walk: Pass) -> list[Finding]:
+    """Say what is left at the joint with the ground; refuse a model whose mass is not the walker's."""
+    engine, up = walk.engine, walk.engine.vertical
+    found = []
+    for k in engine.base:
+        one, size = engine.coordinates[k], walk.size(walk.demanded[:, k])
+        what = f"{one.called}: {size:.3g} {one.force_unit} (root mean square) that neither ground nor body explain"
+        found.append(Finding("note", "residual", "model", what, "", one.called))
+    if up < 0:
+        return found
+    mean = float(np.mean(walk.dense(walk.demanded[:, up])))
+    share = mean / walk.weight_n
+    if abs(share) > WRONG_MASS:
+        mass = engine.mass_kg
+        raise SchemaError(
+            f"the ground carries the model's weight to {100 * WRONG_MASS:.0f} %",
+            f"{engine.path.name} moves {mass:.1f} kg, {engine.coordinates[up].called} lacks {mean:.0f} N in the mean: "
+            f"the forces carry {mass * (1 - share):.1f} kg",
+            "Scale the model to the walker's mass, or correct the plates' scale; what is left at the joints would be "
+            "named after the error.",
+        )
+    return found
+
+
+def refuse_other_motion(walk: Pass) -> None:
+    """Refuse forces whose residuals do not balance this motion: they were computed for another one, or failed."""
+    weight = walk.weight_n
+    for k in walk.engine.base:
+        one, size = walk.engine.coordinates[k], walk.size(walk.left[:, k])
+        if one.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
+            raise SchemaError(
+                f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
+                f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
+                "Compute the forces for this motion again: they belong to another one, or were not found.",
+            )
+
+
+def only_residuals(walk: Pass) -> str:
+    """Return what can be said where no file gives the forces of muscles."""
+    base = [(k, walk.engine.coordinates[k]) for k in sorted(walk.engine.base)]
+    sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}" for k, one in base]
+    return (
+        "Nothing can be named at a joint: no file gives the muscles' forces, and whatever acts between two segments is "
+        f"taken for muscles. Ground and body alone leave {', '.join(sizes)} (root mean square)."
+    )

@@ -1,1 +1,0 @@
-"""Networks and the one trainer of all of them; the only home of torch."""

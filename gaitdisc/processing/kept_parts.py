@@ -1,0 +1,59 @@
+"""Parts of a report that stand for as long as the cycles that they show, the code and their own files do."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.processing.pooled_cycles import PooledCycles
+from gaitdisc.report.figure import SavedFigure
+from gaitdisc.saved.provenance import code_sha256
+from gaitdisc.saved.unit_folder import file_sha256, read_sealed, sealed_text
+from gaitdisc.whole_file import write_whole
+
+FOLDER = "kept"  # of a report: a file for each part
+
+
+def hash_cycles(cycles: Sequence[PooledCycles], *more: str) -> str:
+    """Hash of all that cycles hold, of this package's code, and of what else a part rests on."""
+    found = hashlib.sha256("\n".join((code_sha256(), *more)).encode())
+    for value in (getattr(one, field.name) for one in cycles for field in fields(one)):
+        if isinstance(value, np.ndarray):
+            found.update(np.ascontiguousarray(value).tobytes())
+        elif isinstance(value, pd.DataFrame):
+            found.update(value.to_csv().encode())
+        else:
+            found.update(repr(dict(value) if isinstance(value, Mapping) else value).encode())
+    return found.hexdigest()
+
+
+def read_part(report: Path, name: str, key: str) -> Any:
+    """What was kept of a part, if it rests on the same and its files are whole; else None."""
+    try:
+        kept = read_sealed(report / FOLDER / f"{name}.json")
+        whole = kept["key"] == key and all(file_sha256(report / file) == sha for file, sha in kept["files"].items())
+        return kept["data"] if whole else None
+    except (SchemaError, OSError, KeyError, AttributeError):
+        return None
+
+
+def figure_again(shown: Mapping[str, Any], folder: Path, inline_bytes: int) -> SavedFigure:
+    """Figure that stands in a folder, as data in a page that may have grown; chosen as `save_figure` does."""
+    svg, png = ((folder / f"{shown['name']}.{ending}").read_bytes() for ending in ("svg", "png"))
+    kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
+    data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
+    return SavedFigure(**{**shown, "data": data})
+
+
+def keep_part(report: Path, name: str, key: str, data: Any, files: Iterable[Path]) -> None:
+    """Keep what a part shows elsewhere, beside hashes of its files."""
+    hashes = {file.relative_to(report).as_posix(): file_sha256(file) for file in sorted(files)}
+    write_whole(report / FOLDER / f"{name}.json", sealed_text({"key": key, "data": data, "files": hashes}))

@@ -1,0 +1,189 @@
+"""Cycles of one leg as a clinic reads them; the clinical variables: words, units, signs, when muscles are active."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL, PooledCycles
+from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import mean_where_known
+
+FEET = ("l", "r")
+TURNED_DEG = 20.0  # by which the pelvis turns in the laboratory from contact to contact where somebody walks a curve
+LIGHTEST_N = 50.0  # mean force of both feet; below it nobody stands on the belts
+KNOWN_UNTIL = 91  # points of a moment or power; its end may be empty after the next foot meets an unknown plate
+ALONG_THE_PATH = ("pelvis_rotation", "foot_progression")  # angles about a straight line of walking
+KINEMATICS, MOMENTS, POWERS, FORCES = "kinematics", "moments", "powers", "forces"
+# The nine curves of the movement analysis profile (Baker et al. 2009), those of the pelvis first.
+PROFILE = (
+    "pelvis_tilt", "pelvis_obliquity", "pelvis_rotation", "hip_flexion", "hip_adduction", "hip_rotation",
+    "knee_flexion", "ankle_dorsiflexion", "foot_progression",
+)  # fmt: skip
+PELVIS = PROFILE[:3]
+# [% of the cycle]; healthy adults at their own speed, about, after Perry J, Burnfield JM 2010, Gait Analysis: Normal
+# and Pathological Function, 2nd ed.; children and other speeds differ.
+NORMAL: dict[str, tuple[tuple[int, int], ...]] = {
+    "gmax": ((0, 24), (95, 100)),
+    "gmed": ((0, 29), (95, 100)),
+    "tfl": ((0, 45),),
+    "rf": ((56, 64),),
+    "vas": ((0, 18), (86, 100)),
+    "vasmed": ((0, 15), (90, 100)),
+    "vaslat": ((0, 20), (86, 100)),
+    "ham": ((0, 8), (80, 100)),
+    "bf": ((0, 8), (82, 100)),
+    "st": ((0, 4), (75, 100)),
+    "sol": ((7, 52),),
+    "gas": ((9, 50),),
+    "gasmed": ((9, 50),),
+    "gaslat": ((9, 50),),
+    "ta": ((0, 12), (56, 100)),
+    "tp": ((0, 55),),
+    "per": ((15, 51),),
+    "perl": ((15, 51),),
+    "perb": ((15, 51),),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class LegCurves:
+    """Kept cycles of one leg."""
+
+    side: str
+    count: int
+    stance_percent: float  # mean foot off [% of the cycle]; NaN where none is known
+    # each (cycle, phase), clinical variable -> curves on 101 points, in the variable's unit and sign; complete, but for
+    # the end of a moment or power
+    cycles: Mapping[str, NDArray[np.float64]]
+    # each (cycle,), spatiotemporal value -> of the cycles in which it is known
+    values: Mapping[str, NDArray[np.float64]]
+    # mean turn of the pelvis from contact to contact; beyond TURNED_DEG angles about the line of walking are left
+    turned_deg: float = 0.0
+
+    def mean(self, name: str) -> NDArray[np.float64]:
+        """Mean curve of a variable; NaN where no cycle has a value."""
+        return mean_where_known(self.cycles[name])
+
+
+def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
+    """Both legs of a person, session and condition; a leg without a kept cycle is not there."""
+    places = {channel.name: column for column, channel in enumerate(pooled.channels)}
+    units = {channel.name: channel.unit for channel in pooled.channels}
+    kept, curves = pooled.kept, pooled.curves
+    weight = _percent_per_newton(pooled)
+    found = {}
+    for side in FEET:
+        own = (kept["side"] == side).to_numpy()
+        if not own.any():
+            continue
+        cycles = {}
+        for variable in VARIABLES:
+            channel = variable.channel(side)
+            newtons = variable.kind == FORCES and units.get(channel) == "N"
+            factor = weight if newtons else 1.0
+            if factor is not None and (newtons or units.get(channel) == variable.unit):
+                each = curves[own, :, places[channel]] * factor
+                must = KNOWN_UNTIL if variable.kind in (MOMENTS, POWERS) else len(PERCENT)
+                whole = each[np.isfinite(each[:, :must]).all(axis=1)]
+                if len(whole):
+                    cycles[variable.name] = variable.sign(side) * whole
+        turned = 0.0
+        if "pelvis_rotation" in cycles:
+            turned = float(np.abs(np.ptp(cycles["pelvis_rotation"][:, [0, -1]], axis=1)).mean())
+        if turned > TURNED_DEG:
+            cycles = {name: each for name, each in cycles.items() if name not in ALONG_THE_PATH}
+        values = {value: kept.loc[own, value].dropna().to_numpy(float) for value in SPATIOTEMPORAL}
+        known = {value: each for value, each in values.items() if len(each)}
+        stance = float(known["stance_percent"].mean()) if "stance_percent" in known else float("nan")
+        found[side] = LegCurves(side, int(own.sum()), stance, cycles, known, turned)
+    return found
+
+
+def _percent_per_newton(pooled: PooledCycles) -> float | None:
+    """Percent of body weight a newton is, of belts under each foot: over whole strides both carry the weight."""
+    feet, names = pooled.kept["side"].to_numpy(), [channel.name for channel in pooled.channels]
+    carried = 0.0
+    for side in FEET:
+        name = f"ground_force_{side}_vy"
+        if name not in names or pooled.channels[names.index(name)].unit != "N" or not (feet == side).any():
+            return None
+        carried += float(np.nanmean(pooled.curves[feet == side, :, names.index(name)]))
+    return 100.0 / carried if carried > LIGHTEST_N else None
+
+
+@dataclass(frozen=True)
+class ClinicalVariable:
+    """One curve of a leg."""
+
+    name: str
+    words: str
+    kind: str
+    stem: str  # channel it is taken from; `{side}` stands for the leg
+    signs: tuple[float, float]  # of the left and of the right leg, by which the channel's values are multiplied
+    unit: str
+    up: str  # what a positive value means
+    down: str  # what a negative value means
+
+    def channel(self, side: str) -> str:
+        """Name of the channel for a leg."""
+        return self.stem.format(side=side)
+
+    def sign(self, side: str) -> float:
+        """Sign of the channel for a leg."""
+        return self.signs["lr".index(side)]
+
+
+def _angle(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
+    return ClinicalVariable(name, words, KINEMATICS, f"{stem}_{{side}}", (1.0, 1.0), "deg", up, down)
+
+
+def _pelvis(name: str, words: str, signs: tuple[float, float], up: str, down: str) -> ClinicalVariable:
+    stem = {"pelvis_obliquity": "pelvis_list"}.get(name, name)
+    return ClinicalVariable(name, words, KINEMATICS, stem, signs, "deg", up, down)
+
+
+def _moment(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
+    return ClinicalVariable(name, words, MOMENTS, f"{stem}_{{side}}_moment", (1.0, 1.0), "N m/kg", up, down)
+
+
+def _power(joint: str) -> ClinicalVariable:
+    stem, up, down = f"{joint}_power_{{side}}", "generated", "absorbed"
+    return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), "W/kg", up, down)
+
+
+def _force(name: str, words: str, axis: str, up: str, down: str) -> ClinicalVariable:
+    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up, down)
+
+
+# in the order of a sheet, three in a row
+VARIABLES = (
+    _pelvis("pelvis_tilt", "pelvic tilt", (-1.0, -1.0), "forwards", "backwards"),
+    _pelvis("pelvis_obliquity", "pelvic obliquity", (1.0, -1.0), "own side up", "own side down"),
+    _pelvis("pelvis_rotation", "pelvic rotation", (-1.0, 1.0), "own side forwards", "own side backwards"),
+    _angle("hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension"),
+    _angle("hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction"),
+    _angle("hip_rotation", "hip rotation", "hip_rotation", "internal", "external"),
+    _angle("knee_flexion", "knee flexion", "knee_angle", "flexion", "extension"),
+    _angle("ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion"),
+    _angle("foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out"),
+    _angle("knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)"),
+    _angle("knee_rotation", "knee rotation", "knee_rotation", "internal", "external"),
+    _angle("ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion"),
+    _angle("ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external"),
+    _moment("hip_moment", "hip moment", "hip_flexion", "flexion", "extension"),
+    _moment("knee_moment", "knee moment", "knee_angle", "flexion", "extension"),
+    _moment("ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion"),
+    _power("hip"),
+    _power("knee"),
+    _power("ankle"),
+    _moment("hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
+    _moment("knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
+    _moment("ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
+    _force("vertical_force", "vertical force, of body weight", "vy", "upwards", ""),
+    _force("fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards"),
+)
+BY_NAME = {one.name: one for one in VARIABLES}

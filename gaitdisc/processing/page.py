@@ -1,0 +1,246 @@
+"""What the page shows of pooled cycles: for everybody together, then person by person, both feet over each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.processing.curves_figure import label_curve, sides_together
+from gaitdisc.processing.kept_parts import figure_again, hash_cycles, keep_part, read_part
+from gaitdisc.processing.leg_curves import FEET
+from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
+from gaitdisc.processing.tables import (
+    all_cycles,
+    all_means,
+    all_spatiotemporal,
+    left_out_cycles,
+    offset_words,
+    overview_table,
+    spatiotemporal_table,
+)
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.figure import Figure, file_names, largest_inline, save_figures
+from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
+from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
+from gaitdisc.saved.provenance import Provenance
+from gaitdisc.saved.study_run import StudyRun
+from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless, unit_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_HERE = 2  # people whose figures are drawn one after the other
+FEW = 3  # cycles of a foot below which no spread is spoken of
+METHOD = (
+    "Contacts come from the file's events, otherwise from force, markers (heel farthest in front of the pelvis, each "
+    "step along its own direction) or joint angles, in this order. A detector is skipped if it finds fewer than 80 % "
+    "of the strides of another. If a plate or event records a step that markers or angles also find, its time is "
+    "used. All other contacts are shifted by the median difference of the person's session.",
+    "Foot off comes from events, otherwise from force if markers agree within 0.15 s, the toe farthest behind the "
+    "pelvis, or the ankle's largest plantarflexion. With angles only, contacts are about 30 ms early and foot off "
+    "about 30 ms late, so stance is about 6 % of a stride too long.",
+    "A cycle is excluded if it is too short or too long, differs from the person's other cycles by more than 15 % "
+    "and 6 robust standard deviations, does not contain exactly one contact of the other foot, or lacks an angle of "
+    "its own leg. Cycles never cross trials.",
+    "Moments are shown for cycles in which one plate carried the entire stance, with this foot alone on it.",
+    "Speed and lengths are measured at the heels from contact to contact. On a treadmill the belt speed is added if "
+    "the study states it.",
+)
+COMPUTED = (
+    "Joint angles are computed from markers, calibrated with the person's static trial. “Findings” lists the marker "
+    "set, the distance of the markers from their static positions, bridged gaps and the force balance. Moments and "
+    "powers of these trials are shown for cycles whose stance is a complete step of this foot alone, with centre of "
+    "pressure, heel and toes on the plate."
+)
+COLUMNS, MOST_PANELS = 4, 20
+MOST_FAINT = 25  # cycles that are drawn one by one
+
+
+def write_cycles_page(run: StudyRun, folder: Path) -> Path:
+    """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
+    computed = any(finding.kind == "residual" for one in run.of(CYCLES) for finding in one.findings)
+    tables = {"refusals": refusals_table(run), "findings": findings_table(run), **provenance_tables(run.provenance)}
+    save_tables(tables.values(), folder)
+    shown = {
+        "run": run,
+        "answer": cycles_sentences(run),
+        "blocks": saved_cycle_blocks(run, folder),
+        "tables": tables,
+        "method": (*METHOD, *([COMPUTED] if computed else [])),
+    }
+    save_cycle_tables(run, folder)
+    return write_page("cycles", shown, folder)
+
+
+def write_lone_cycles(one: PooledCycles, folder: Path) -> Path:
+    """Write the page of cycles that stand alone, as a run of nothing else has it."""
+    created = "in the original run, whose run.json contains settings and date,"
+    made = Provenance({}, 0, one.files, {"gaitdisc": "of the version named there"}, "gait cycles", created)
+    return write_cycles_page(StudyRun(one.name, "", "", one.refusals, made, {CYCLES.file: (one,)}), folder)
+
+
+def save_cycle_tables(run: StudyRun, folder: Path) -> None:
+    """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables."""
+    for name, table in (("cycles", all_cycles), ("means", all_means), ("spatiotemporal", all_spatiotemporal)):
+        save_table(table(run.of(CYCLES)), folder / "tables" / f"{name}.csv")
+
+
+def cycles_sentences(run: StudyRun) -> list[str]:
+    """Who is reported, with how many cycles; who is not, and what the numbers do not carry."""
+    kept = [one for one in run.of(CYCLES) if len(one.kept)]
+    if not kept:
+        return ["No cycle could be kept; see “Left out”."]
+    people = list(dict.fromkeys(one.subject for one in kept))
+    left = sum(one.counted("l") for one in kept)
+    right = sum(one.counted("r") for one in kept)
+    out = sum(len(one.left_out) for one in run.of(CYCLES))
+    sentences = [
+        f"{counted(len(people), 'participant')}: {counted(left, 'left cycle')} and {counted(right, 'right cycle')} of "
+        f"{counted(sum(one.trials for one in kept), 'trial')} are kept; {out} are left out, each with its reason."
+    ]
+    if few := sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW}):
+        sentences.append(
+            f"Fewer than {FEW} cycles of a foot in a session and condition: {listed(few)}. Such curves show single "
+            "steps, not how steadily a person walks."
+        )
+    if moved := [one for one in kept if one.contact_offset_s is not None]:
+        said = [f"{one.name} {offset_words(one)}" for one in moved]
+        sentences.append(f"Contacts from markers or angles were shifted: {'; '.join(said)}.")
+    return sentences
+
+
+def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[SavedBlock]:
+    """Part of the page for everybody together, then one for each person, with figures and tables written."""
+    if not run.of(CYCLES):
+        return []
+    unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
+    device = "" if run.exo else " The study does not compare a device, so no models are fitted."
+    windows = f"Every cycle lies within one trial; cycles are not joined across trials.{device}"
+    first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.of(CYCLES)),))
+    people = list(dict.fromkeys(one.subject for one in run.of(CYCLES)))
+    names, count = file_names(people), len(run.of(CYCLES))
+    each = [([one for one in run.of(CYCLES) if one.subject == who], names[who], folder, count) for who in people]
+    drawn_side_by_side(_saved, [one for one in each if read_part(folder, *_part(*one)) is None], MOST_HERE)
+    return [save_block(first, folder), *(_saved(*one) for one in each)]  # all stand by now
+
+
+def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) -> Block:
+    """Part of the page for one person: counts, figures of each session and condition unless they stand, and tables."""
+    kept = [one for one in sets if len(one.kept)]
+    left_out = left_out_cycles(sets, name)
+    places = file_names([one.where for one in kept])
+    figures = [one for own in kept if drawn for one in cycles_figures(own, f"{name}-{places[own.where]}")]
+    tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
+    return Block(f"cycles-{name}", sets[0].subject, (_person(sets),), tuple(figures), tuple(tables))
+
+
+def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str]:
+    return f"cycles-{name}", hash_cycles(sets, name)
+
+
+def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> SavedBlock:
+    part, key = _part(sets, name)
+    block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
+    save_tables(block.tables, folder)
+    here, most = folder / "figures", largest_inline(count)
+    figures = [figure_again(one, here, most) for one in kept or ()] or save_figures(block.figures, folder, most)
+    if kept is None:
+        files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
+        keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
+    return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
+
+
+def _person(sets: Sequence[PooledCycles]) -> str:
+    parts = []
+    for one in sets:
+        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in ("l", "r"))
+        ground = "over ground" if one.over_ground else "on a treadmill"
+        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
+        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
+    return f"{'; '.join(parts)}."
+
+
+@in_style
+def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
+    """Curves of one person, session and condition, a panel for each channel with left and right over each other."""
+    numbers = pooled.mean_curves()
+    if not len(numbers):
+        return []
+    joints = list(dict.fromkeys(map(sideless, sides_together(list(dict.fromkeys(numbers["channel"]))))))
+    order = {kind: place for place, kind in enumerate(("angle", "translation", "moment", "power"))}
+    kinds = {sideless(channel.name): order.get(channel.quantity, len(order)) for channel in pooled.channels}
+    joints.sort(key=lambda joint: kinds[joint])
+    parts = sheets(joints, MOST_PANELS, f"cycles-{name}")
+    return [_figure(pooled, numbers, part, sheet) for sheet, part in parts.items()]
+
+
+def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
+    from matplotlib.lines import Line2D
+
+    columns = [one.name for one in pooled.channels]
+    drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
+    stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
+    shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
+    by_joint = dict(list(shown.groupby(shown["channel"].map(stems), sort=False)))
+    for axes, joint in zip(cells, joints, strict=True):
+        own = by_joint[joint]
+        for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
+            curve = own[(own["channel"] == channel) & (own["side"] == side)]
+            of_side = (pooled.kept["side"] == side).to_numpy()
+            every = pooled.curves[of_side, :, columns.index(channel)]
+            every = every[np.isfinite(every).any(axis=1)]
+            draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), str(side))
+            off = pooled.kept.loc[of_side, "stance_percent"].mean()
+            if np.isfinite(off):
+                colour = SIDES[str(side)].colour
+                axes.axvline(float(off), color=colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
+        axes.set_title(label(joint), fontsize=7.4)
+        label_curve(axes, str(own["channel"].iloc[0]), str(own["unit"].iloc[0]))
+    for axes in cells[-COLUMNS:]:
+        axes.set_xlabel("cycle [%]", labelpad=1)
+    key = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
+    key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
+    key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
+    legend(drawn, key)
+    return Figure(name, _caption(pooled), _alt(pooled, shown), shown, drawn)
+
+
+def draw_cycles(
+    axes: Axes, every: NDArray[np.float64], mean: NDArray[np.float64], sd: NDArray[np.float64], side: str
+) -> None:
+    """Draw every cycle (cycle, phase) faint, and their mean (phase,); from three cycles on its spread."""
+    look = SIDES[side]
+    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
+    axes.plot(PERCENT, every[:MOST_FAINT].T, color=look.colour, linewidth=0.4, alpha=0.35, zorder=1)
+    if len(every) > 2:
+        axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
+    axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)
+
+
+def _caption(pooled: PooledCycles) -> str:
+    counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
+    kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
+    plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
+    moments = f" Moments are shown only where a plate carried this foot alone: {plates}." if len(kinetic) else ""
+    filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
+    return (
+        f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean ± standard "
+        f"deviation (from three cycles on) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 %: "
+        f"initial contact of the channel's own foot; dotted: mean foot off.{moments}"
+        + "".join(f" Filters: {words}." for words in filters)
+    )
+
+
+def _alt(pooled: PooledCycles, numbers: pd.DataFrame) -> str:
+    ranges = []
+    for channel, rows in list(numbers.groupby("channel", sort=False))[:6]:
+        unit = unit_text(str(rows["unit"].iloc[0]))
+        ranges.append(f"{label(str(channel))} {rows['mean'].min():.3g} to {rows['mean'].max():.3g} {unit}")
+    return f"Mean cycles of {pooled.subject}, {pooled.where}: {'; '.join(ranges)}."

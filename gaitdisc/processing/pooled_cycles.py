@@ -1,0 +1,278 @@
+"""What is kept after processing: of a person's cycles pooled over trials, and of one walk."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from operator import itemgetter
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ShapeError
+from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.saved.kind import CSV, Kind, Saved
+from gaitdisc.saved.provenance import Refusal
+from gaitdisc.saved.unit_folder import lies_on_disk, may_lie_on_disk, unit_name
+
+CYCLE_COLUMNS = (
+    "trial",
+    "side",
+    "start_s",
+    "foot_off_s",
+    "opposite_off_s",
+    "opposite_contact_s",
+    "end_s",
+    "start_by",
+    "end_by",
+    "foot_off_by",
+    "kinetic",
+    "kept",
+    "reason",
+    "stride_s",
+    "step_s",
+    "cadence_per_min",
+    "stance_percent",
+    "swing_percent",
+    "single_support_percent",
+    "double_support_percent",
+    "stride_m",
+    "step_m",
+    "width_m",
+    "speed_m_per_s",
+)
+SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
+STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
+
+
+@may_lie_on_disk("curves")
+@dataclass(frozen=True, eq=False)
+class PooledCycles(Saved, file="cycles.json"):
+    """Cycles of one person in one session under one condition.
+
+    Parameters
+    ----------
+    subject, group, session, condition : str
+        Pseudonym; words of the study, empty where there are no groups or sessions.
+    trials : int
+        Number of trials with at least one cycle, kept or not.
+    detectors : mapping of str to int
+        Detector of the contacts -> number of trials.
+    contact_offset_s, foot_off_offset_s : float, optional
+        Shift of contacts and foot offs from markers or angles towards later times, the median over steps that a plate
+        or the file's events also recorded [s]; None without a shift.
+    offset_steps : int
+        Number of contacts that both detectors found.
+    over_ground : bool
+        Whether the pelvis moves through the laboratory; False on a treadmill.
+    channels : tuple of Channel
+        Channels of `curves`.
+    curves : ndarray (cycle, phase, channel) [channel's unit]
+        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN if a channel has no value, or if
+        moments and powers have no plate under the foot.
+    cycles : DataFrame
+        One row per cycle, kept or left out: `CYCLE_COLUMNS`.
+    findings : tuple of Finding
+        All findings of the reader and the quality checks.
+    refusals : tuple of Refusal
+        Trials that are left out entirely.
+    files : mapping of str to str
+        File name -> SHA-256.
+    leg_m : float, optional
+        Leg length, measured or estimated from the stature [m]; None if both are unknown.
+    age_years : int, optional
+        Whole years.
+
+    Raises
+    ------
+    ShapeError
+        If the curves do not have 101 points, one column per channel, and one row per kept cycle.
+    """
+
+    subject: str
+    group: str
+    session: str
+    condition: str
+    trials: int
+    detectors: Mapping[str, int]
+    contact_offset_s: float | None
+    foot_off_offset_s: float | None
+    offset_steps: int
+    over_ground: bool
+    channels: tuple[Channel, ...]
+    curves: NDArray[np.float64]
+    cycles: pd.DataFrame
+    findings: tuple[Finding, ...]
+    refusals: tuple[Refusal, ...]
+    files: Mapping[str, str]
+    leg_m: float | None = None
+    age_years: int | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes once, before they are saved."""
+        if lies_on_disk(self, "curves"):
+            return
+        wanted = (int(self.cycles["kept"].sum()), len(PERCENT), len(self.channels))
+        if np.shape(self.curves) != wanted:
+            raise ShapeError(
+                f"curves of pooled cycles must have shape {wanted}: cycles, points, channels",
+                f"the shape is {np.shape(self.curves)} for {self.name}",
+                "Normalise the kept cycles with Strides.normalised.",
+            )
+        object.__setattr__(self, "curves", read_only(self.curves))
+
+    @property
+    def name(self) -> str:
+        """Person, session and condition."""
+        return " ".join(part for part in (self.subject, self.session, self.condition) if part)
+
+    @property
+    def where(self) -> str:
+        """Session and condition."""
+        return " ".join(part for part in (self.session, self.condition) if part)
+
+    @property
+    def kept(self) -> pd.DataFrame:
+        """Rows of the cycles that are kept, in the order of `curves`."""
+        return self.cycles[self.cycles["kept"].astype(bool)].reset_index(drop=True)
+
+    @property
+    def left_out(self) -> pd.DataFrame:
+        """Rows of the cycles that are left out, each with its reason."""
+        return self.cycles[~self.cycles["kept"].astype(bool)].reset_index(drop=True)
+
+    def counted(self, side: str) -> int:
+        """Number of kept cycles of one foot.
+
+        Parameters
+        ----------
+        side : str
+            `r` or `l`.
+        """
+        return int((self.kept["side"] == side).sum())
+
+    def to_frame(self) -> pd.DataFrame:
+        """Every cycle with its times, events and the reason if it is left out; one row each."""
+        return self.cycles
+
+    def __repr__(self) -> str:
+        kept, cut = len(self.kept), len(self.cycles)
+        return f"PooledCycles({self.subject}, {self.where}: {kept} of {cut} cycles kept, {self.trials} trials)"
+
+    def mean_curves(self) -> pd.DataFrame:
+        """Mean and standard deviation of every channel on 101 points, over the kept cycles of its own foot.
+
+        Channels without a side occur twice, once for the cycles of each foot.
+
+        Returns
+        -------
+        DataFrame
+            channel, unit, side (of the cycles), percent, n (cycles with a value there), mean, sd (NaN for one cycle).
+        """
+        curves, feet = self.curves, self.kept["side"].to_numpy()
+        tables = []
+        for column, channel in enumerate(self.channels):
+            for side in (channel.side,) if channel.side else ("l", "r"):
+                own = curves[feet == side, :, column]
+                if np.isfinite(own).any():
+                    tables.append(mean_curve(own, channel=channel.name, unit=channel.unit, side=side))
+        columns = ["channel", "unit", "side", "percent", "n", "mean", "sd"]
+        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def mean_curve(curves: NDArray[np.float64], **words: str) -> pd.DataFrame:
+    """Mean and deviation of the known curves (cycle, phase) on 101 points, behind a column of each of these words."""
+    present = np.isfinite(curves)
+    count = present.sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(present, curves, 0.0).sum(axis=0) / count
+        square = np.where(present, (curves - mean) ** 2, 0.0).sum(axis=0)
+        spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
+    return pd.DataFrame({**words, "percent": PERCENT, "n": count, "mean": mean, "sd": spread})
+
+
+def cycles_name(subject: str, session: str, condition: str) -> str:
+    """Folder name of pooled cycles, another one for every person, session and condition.
+
+    >>> cycles_name("P01", "", "turn"), cycles_name("P01", "after", "turn")
+    ('P01-turn', 'P01-after___turn-c681ddd0')
+    """
+    return unit_name(subject, f"{session} / {condition}" if session else condition)
+
+
+CYCLES = Kind(
+    PooledCycles,
+    "cycles.json",
+    ("subject", "group", "session", "condition", "trials", "detectors", "contact_offset_s", "foot_off_offset_s",
+     "offset_steps", "over_ground", "channels", "findings", "refusals", "files", "leg_m", "age_years"),
+    {"cycles": CSV("cycles.csv", CYCLE_COLUMNS)},
+    {"curves": itemgetter("curves")},
+    lambda cycles: {"curves": cycles.curves},
+    flags=("kinetic", "kept"),
+    blank=("reason", "foot_off_by"),
+    unit=lambda cycles: cycles_name(cycles.subject, cycles.session, cycles.condition),
+    page="gaitdisc.processing.page:write_lone_cycles",
+    page_folder="report",
+)  # fmt: skip
+
+
+@may_lie_on_disk("curves")
+@dataclass(frozen=True, eq=False)
+class WalkSummary:
+    """One walk of one person, small enough to keep."""
+
+    subject: str  # pseudonym
+    condition: str  # the study's word
+    duration_s: float  # of the processed recording
+    rate_hz: float  # of the processed recording
+    detector: str
+    channels: tuple[Channel, ...]
+    # (stride, phase, channel) [channel's unit], every kept stride on 101 points; of a walk that was loaded it is read
+    # each time it is looked at
+    curves: NDArray[np.float64]
+    strides: pd.DataFrame  # one row a stride, kept or dropped: side, start_s, end_s, kept, reason
+    findings: tuple[Finding, ...]  # everything the reader and the quality checks saw
+    files: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Check shapes once, before they are saved."""
+        if lies_on_disk(self, "curves"):
+            return
+        wanted = (len(PERCENT), len(self.channels))
+        if np.ndim(self.curves) != 3 or self.curves.shape[1:] != wanted:
+            raise ShapeError(
+                f"curves of a walk must have shape (stride, {wanted[0]}, {wanted[1]})",
+                f"the shape is {np.shape(self.curves)} for {self.subject} {self.condition}",
+                "Normalise the strides with Strides.normalised.",
+            )
+        object.__setattr__(self, "curves", read_only(self.curves))
+
+    @property
+    def where(self) -> str:
+        """Say where among the walks of a person it stands: its condition."""
+        return self.condition
+
+    @property
+    def worst(self) -> str:
+        """Return the severest finding: `refused`, `warning`, `note`, or `clean` where there is none."""
+        return min(self.findings, key=lambda finding: finding.rank).severity if self.findings else "clean"
+
+    def counted(self, kept: bool = True) -> dict[str, int]:
+        """Number of strides of each side."""
+        chosen = self.strides[self.strides["kept"] == kept]
+        return {str(side): int(count) for side, count in chosen["side"].value_counts().sort_index().items()}
+
+
+WALK = Kind(
+    WalkSummary,
+    "walk.json",
+    ("subject", "condition", "duration_s", "rate_hz", "detector", "channels", "findings", "files"),
+    {"strides": CSV("strides.csv", STRIDE_COLUMNS)},
+    {"curves": itemgetter("curves")},
+    lambda walk: {"curves": walk.curves},
+    blank=("reason",),
+    unit=lambda walk: unit_name(walk.subject, walk.condition),
+)

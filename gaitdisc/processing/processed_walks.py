@@ -1,0 +1,147 @@
+"""A participant's walks and the cycles of all trials, kept on disk under a hash of files, settings and code."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
+from gaitdisc.ingest.raw_file import file_sha256
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import functional_trial, not_compared, static_trial, trial_sets
+from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles, cycles_name
+from gaitdisc.processing.process import StudyWalks, Walk
+from gaitdisc.processing.samples import gait_samples
+from gaitdisc.recording import Trial
+from gaitdisc.saved.provenance import Refusal, code_sha256
+
+
+def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
+    """Key of each of the two walks of a complete participant, by condition."""
+    keys = {}
+    for word in study.conditions.both:
+        trial = participant.trials_of(word)[0]
+        standing = static_trial(study, participant, trial.session or "")
+        circled = functional_trial(study, participant, trial.session or "")
+        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, standing, circled) if one)]
+        keys[word] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
+    return keys
+
+
+def person_key(study: Study, participant: Participant) -> str:
+    """What the study says of a person's body, and the bytes of its marker-set file."""
+    said = f"{participant.mass_kg} {participant.height_m} {participant.sex} {participant.age_years}"
+    named = study.kinematics.marker_set if study.kinematics else ""
+    own = named.endswith(".toml") and study.path_of(named).is_file()
+    return f"{said} {file_sha256(study.path_of(named))}" if own else said
+
+
+def response_key(keys: Mapping[str, str]) -> str:
+    """Key of what is fitted to both walks."""
+    return hashlib.sha256("".join(keys.values()).encode()).hexdigest()
+
+
+def unit_key(study: Study, trial: PlannedTrial) -> str:
+    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code."""
+    settings = study.model_dump(mode="json", exclude={"participants", "title"})
+    parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
+    for file in trial.files:
+        try:
+            parts.append(file_sha256(study.path_of(file)))
+        except OSError as error:
+            parts.append(f"{file}: {error.strerror}")
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
+    """Both walks of a participant by condition, and why one could not be had, in public words; it needs one of each."""
+    lacking = not_compared(study, participant)
+    if lacking:
+        return {}, (Refusal(participant.id, "", lacking),)
+    walks, errors = walks_and_errors(study, participant)
+    return walks, tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
+
+
+def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
+    """Both walks of a complete participant, by condition, and the error of one that could not be, in public words."""
+    walks, errors = {}, {}
+    words = words_of(study, participant)
+    with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
+        own = StudyWalks(study, participant, partial(public_trial, study, participant, words, reader))
+        for word in study.conditions.both:
+            try:
+                planned = participant.trials_of(word)[0]
+                public = of_trial(words, participant, planned)
+                walks[word] = public.of(partial(_walk, own, planned, public))
+            except GaitdiscError as error:
+                errors[word] = error
+    return walks, errors
+
+
+def public_trial(
+    study: Study, participant: Participant, words: PublicWords, reader: C3DReader, planned: PlannedTrial
+) -> Trial:
+    """Trial of a study, read, whose files and findings are called by public words alone."""
+    public = of_trial(words, participant, planned)
+    return public.of(lambda: public.trial(read_planned_trial(study, participant, planned, reader)))
+
+
+def _walk(own: StudyWalks, planned: PlannedTrial, public: PublicWords) -> Walk:
+    walk = own.walk(planned)
+    left_away = gait_samples(walk.trajectory, own.study.models.outputs)[1].finding()
+    return replace(walk, findings=tuple(map(public.finding, (*walk.findings, left_away))))
+
+
+def computed_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:
+    """Pooled cycles of a participant, computed, or loaded where an earlier run had the same files and settings."""
+    key = cycles_key(study, participant)
+    places = [
+        folder / "cycles" / cycles_name(participant.id, one.session, one.condition)
+        for one in trial_sets(study, participant)
+    ]
+    stored = tuple(one for one in (CYCLES.kept(place, key) for place in places) if one is not None)
+    if len(stored) == len(places):
+        return stored
+    from gaitdisc.processing.pooled import pooled_cycles  # brings scipy.signal, which a second run does not need
+
+    words = words_of(study, participant)
+    unread: list[ReadError] = []
+    with C3DReader() as reader:  # one process for all trials
+
+        def read(planned: PlannedTrial) -> Trial:
+            try:
+                return public_trial(study, participant, words, reader, planned)
+            except ReadError as error:
+                unread.append(error)
+                raise
+
+        found = [
+            replace(  # no word of the recordings stands in a sentence
+                pooled,
+                findings=tuple(map(words.finding, pooled.findings)),
+                refusals=tuple(replace(refusal, reason=words.said(refusal.reason)) for refusal in pooled.refusals),
+            )
+            for pooled in pooled_cycles(study, participant, read)
+        ]
+    if unread:  # they may be readable another time, so that this stands for no key
+        key = ""
+    for pooled, place in zip(found, places, strict=True):
+        CYCLES.save(pooled, place, key)
+    return tuple(CYCLES.load(place) for place in places)
+
+
+def cycles_key(study: Study, participant: Participant) -> str:
+    """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
+    parts = [participant.id, participant.group, person_key(study, participant)]
+    for one in trial_sets(study, participant):
+        beside = (static_trial(study, participant, one.session), functional_trial(study, participant, one.session))
+        trials = (*one.trials, *(trial for trial in beside if trial))
+        parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()

@@ -1,0 +1,218 @@
+"""Tables of pooled cycles: how many, spatiotemporal values, and those left out with their reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.processing.leg_curves import FEET
+from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, SPATIOTEMPORAL, PooledCycles
+from gaitdisc.recording import PERCENT, Recording
+from gaitdisc.report.table import Table
+from gaitdisc.words import NONE, SIDE_WORDS, counted, number
+
+WHO = ("participant", "group", "session", "condition")
+VALUES = {  # column -> words, unit, digits
+    "speed_m_per_s": ("speed", "m/s", 2),
+    "cadence_per_min": ("cadence", "steps/min", 0),
+    "stride_s": ("stride time", "s", 2),
+    "step_s": ("step time", "s", 2),
+    "stride_m": ("stride length", "m", 2),
+    "step_m": ("step length", "m", 2),
+    "width_m": ("step width", "m", 2),
+    "stance_percent": ("stance", "%", 1),
+    "swing_percent": ("swing", "%", 1),
+    "single_support_percent": ("single support", "%", 1),
+    "double_support_percent": ("double support", "%", 1),
+}
+
+
+def all_cycles(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Every cycle of everybody, kept or left out, one row each."""
+    return _stacked([_named(one, one.cycles) for one in cycles if len(one.cycles)], CYCLE_COLUMNS)
+
+
+def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Mean curves of everybody, one row a channel, side and percent."""
+    columns = ("channel", "unit", "side", "percent", "n", "mean", "sd")
+    return _stacked([_named(one, one.mean_curves()) for one in cycles if len(one.kept)], columns)
+
+
+def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
+    """Mean cycle of each foot of everybody as a recording, by participant, session, condition and side.
+
+    Percent of the cycle becomes time, 0 to the mean duration of the cycles; a channel without a side is that over the
+    cycles of the foot; one that is not known over the whole cycle is left out.
+    """
+    found = {}
+    for one in cycles:
+        means = one.mean_curves()
+        known = {channel.name: channel for channel in one.channels}
+        for side in sorted(set(means["side"])):
+            own = means[means["side"] == side].pivot_table("mean", "percent", "channel")
+            own = own[[name for name in known if name in own and bool(np.isfinite(own[name]).all())]]
+            duration_s = float(one.kept.loc[one.kept["side"] == side, "stride_s"].mean())
+            if own.empty or not len(own.columns):
+                continue
+            words = (one.subject, one.session, one.condition, side)
+            found["_".join(word.replace(" ", "-") for word in words if word)] = Recording(
+                own.index.to_numpy(float) / 100.0 * duration_s,
+                own.to_numpy(float),
+                tuple(known[str(name)] for name in own.columns),
+                one.subject,
+                one.condition,
+            )
+    return found
+
+
+def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there."""
+    columns = ("trial", "side", "start_s", "channel", "unit", "percent", "value")
+    tables = []
+    for one in cycles:
+        curves = one.curves
+        for row, cycle in enumerate(one.kept.itertuples(index=False)):
+            for column, channel in enumerate(one.channels):
+                values = curves[row, :, column]
+                if np.isfinite(values).any():
+                    words = (cycle.trial, cycle.side, cycle.start_s, channel.name, channel.unit, PERCENT, values)
+                    tables.append(_named(one, pd.DataFrame(dict(zip(columns, words, strict=True)))))
+    return _stacked(tables, columns)
+
+
+def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Spatiotemporal values of everybody: n, mean and standard deviation over kept cycles, by side."""
+    rows = []
+    for one in cycles:
+        for side in FEET:
+            own = one.kept[one.kept["side"] == side]
+            for value in SPATIOTEMPORAL:
+                known = own[value].dropna()
+                spread = float(known.std()) if len(known) > 1 else np.nan
+                mean = float(known.mean()) if len(known) else np.nan
+                rows.append((*_who(one).values(), value, side, len(known), mean, spread))
+    return pd.DataFrame(rows, columns=pd.Index([*WHO, "value", "side", "n", "mean", "sd"]))
+
+
+def _who(one: PooledCycles) -> dict[str, str]:
+    return dict(zip(WHO, (one.subject, one.group, one.session, one.condition), strict=True))
+
+
+def _named(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
+    """Table behind the columns that say whose it is."""
+    return table.assign(**_who(one))[[*WHO, *table.columns]]
+
+
+def _stacked(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFrame:
+    """Tables of `_named` under each other; of none the columns."""
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index([*WHO, *columns]))
+
+
+def overview_table(cycles: Sequence[PooledCycles]) -> Table:
+    """Who has how many cycles of which foot, from how many trials, and what placed the contacts."""
+    rows, records = [], []
+    for one in cycles:
+        kinetic = one.kept[one.kept["kinetic"].astype(bool)]
+        muscles = emg_counts(one)
+        by = ", ".join(f"{name} ({count})" if len(one.detectors) > 1 else name for name, count in one.detectors.items())
+        record = {
+            **_who(one), "trials": one.trials, **{f"kept_{side}": one.counted(side) for side in FEET},
+            **{f"left_out_{side}": int((one.left_out["side"] == side).sum()) for side in FEET},
+            **{f"kinetic_{side}": int((kinetic["side"] == side).sum()) for side in FEET},
+            "emg_channels": len(muscles), "emg_cycles": sum(muscles.values()), "detectors": by,
+            "contact_offset_s": one.contact_offset_s, "foot_off_offset_s": one.foot_off_offset_s,
+            "offset_steps": one.offset_steps, "over_ground": one.over_ground,
+        }  # fmt: skip
+        live = sum(count > 0 for count in muscles.values())
+        rows.append((
+            one.subject, one.group or NONE, one.where, str(one.trials),
+            *(f"{record[f'kept_{side}']} / {record[f'left_out_{side}']}" for side in FEET),
+            f"{record['kinetic_l']}, {record['kinetic_r']}",
+            f"{live} usable, {record['emg_cycles']} cycles" if live else NONE, by or NONE, offset_words(one),
+        ))  # fmt: skip
+        records.append(record)
+    columns = (
+        "participant", "group", "session, condition", "trials", "left: kept / dropped", "right: kept / dropped",
+        "on a plate (left, right)", "EMG", "contacts by", "shift of contacts",
+    )  # fmt: skip
+    caption = (
+        f"Cycles pooled over trials, n = {len(cycles)} sessions and conditions. On a plate: cycles in which one plate "
+        "carried the entire stance, with this foot alone on it. EMG: usable channels, and cycles with all of them."
+    )
+    return Table("cycle_counts", caption, columns, tuple(rows), pd.DataFrame(records))
+
+
+def emg_counts(one: PooledCycles) -> dict[str, int]:
+    """Kept cycles of its own foot in which each EMG channel is live."""
+    feet = one.kept["side"].to_numpy()
+    columns = {column: c for column, c in enumerate(one.channels) if c.quantity == "emg"}
+    if not columns:
+        return {}
+    curves = one.curves
+    return {
+        channel.name: int(np.isfinite(curves[feet == channel.side, :, column]).all(axis=1).sum())
+        for column, channel in columns.items()
+    }
+
+
+def offset_words(one: PooledCycles) -> str:
+    """By how much contacts of markers or angles were moved, and on how many steps that rests."""
+    late = [name for name in one.detectors if name in ("markers", "angles")]
+    if not late:
+        return NONE
+    if one.contact_offset_s is None:
+        return "not shifted: no plate recorded a step"
+    steps = counted(one.offset_steps, "step")
+    return f"{1000.0 * one.contact_offset_s:+.0f} ms ({steps} that a plate or an event also recorded)"
+
+
+def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
+    """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition."""
+    numbers = all_spatiotemporal(sets)
+    rows = []
+    for value, (words, unit, digits) in VALUES.items():
+        cells = []
+        for one in sets:
+            for side in FEET:
+                own = numbers[
+                    (numbers["value"] == value) & (numbers["side"] == side)
+                    & (numbers["session"] == one.session) & (numbers["condition"] == one.condition)
+                ].iloc[0]  # fmt: skip
+                cells.append(mean_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
+        if set(cells) != {NONE}:
+            rows.append((f"{words} [{unit}]", *cells))
+    columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))
+    groups = (("", 1), *((one.where, 2) for one in sets))
+    caption = f"{sets[0].subject}: spatiotemporal values, mean ± standard deviation (number of cycles)."
+    return Table(f"spatiotemporal-{name}", caption, columns, tuple(rows), numbers, groups)
+
+
+def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
+    """Cycles of one person that are left out, each with its reason; None where there are none."""
+    numbers = all_cycles([one for one in sets if len(one.left_out)])
+    numbers = numbers[~numbers["kept"].astype(bool)].reset_index(drop=True) if len(numbers) else numbers
+    if not len(numbers):
+        return None
+    rows = tuple(
+        (
+            f"{row.session} {row.condition}".strip(),
+            str(row.trial),
+            SIDE_WORDS[str(row.side)],
+            f"{row.start_s:.2f} to {row.end_s:.2f}",
+            str(row.reason),
+        )
+        for row in numbers.itertuples(index=False)
+    )
+    headings = ("session, condition", "trial", "side", "from, to [s]", "why")
+    caption = f"{sets[0].subject}: cycles left out, n = {len(rows)}."
+    return Table(f"left_out-{name}", caption, headings, rows, numbers)
+
+
+def mean_cell(mean: float, spread: float, count: int, digits: int) -> str:
+    """Mean ± standard deviation (count), as a cell has it."""
+    if not count:
+        return NONE
+    sd = f" ± {spread:.{digits}f}" if np.isfinite(spread) else ""
+    return f"{number(mean, digits)}{sd} ({count})"

@@ -1,0 +1,384 @@
+"""States from a few sensors, on arrays: `fit(x, y)` and `predict(x)`, as scikit-learn has it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import SamplingError, ShapeError, TrainingError
+from gaitdisc.ingest.table import frame_columns, has_times
+from gaitdisc.reconstruction.model_folder import SensingModel, load_model, save_model
+from gaitdisc.reconstruction.state_errors import half_widths
+from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor
+from gaitdisc.reconstruction.windows import SEAM_S, Lags, stacked, windows_of
+from gaitdisc.recording import Recording, Samples
+from gaitdisc.recording.arrays import real_array
+from gaitdisc.saved.kind import Kind, Saved
+from gaitdisc.statistics.r2 import r2
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CHECKED = 0.15  # of each trial, its last part: penalties, epochs and the interval are chosen on it
+Readings: TypeAlias = Union[ArrayLike, Recording, "pd.DataFrame", "pd.Series[Any]"]
+Trials: TypeAlias = Readings | Sequence[Readings]
+SETTINGS = ("kind", "rate_hz", "history_s", "spacing_s", "ahead_s", "seed")
+
+
+class Reconstructor(Saved, file="model.json"):
+    """Estimate the states of a system from a few sensors and their history.
+
+    Parameters
+    ----------
+    kind : str
+        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the current readings), `delay ridge` (on
+        readings and their history), `fourier ridge` (on random Fourier features of these), `shallow decoder` (SDN,
+        present readings), `shred` (recurrent network on readings and history, shallow decoder), or one on request.
+    rate_hz : float
+        Sampling rate of all arrays [Hz].
+    history_s : float
+        Length of the history in a window [s].
+    spacing_s : float
+        Time between two readings of a window [s].
+    ahead_s : float
+        0 for the current state; a positive value is a forecast [s].
+    seed : int
+        Seed of all random numbers.
+
+    Attributes
+    ----------
+    half_widths : ndarray (state,) [each state's unit]
+        Half width of the 90 % interval, from the validation part; available after `fit`.
+
+    References
+    ----------
+    Williams, Zahn and Kutz 2024 (SHRED); Erichson et al. 2020 (shallow decoder). Ebers 2023, chapter 5.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(0.0, 30.0, 0.01)
+    >>> x, y = np.sin(3 * t)[:, None], np.column_stack([np.cos(3 * t), np.sin(3 * t + 1)])
+    >>> model = gd.Reconstructor("delay ridge", rate_hz=100.0, history_s=0.5).fit(x[:2000], y[:2000])
+    >>> bool(model.score(x[2000:], y[2000:]) > 0.99)
+    True
+    """
+
+    def __init__(
+        self,
+        kind: str = "delay ridge",
+        rate_hz: float = 100.0,
+        history_s: float = 1.0,
+        spacing_s: float = 0.04,
+        ahead_s: float = 0.0,
+        seed: int = 0,
+    ) -> None:
+        self.kind, self.rate_hz, self.seed = kind, float(rate_hz), seed
+        self.history_s, self.spacing_s, self.ahead_s = history_s, spacing_s, ahead_s
+        self._model: SensingModel | None = None
+
+    def fit(self, x: Trials, y: Trials) -> Reconstructor:
+        """Fit the model to one trial, or to several.
+
+        Penalties, epochs and the interval are chosen on the last 15 % of each trial, separated from the rest by one
+        window and 0.3 s. Filter `x` and `y` first, and hold out your test data before you call this.
+
+        Parameters
+        ----------
+        x : array_like (time, sensor), DataFrame, Series, Recording, or a sequence of them
+            Readings. `predict` finds the columns of a DataFrame or Recording by name. Times, in a column `time` or an
+            index of that name, are not a sensor; they must agree with `rate_hz`.
+        y : array_like (time, state), DataFrame, Series, Recording, or a sequence of them
+            States at the same times.
+
+        Returns
+        -------
+        Reconstructor
+            Itself.
+
+        Raises
+        ------
+        ShapeError
+            If the arrays do not match.
+        SamplingError
+            If a trial is shorter than a window.
+        TrainingError
+            If too few windows remain, or a state does not vary.
+        """
+        many = isinstance(x, list | tuple) and (isinstance(x[0], Recording) or np.ndim(x[0]) > 1)
+        readings, states = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
+        for one, other in zip(readings, states, strict=False):
+            _check_same_times(one, other, self.rate_hz)
+        readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in (readings, states))
+        if len(readings) != len(states):
+            raise ShapeError(
+                "a model needs as many trials of states as of readings",
+                f"there are {len(readings)} of readings and {len(states)} of states",
+                "Give one array of states for each array of readings.",
+            )
+        sensors, targets = _names(readings[0], "sensor"), _names(states[0], "state")
+        both = [name for name in targets if name in sensors]
+        if both:
+            raise ShapeError(
+                "a state must not be one of the sensors",
+                f"{both[0]!r} is in both",
+                "Remove it from the states, because it is measured.",
+            )
+        lags = Lags(
+            max(1, round(self.history_s / self.spacing_s) + 1) if self.history_s else 1,
+            max(1, round(self.spacing_s * self.rate_hz)),
+            round(self.ahead_s * self.rate_hz),
+        )
+        what = Sensing(sensors, targets, lags, self.rate_hz)
+        windows = [self._windows(one, other, what) for one, other in zip(readings, states, strict=True)]
+        parts = [each.last_block(CHECKED, what.reach_s + SEAM_S) for each in windows]
+        training, check = (stacked([part[k] for part in parts]) for k in (0, 1))
+        done = fit_reconstructor(self.kind, what, training, check, self.seed)
+        self._model = SensingModel(done, _signals((*sensors, *targets)), half_widths(done(check) - check.y))
+        return self
+
+    def predict(self, x: Readings) -> NDArray[np.float64]:
+        """Estimate the states of one trial.
+
+        Parameters
+        ----------
+        x : array_like (time, sensor), DataFrame or Recording
+            Readings at `rate_hz`, with the sensors of `fit` by name or in the same order.
+
+        Returns
+        -------
+        ndarray (time, state)
+            States at the times of `x`; a forecast uses readings up to `ahead_s` before its time. NaN if the history is
+            incomplete or a reading is missing.
+
+        Raises
+        ------
+        TrainingError
+            If the model was not fitted.
+        ShapeError
+            If there are more or fewer sensors than at `fit`.
+        """
+        model = self.model
+        x = _timeless(x, self.rate_hz)
+        return np.array(model(self._recording(x, model.reconstructor.sensing.sensors)).values)
+
+    def score(self, x: Readings, y: Readings) -> float:
+        """R2 of the estimates, averaged over states.
+
+        Parameters
+        ----------
+        x : array_like (time, sensor), DataFrame or Recording
+            Readings.
+        y : array_like (time, state), DataFrame or Recording
+            Measured states at the same times.
+        """
+        _check_same_times(x, y, self.rate_hz)
+        estimated = self.predict(x)
+        measured = _array(_in_order(_timeless(y, self.rate_hz), self.model.reconstructor.sensing.states), "states")
+        known = np.isfinite(estimated).all(axis=1) & np.isfinite(measured).all(axis=1)
+        return float(np.mean(r2(measured[known], estimated[known])))
+
+    def windows(self, x: ArrayLike, percent: ArrayLike) -> Samples:
+        """Windows of readings in the form that the fitted model needs.
+
+        Parameters
+        ----------
+        x : array_like (time, sensor)
+            Readings at `rate_hz`.
+        percent : array_like (time,) [% stride]
+            Percent stride of these times.
+
+        Returns
+        -------
+        Samples
+            Windows without states; percent stride of the last reading of each window.
+        """
+        what = self.model.reconstructor.sensing
+        read = self._recording(x, what.sensors)
+        return windows_of(read, what.sensors, (), what.lags, np.asarray(percent, float))
+
+    def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
+        """Settings by name, for scikit-learn's `clone` and `Pipeline`.
+
+        Parameters
+        ----------
+        deep : bool
+            Without effect, because there is no inner estimator.
+        """
+        return {name: getattr(self, name) for name in SETTINGS}
+
+    def set_params(self, **settings: Any) -> Reconstructor:
+        """Change settings, for scikit-learn's searches; the fitted model is discarded.
+
+        Parameters
+        ----------
+        **settings
+            Those of the constructor.
+        """
+        unknown = sorted(set(settings) - set(SETTINGS))
+        if unknown:
+            raise TrainingError(
+                f"settings of a Reconstructor are {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
+            )
+        self.__init__(**{**self.get_params(), **settings})  # type: ignore[misc]
+        return self
+
+    def __sklearn_is_fitted__(self) -> bool:
+        return self._model is not None
+
+    def __sklearn_tags__(self) -> Any:
+        from sklearn.utils import RegressorTags, Tags, TargetTags
+
+        return Tags("regressor", TargetTags(required=True, multi_output=True), regressor_tags=RegressorTags())
+
+    @property
+    def model(self) -> SensingModel:
+        """The fitted model; it also accepts a Recording."""
+        if self._model is None:
+            raise TrainingError("a model must be fitted to predict", "fit was not called", "Call fit(x, y) first.")
+        return self._model
+
+    @property
+    def half_widths(self) -> NDArray[np.float64]:
+        """Half width of the 90 % interval of each state (state,), in its unit."""
+        return self.model.half_widths
+
+    def __repr__(self) -> str:
+        fitted = "not fitted"
+        if self._model is not None:
+            what = self._model.reconstructor.sensing
+            windows = self._model.reconstructor.n_fitted
+            fitted = f"{len(what.sensors)} sensors to {len(what.states)} states, fitted to {windows} windows"
+        return f"Reconstructor({self.kind!r}, {self.rate_hz:g} Hz, {self.history_s:g} s of history: {fitted})"
+
+    def _recording(self, x: Any, sensors: tuple[str, ...]) -> Recording:
+        if isinstance(x, Recording):
+            _check_rate(self.rate_hz, x.rate_hz, "recording")
+        values = _array(_in_order(x, sensors), "readings")
+        if values.shape[1] != len(sensors):
+            raise ShapeError(
+                f"the model needs {len(sensors)} sensors",
+                f"the array has {values.shape[1]} columns",
+                "Give the sensors of fit, in the same order.",
+            )
+        return Recording(np.arange(len(values)) / self.rate_hz, values, _signals(sensors))
+
+    def _windows(self, x: Any, y: Any, what: Sensing) -> Samples:
+        read, states = self._recording(x, what.sensors), _array(y, "states")
+        if states.shape != (len(read.time), len(what.states)):
+            raise ShapeError(
+                f"every reading must have a row of {len(what.states)} states",
+                f"the readings have shape {read.values.shape}, the states {states.shape}",
+                "Give one row per time in both.",
+            )
+        both = Recording(read.time, np.hstack([read.values, states]), _signals((*what.sensors, *what.states)))
+        return what.windows(both, np.zeros(len(read.time)))
+
+
+def load_reconstructor(folder: Path) -> Reconstructor:
+    """Load what `Reconstructor.save` or `gaitdisc reconstruct` wrote; a damaged file is refused."""
+    model = load_model(folder)
+    what = model.reconstructor.sensing
+    lags, rate = what.lags, what.rate_hz
+    done = Reconstructor(model.reconstructor.kind, rate, lags.reach / rate, lags.spacing / rate, lags.ahead / rate)
+    done._model = model
+    return done
+
+
+RECONSTRUCTOR = Kind(
+    Reconstructor, "model.json", write=lambda fitted, folder: save_model(fitted.model, folder), read=load_reconstructor
+)
+
+
+def _signals(names: tuple[str, ...]) -> tuple[Channel, ...]:
+    return tuple(Channel(name, "signal", "1") for name in names)
+
+
+def _array(given: Any, words: str) -> NDArray[np.float64]:
+    values = real_array(given.values if isinstance(given, Recording) else given)
+    if hasattr(given, "to_frame"):  # one column of a DataFrame
+        values = values[:, None]
+    if values.ndim != 2:
+        raise ShapeError(
+            f"{words} must be an array (time, column)",
+            f"found {values.shape}",
+            "Put time first, with one column per sensor or state: x[:, None] for a single one.",
+        )
+    return values
+
+
+def _timeless(given: Any, rate_hz: float) -> Any:
+    """A table without its times, after a look whether they have the rate of the model; all else as it is."""
+    if not hasattr(given, "columns") or not has_times(given):
+        return given
+    timed = frame_columns(given)
+    _check_rate(rate_hz, (len(timed.time) - 1) / float(timed.time[-1] - timed.time[0]), "table")
+    return given[[name for name in given.columns if str(name) in timed.labels]]
+
+
+def _times(given: Any) -> NDArray[np.float64] | None:
+    """Times of a recording, of a table, or of an index of fractions [s]; an array has none."""
+    if isinstance(given, Recording):
+        return given.time
+    if not hasattr(given, "iloc"):
+        return None
+    table = given.to_frame("value") if hasattr(given, "to_frame") else given
+    if has_times(table):
+        return frame_columns(table).time
+    return np.asarray(table.index, float) if table.index.dtype.kind == "f" else None
+
+
+def _check_same_times(x: Any, y: Any, rate_hz: float) -> None:
+    """Refuse readings and states that were measured more than half a sample apart: they are paired row by row."""
+    first, second = _times(x), _times(y)
+    if first is None or second is None or len(first) != len(second):
+        return
+    row = int(np.argmax(np.abs(first - second)))
+    if abs(first[row] - second[row]) > 0.5 / rate_hz:
+        raise SamplingError(
+            "readings and states must be measured at the same times",
+            f"in row {row + 1} the readings are at {first[row]:.6g} s, the states at {second[row]:.6g} s",
+            "Cut both to the same period, or shift the clock of one.",
+        )
+
+
+def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
+    if abs(found_hz - rate_hz) > 1e-3 * rate_hz:
+        raise SamplingError(
+            f"the model needs {rate_hz:g} samples per second",
+            f"the {what} has {found_hz:g}",
+            "Resample it, or state its rate: Reconstructor(rate_hz=...).",
+        )
+
+
+def _named(given: Any) -> tuple[str, ...]:
+    """Names of the columns of a table or a recording; none of an array."""
+    if isinstance(given, Recording):
+        return given.names
+    names = (given.name,) if hasattr(given, "to_frame") else getattr(given, "columns", ())
+    return tuple(str(name) for name in names if name is not None)
+
+
+def _names(given: Any, word: str) -> tuple[str, ...]:
+    return _named(given) or tuple(f"{word}_{n}" for n in range(1, _array(given, f"{word}s").shape[1] + 1))
+
+
+def _in_order(given: Any, sensors: tuple[str, ...]) -> Any:
+    """Columns of the sensors or states by name, where both have names; else as given."""
+    names = _named(given)
+    if not names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in sensors):
+        return given
+    absent = [name for name in sensors if name not in names]
+    if absent:
+        raise ShapeError(
+            f"the model needs the columns {', '.join(sensors)}",
+            f"{absent[0]!r} is not among {', '.join(names[:8])}",
+            "Use the column names of fit, or an array in the order of fit.",
+        )
+    return _array(given, "readings")[:, [names.index(name) for name in sensors]]

@@ -1,0 +1,277 @@
+"""The walks of a study as sensing needs them: sensors and what is reconstructed from them, filtered, on one rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, SchemaError, UnitError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
+from gaitdisc.ingest.study import Models, Participant, Study
+from gaitdisc.ingest.trial_sets import is_walk
+from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.process import ReadWalk, StudyWalks, is_raw
+from gaitdisc.processing.processed_walks import public_trial
+from gaitdisc.processing.walk_pair import FORCE_HZ
+from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.recording.strides import interpolated
+from gaitdisc.saved.provenance import Refusal
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.emg import emg_findings, enveloped
+from gaitdisc.signals.strides import cut_strides
+
+EDGE_S = 0.3  # where a zero-lag filter lacks one side
+WHOLE_STATE = (
+    *(f"pelvis_{word}" for word in ("tilt", "list", "rotation", "tx", "ty", "tz")),
+    "lumbar_extension",
+    "lumbar_bending",
+    *(
+        f"{joint}_{side}"
+        for side in "rl"
+        for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
+    ),
+)  # the 18 of section 5.3.3
+STATES = "states"
+TARGETS = {
+    "emg": ("emg", ("emg",)),
+    "forces": ("forces", ("force", "vertical_force")),
+    "moments": ("moments", ("moment",)),
+}  # word -> stream of a trial, and its quantities
+SENSED = ("kinematics", "markers")  # streams that hold sensors
+STILL = {"deg": 1e-3, "m": 1e-3}  # a channel that varies less was locked
+STILL_OTHERWISE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SensedWalk:
+    """One filtered walk."""
+
+    recording: Recording
+    phi: NDArray[np.float64]  # (time,) [% stride], of the study's side
+
+
+@dataclass(frozen=True, eq=False)
+class SensedWalks:
+    """The walks of all participants, of the same channels at the same rate."""
+
+    people: dict[str, tuple[SensedWalk, ...]]  # pseudonym -> walks; those without any are not among them
+    channels: tuple[Channel, ...]  # of every recording, in order: the states, then sensors that are none
+    refusals: tuple[Refusal, ...]
+    findings: tuple[Finding, ...]  # states that are left out, and what was seen in the recordings
+    files: dict[str, str]  # what each file is called -> SHA-256
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second of every recording."""
+        return next(iter(self.people.values()))[0].recording.rate_hz
+
+    def named(self, names: Sequence[str]) -> tuple[Channel, ...]:
+        """Return channels by their names, in the order of the names."""
+        by_name = {channel.name: channel for channel in self.channels}
+        return tuple(by_name[name] for name in names)
+
+
+def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATES) -> SensedWalks:
+    """Read and process every walk of a study for reconstruction.
+
+    sensors: channels of the kinematics that are read; they may be others than the 18 states
+    condition: a word of the study's conditions; both where it is empty
+    """
+    refuse_unknown_targets(targets)
+    walks: dict[str, list[SensedWalk]] = {}
+    refusals, findings, files = [], [], {}
+    with C3DReader() as reader:
+        for person in study.participants:
+            if person.excluded:
+                refusals.append(Refusal(person.id, "", f"excluded in the study: {person.excluded}"))
+                continue
+            public = words_of(study, person, sensors)
+            for read in _walks(study, person, condition, reader, public, refusals):
+                trial = read.trial
+                try:
+                    walk, seen = _sensed(read, study, sensors, targets)
+                except GaitdiscError as error:
+                    reason = f"{trial.name}: {public.error(error)}"
+                    refusals.append(Refusal(person.id, trial.condition, reason))
+                    continue
+                walks.setdefault(person.id, []).append(walk)
+                findings += map(public.finding, seen)
+                files |= {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
+    if not walks:
+        raise ChannelError(
+            "reconstruction needs at least one usable walk",
+            f"all are refused, the first: {refusals[0].reason}" if refusals else "the study has none",
+            "Correct what the message names, or choose other sensors.",
+        )
+    _refuse_units([walk for found in walks.values() for walk in found])
+    channels, left_out = _moving([walk for found in walks.values() for walk in found], sensors)
+    names = [channel.name for channel in channels]
+    people = {
+        name: tuple(replace(walk, recording=walk.recording.selected(names)) for walk in found)
+        for name, found in walks.items()
+    }
+    _refuse_rates(people)
+    return SensedWalks(people, channels, tuple(refusals), (*left_out, *findings), files)
+
+
+def _walks(
+    study: Study, person: Participant, condition: str, reader: C3DReader, public: PublicWords, refusals: list[Refusal]
+) -> list[ReadWalk]:
+    found = []
+    streams = [stream for stream, _ in TARGETS.values()]
+    own = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
+    for planned in person.trials:
+        if not is_walk(study, planned) or (condition and planned.condition != condition):
+            continue
+        try:
+            read = own.read_walk(planned)
+            trial = of_trial(public, person, planned).known_channels(read.trial, streams)
+            found.append(replace(read, trial=trial))
+        except GaitdiscError as error:
+            refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
+    return found
+
+
+def _sensed(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
+    trial = read.trial
+    if targets != STATES:
+        both, strides, seen = target_walk(trial, study, sensors, targets)
+        kept = both.between(both.time[0] + EDGE_S, both.time[-1] - EDGE_S)
+        return SensedWalk(kept, strides.phi(kept.time)), seen
+    kinematics = trial.stream("kinematics")
+    for name in sensors:
+        kinematics.index(name)  # refuses a sensor that was not recorded, and names the nearest
+    wanted = dict.fromkeys([*(name for name in WHOLE_STATE if name in kinematics.names), *sensors])
+    legs = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
+    needed = tuple(dict.fromkeys([*wanted, *(name for name in legs if name in kinematics.names)]))
+    walk = read.processed(study.model_copy(update={"models": Models().model_copy(update={"angles": needed})}))
+    state = walk.state.selected(list(wanted))
+    inner = state.between(state.time[0] + EDGE_S, state.time[-1] - EDGE_S)
+    phi = walk.strides[walk.side].phi(inner.time)
+    return SensedWalk(inner, phi), [finding for finding in walk.findings if finding.severity != "note"]
+
+
+def target_walk(
+    trial: Trial, study: Study, sensors: Sequence[str], targets: str
+) -> tuple[Recording, Strides, list[Finding]]:
+    """Sensors of one trial and what is to be reconstructed from them, on the time base of the sensors.
+
+    Sensors are low-passed as kinematics; EMG becomes its envelope; forces are low-passed at 20 Hz, moments as
+    kinematics. The centre of pressure and the free moment are no targets: they mean nothing while the foot is in the
+    air.
+
+    trial: with kinematics or markers, and the stream of the targets
+    returns strides: of the study's side, or of the one whose contacts are found
+    """
+    refuse_unknown_targets(targets)
+    filters = study.filters
+    there = [key for key in SENSED if key in trial.streams] or [SENSED[0]]
+    stream = next((key for key in there if set(sensors) <= set(trial.stream(key).names)), there[0])
+    read = trial.stream(stream).selected(sensors)  # refuses, and names the nearest
+    read = lowpassed(read, filters.kinematics_hz, filters.order, filters.gap_s)
+    wanted, findings = _targets_of(trial, study, targets)
+    choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
+    side = study.strides.side if study.strides.side in choice.contacts else next(iter(choice.contacts))
+    strides = cut_strides(choice.contacts[side], None, study.strides.min_s, study.strides.max_s)
+    values = interpolated(wanted.time, wanted.values, read.time)
+    if not np.isfinite(values).any():
+        raise SamplingError(
+            f"trial {trial.name}: {targets} and sensors must overlap in time",
+            f"sensors last from {read.time[0]:.2f} to {read.time[-1]:.2f} s, "
+            f"{targets} from {wanted.time[0]:.2f} to {wanted.time[-1]:.2f} s",
+            "Check that the files belong to the same trial and clock.",
+        )
+    both = replace(
+        read,
+        values=np.hstack([read.values, values]),
+        channels=(*read.channels, *wanted.channels),
+        suspect=None,
+        subject=trial.subject,
+        condition=trial.condition,
+    )
+    return both, strides, findings
+
+
+def refuse_unknown_targets(targets: str) -> None:
+    """Refuse what cannot be reconstructed."""
+    if targets not in (STATES, *TARGETS):
+        known = ", ".join((STATES, *TARGETS))
+        raise SchemaError("the kind of quantity is unknown", f"{targets!r} does not exist", f"Use: {known}.")
+
+
+def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:
+    key, quantities = TARGETS[targets]
+    found = trial.stream(key).selected_by(lambda channel: channel.quantity in quantities)
+    filters = study.filters
+    dead: dict[str, Finding] = {}
+    if key == "emg" and is_raw(found):
+        dead = {finding.channel: finding for finding in emg_findings(found) if finding.severity == "refused"}
+        found = found.selected([name for name in found.names if name not in dead])
+    if not found.names:
+        raise ChannelError(
+            f"trial {trial.name} must have {targets}",
+            f"none is usable: {', '.join(dead)}" if dead else f"it has no {' or '.join(quantities)}",
+            "Exclude the trial, or reconstruct another quantity.",
+        )
+    findings = [
+        Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle, which is excluded", name)
+        for name, finding in dead.items()
+    ]
+    if key == "emg" and is_raw(found):
+        return enveloped(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
+    cutoff_hz = {"emg": filters.emg_lowpass_hz, "forces": FORCE_HZ}.get(key, filters.kinematics_hz)
+    return lowpassed(found, cutoff_hz, filters.order, filters.gap_s), findings
+
+
+def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[Channel, ...], list[Finding]]:
+    """Channels that every walk has and that move in every walk; a sensor that does not is refused."""
+    first, kept, findings = walks[0].recording, [], []
+    for channel in first.channels:
+        lacking = [w.recording for w in walks if channel.name not in w.recording.names]
+        least = STILL.get(channel.unit, STILL_OTHERWISE)
+        still = [w.recording for w in walks if w.recording not in lacking and _still(w.recording[channel.name], least)]
+        if not lacking and not still:
+            kept.append(channel)
+            continue
+        why = f"does not vary in {len(still)}" if still else f"is missing in {len(lacking)}"
+        what = f"{channel.name} {why} of {len(walks)} walks"
+        if channel.name in sensors:
+            raise ChannelError("a sensor must vary in every walk", what, "Choose another sensor.")
+        findings.append(Finding("note", "left out", "the study", what, "this state is not reconstructed", channel.name))
+    return tuple(kept), findings
+
+
+def _still(values: NDArray[np.float64], least: float) -> bool:
+    known = values[np.isfinite(values)]
+    return not len(known) or float(np.std(known)) < least
+
+
+def _refuse_units(walks: Sequence[SensedWalk]) -> None:
+    first: dict[str, tuple[str, str]] = {}
+    for walk in walks:
+        file = walk.recording.source.file or walk.recording.subject
+        for channel in walk.recording.channels:
+            unit, where = first.setdefault(channel.name, (channel.unit, file))
+            if unit != channel.unit:
+                raise UnitError(
+                    f"{channel.name} must have the same unit in all walks",
+                    f"{where} has it in {unit!r}, {file} in {channel.unit!r}",
+                    "State the unit in the study's [channels], or exclude the walks with one of the units.",
+                )
+
+
+def _refuse_rates(people: dict[str, tuple[SensedWalk, ...]]) -> None:
+    rates = {walk.recording.rate_hz: name for name, found in people.items() for walk in found}
+    if len(rates) > 1:
+        (one, first), (other, second) = list(rates.items())[:2]
+        raise SamplingError(
+            "all walks must have the same rate for reconstruction",
+            f"{first} was recorded at {one:g} Hz, {second} at {other:g} Hz",
+            "Resample the kinematics to one rate.",
+        )

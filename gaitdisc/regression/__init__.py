@@ -1,1 +1,0 @@
-"""Regressions that stand beside the networks: each fits `Samples`, each is a `Model`."""

@@ -1,0 +1,235 @@
+"""What the participants say together: residuals, baselines, training lengths, sub-groups, each a part of the page."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.page import Block
+from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
+from gaitdisc.report.table import Table
+from gaitdisc.response.data_quantity_page import length_sentences, length_table, quantity_figure, quantity_sentences
+from gaitdisc.response.pair_tests import direction_found
+from gaitdisc.response.participant_response import ResponseRun
+from gaitdisc.response.participants_result import OverParticipants
+from gaitdisc.response.r2_tables import held_out_text, models_key
+from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MEASURES = {"peak_to_peak": "peak to peak", "rms": "root mean square"}
+OFFSETS = {"augmented": -0.18, "exo": 0.18}
+ENDS = ("shift", "low", "high")  # of a test: the estimate and its interval
+LOWEST = -100.0  # percent; what a model makes more than twice as large stands at the edge
+BASELINE_WORDS = {
+    "ridge": "ridge with phase harmonics",
+    "linear": "ridge on the network’s inputs",
+    "null": "null of the filters",
+}
+
+
+def over_blocks(run: ResponseRun) -> list[Block]:
+    """Parts of the page that have something to say, in their order."""
+    parts = (
+        ("reduced", "Residuals of the models over the stride", reduction_sentences(run), reduction_figure(run),
+         reduction_table(run)),
+        ("baselines", "Networks compared with simpler baselines", baseline_sentences(run), None, baseline_table(run)),
+        ("quantity", "How much data is enough", [*quantity_sentences(run), *length_sentences(run)],
+         quantity_figure(run), length_table(run)),
+        ("responders", "Sub-groups of responders", responder_sentences(run), None, responder_table(run)),
+    )  # fmt: skip
+    return [
+        Block(anchor, heading, tuple(sentences), (figure,) if figure else (), (table,) if table else ())
+        for anchor, heading, sentences, figure, table in parts
+        if sentences
+    ]
+
+
+def responder_sentences(run: ResponseRun) -> list[str]:
+    """Verdict on sub-groups, and what `none` is worth; empty for one participant."""
+    if run.over is None or len(run.responses) < 2:
+        return []
+    said = [f"{run.over.responders_said}."]
+    if len(run.over.responders) and not run.over.responders["group"].any():
+        said.append("This does not prove homogeneity: so few people show only large differences.")
+    return said
+
+
+def responder_table(run: ResponseRun) -> Table | None:
+    """Sub-group of each participant; None where there are none."""
+    if run.over is None or not len(run.over.responders) or not run.over.responders["group"].any():
+        return None
+    found = run.over.responders
+    rows = tuple((str(group), ", ".join(map(str, own["participant"]))) for group, own in found.groupby("group"))
+    caption = (
+        "Sub-groups by the shape over the stride of the Nominal model's residual on the device walk, all outputs "
+        f"together, n = {len(found)}."
+    )
+    return Table("responders", caption, ("group", "participants"), rows, found)
+
+
+@in_style
+def reduction_figure(run: ResponseRun) -> Figure | None:
+    """Reduction of the stride-averaged residual against Nominal, one row a variable; None without numbers."""
+    if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
+        return None
+    reductions, tests = run.over.reductions, run.over.reduction_tests
+    from matplotlib.lines import Line2D
+
+    names = list(dict.fromkeys(reductions["variable"]))
+    drawn, [row] = panels(1, 2, 0.34 * len(names) + 0.2, Room(left=1.75, across=0.3, top=0.6))
+    for axes, (measure, words) in zip(row, MEASURES.items(), strict=True):
+        for place, variable in enumerate(names):
+            _draw(axes, run.over, variable, measure, place)
+        low = max(LOWEST, 100 * float(np.nanmin(reductions[f"{measure}_reduction"])) - 5)
+        axes.set_xlim(min(low, 0.0), 100)
+        axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        axes.set_yticks(range(len(names)), [label(variable) for variable in names])
+        axes.tick_params(labelleft=axes is row[0])
+        axes.set_xlabel("reduction relative to Nominal [%]")
+        axes.set_title(words)
+    key = models_key(tuple(OFFSETS), linestyle="", ms=4, mew=0)
+    if len(tests):
+        bar = {"marker": "|", "color": "#111111", "ms": 8, "mew": 1.6, "linewidth": 1.4}
+        key.append(Line2D([], [], **bar, label="estimate, 95 % interval"))
+    legend(drawn, key)
+    caption = (
+        "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
+        f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
+        f"square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
+        f"{held_out_text(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. "
+        "After Fig. 4.3 of the dissertation, which gives one number: 52.8 %, hip, one participant, without the measure."
+    )
+    return Figure("reduction", caption, " ".join(reduction_sentences(run)), reductions, drawn)
+
+
+def reduction_table(run: ResponseRun) -> Table | None:
+    """Reduction of every variable: over participants with its interval, or of the only ones; None without numbers."""
+    if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
+        return None
+    reductions, tests = run.over.reductions, run.over.reduction_tests
+    rows = []
+    for variable in dict.fromkeys(reductions["variable"]):
+        own = reductions[reductions["variable"] == variable].groupby("model")
+        cells = []
+        for measure, model in product(MEASURES, OFFSETS):
+            found = _tested(tests, measure, variable, model)
+            if found is None:
+                cells.append(number(100 * float(own[f"{measure}_reduction"].median()[model]), 0))
+            else:
+                middle, low, high = (number(float(found[key]), 0) for key in ENDS)
+                cells.append(f"{middle}{'*' if found['different'] else ''}\n[{low}, {high}]")
+        rows.append((label(str(variable)), str(own["rms_reduction"].count()["augmented"]), *cells))
+    interval = (
+        "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed rank, Holm-Sidak "
+        "over the variables, alpha = 0.05"
+        if len(tests)
+        else "median over participants; too few for a test"
+    )
+    caption = (
+        "Reduction of the stride-averaged residual on the held-out device walk relative to the Nominal model [%], n "
+        f"= {counted(reductions['participant'].nunique(), 'participant')}: {interval}. Negative: the residual is "
+        "larger."
+    )
+    groups = (("", 2), *((words, 2) for words in MEASURES.values()))
+    columns = ("variable", "n", *(MODEL_WORDS[model] for _ in MEASURES for model in OFFSETS))
+    numbers = tests if len(tests) else reductions
+    return Table("reduction", caption, columns, tuple(rows), numbers, groups)
+
+
+def reduction_sentences(run: ResponseRun) -> list[str]:
+    """Range of the reductions by Augmented over the variables, for each measure."""
+    if run.over is None:
+        return []
+    own = run.over.reductions[run.over.reductions["model"] == "augmented"]
+    said = []
+    for measure, words in MEASURES.items():
+        medians = own.groupby("variable", sort=False)[f"{measure}_reduction"].median().dropna()
+        if len(medians):
+            least, most = (label(str(name)) for name in (medians.idxmin(), medians.idxmax()))
+            said.append(
+                f"Measured as {words}, the Augmented model reduces the stride-averaged residual by "
+                f"{100 * medians.min():.0f} % ({least}) to {100 * medians.max():.0f} % ({most}), medians over "
+                f"{counted(own['participant'].nunique(), 'participant')}."
+            )
+    return said
+
+
+def _draw(axes: Axes, over: OverParticipants, variable: str, measure: str, place: int) -> None:
+    rows = over.reductions[over.reductions["variable"] == variable]
+    for model, offset in OFFSETS.items():
+        look, y = MODELS[model], place + offset
+        values = 100 * rows.loc[rows["model"] == model, f"{measure}_reduction"].dropna().to_numpy()
+        axes.plot(np.maximum(values, LOWEST), np.full(len(values), y), look.mark, color=look.colour, ms=2.6, mew=0,
+                  alpha=0.6)  # fmt: skip
+        found = _tested(over.reduction_tests, measure, variable, model)
+        if found is not None:
+            middle, low, high = (max(float(found[key]), LOWEST) for key in ENDS)
+            axes.hlines(y, low, high, color=look.colour, linewidth=1.4)
+            axes.plot([middle], [y], "|", color="#111111", ms=8, mew=1.6)
+
+
+def _tested(tests: pd.DataFrame, measure: str, variable: str, model: str) -> pd.Series | None:
+    """Test of one reduction, with its shift and interval in percent; None where it was not tested."""
+    chosen = (tests["measure"] == measure) & (tests["variable"] == variable) & (tests["second"] == model)
+    found = tests[chosen & tests["shift"].notna()]
+    return None if found.empty else found.assign(**{end: 100 * found[end] for end in ENDS}).iloc[0]
+
+
+def baseline_table(run: ResponseRun) -> Table | None:
+    """R2 of the network minus that of each baseline, one row a variable and model; None where nothing was tested."""
+    if run.over is None or not len(run.over.baselines):
+        return None
+    tests = run.over.baselines
+    rows = []
+    for (variable, model), found in tests.groupby(["variable", "model"], sort=False):
+        cells = [_against(found[found["first"] == kind].iloc[0]) for kind in BASELINE_WORDS]
+        rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(found["n"].max())), *cells))
+    order = [label(str(variable)) for variable in dict.fromkeys(tests["variable"])]
+    rows.sort(key=lambda row: order.index(row[0]))
+    caption = (
+        "R² [1] of the network minus R² of a baseline without a network, on the held-out device walk, n = "
+        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher "
+        "or lower: exact two-sided signed rank, Holm-Sidak over the variables of one model and baseline, alpha = "
+        "0.05. The ridge regression of the other tables is the one with phase harmonics."
+    )
+    groups = (("", 3), ("network minus baseline", 3))
+    columns = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
+    return Table("baselines", caption, columns, tuple(rows), tests, groups)
+
+
+def _against(row: pd.Series) -> str:
+    if not math.isfinite(row["p"]):
+        return "not tested"
+    return f"{number(row['shift'], 3)} {direction_found(row)}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"
+
+
+def baseline_sentences(run: ResponseRun) -> list[str]:
+    """Name the variables in which no network is shown to be better than a baseline."""
+    if run.over is None or not len(run.over.baselines):
+        return []
+    tests = run.over.baselines
+    said = []
+    for model in dict.fromkeys(tests["model"]):
+        parts = []
+        for kind, words in BASELINE_WORDS.items():
+            rows = tests[(tests["model"] == model) & (tests["first"] == kind) & tests["p"].notna()]
+            beaten = rows["different"].astype(bool) & (rows["rank_biserial"] > 0)
+            names = [label(str(variable)) for variable in rows.loc[~beaten, "variable"]]
+            if names:
+                which = f"any of {counted(len(rows), 'variable')}" if len(names) == len(rows) else "; ".join(names)
+                parts.append(f"{words} (in {which})")
+        network = f"The {MODEL_WORDS[str(model)]} network"
+        said.append(
+            f"{network} does not significantly exceed {listed(parts)}."
+            if parts
+            else f"{network} exceeds every baseline in all variables."
+        )
+    return said

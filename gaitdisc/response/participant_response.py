@@ -1,0 +1,257 @@
+"""What one participant's models say of held-out walks, and a study's: every participant, refusal and settings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SchemaError, ShapeError
+from gaitdisc.notebook import html_of
+from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
+from gaitdisc.recording import PERCENT
+from gaitdisc.response.participants_result import OVER, TESTS, OverParticipants, PairTests
+from gaitdisc.response.variants import QUESTIONS
+from gaitdisc.saved.kind import CSV, Kind, keyed_arrays
+from gaitdisc.saved.study_run import StudyRun, load_run_as, save_whole_run
+from gaitdisc.saved.unit_folder import Arrays, lies_on_disk, may_lie_on_disk
+
+MODELS = ("nominal", "augmented", "exo")
+BASELINES = ("ridge", "linear", "null")
+KINDS = ("network", *BASELINES)
+R2_COLUMNS = ("variable", "model", "kind", "walk", "r2", "n")
+FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner")
+QUANTITY_COLUMNS = ("length_s", "n_training", *R2_COLUMNS)
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """The held-out part of the device walk, measured and predicted."""
+
+    time: NDArray[np.float64]  # (sample,) [s], on the trial's clock
+    phi: NDArray[np.float64]  # (sample,) [% stride], percent stride
+    measured: NDArray[np.float64]  # (sample, output) [unit/s2], second derivatives of the measured variables
+    # each (sample, output) [unit/s2], keys among `MODELS`: the networks' predictions
+    predicted: Mapping[str, NDArray[np.float64]]
+    # each (bound, sample, output) [unit/s2], keys among `MODELS`: lower and upper bound of 90 % around what the
+    # networks predict; empty in older results
+    bands: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+
+
+@may_lie_on_disk("held_out", "residuals")
+@dataclass(frozen=True, eq=False)
+class ParticipantResponse:
+    """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), tested on held-out walking."""
+
+    participant: str
+    inputs: tuple[str, ...]  # names of what goes in
+    outputs: tuple[str, ...]  # names of what is predicted
+    units: tuple[str, ...]  # unit of each output, a second derivative
+    # variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
+    # ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted), r2,
+    # n (samples)
+    r2: pd.DataFrame
+    fits: pd.DataFrame  # model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner
+    # Held-out device walking with the networks' predictions; of a response that was loaded it is read each time it is
+    # looked at, as are the residuals
+    held_out: HeldOut
+    # each (stride, phase, output) [unit/s2], measured minus predicted, every held-out stride of the device walk on 101
+    # points; keys among `MODELS`
+    residuals: Mapping[str, NDArray[np.float64]]
+    held_out_s: float  # length of the held-out part [s]
+
+    def __post_init__(self) -> None:
+        """Check shapes once, before they are saved."""
+        if lies_on_disk(self, "held_out"):
+            return
+        columns = {
+            "units": len(self.units),
+            "held_out.measured": self.held_out.measured.shape[1],
+            **{f"held_out.predicted[{k}]": v.shape[1] for k, v in self.held_out.predicted.items()},
+            **{f"held_out.bands[{k}]": v.shape[2] for k, v in self.held_out.bands.items()},
+            **{f"residuals[{k}]": v.shape[2] for k, v in self.residuals.items()},
+        }
+        count = len(self.outputs)
+        for name, found in columns.items():
+            if found != count:
+                raise ShapeError(
+                    f"{name} of a response must have {count} columns, one per output",
+                    f"it has {found} for {self.participant}",
+                    "Give one column per output.",
+                )
+        for name, curves in self.residuals.items():
+            if curves.shape[1] != len(PERCENT):
+                raise ShapeError(
+                    f"residuals must have {len(PERCENT)} points per stride",
+                    f"residuals[{name}] of {self.participant} has {curves.shape[1]}",
+                    "Normalise the strides to 0-100 %.",
+                )
+
+    def r2_of(self, variable: str, model: str, kind: str = "network", walk: str = "exo") -> float:
+        """Coefficient of determination of one variable, one model, one held-out walk; NaN where it was not computed."""
+        return self._r2.get((variable, model, kind, walk), float("nan"))
+
+    @cached_property
+    def _r2(self) -> dict[tuple[str, str, str, str], float]:
+        """R2 by variable, model, kind and walk: a report reads each of them many times."""
+        columns = (self.r2[name] for name in ("variable", "model", "kind", "walk", "r2"))
+        return {(v, model, kind, walk): float(value) for v, model, kind, walk, value in zip(*columns, strict=True)}
+
+
+@dataclass(frozen=True, eq=False)
+class DataQuantity:
+    """R2 on the same held-out walking for every length of the training part."""
+
+    participant: str
+    part: str  # `first` or `last`: which seconds of the training part are taken
+    # length_s [s], n_training (samples of the device walk), and the columns of `ParticipantResponse.r2`
+    table: pd.DataFrame
+    # length [s] -> why there is no row of it: longer than the training part, or too short to fit
+    left_away: Mapping[float, str]
+
+    def __post_init__(self) -> None:
+        """Check columns once."""
+        missing = [column for column in QUANTITY_COLUMNS if column not in self.table.columns]
+        if missing:
+            raise SchemaError(
+                f"a table of R2 by length must have the columns {', '.join(QUANTITY_COLUMNS)}",
+                f"the table of {self.participant} lacks {', '.join(missing)}",
+                "Compute it again with `gaitdisc ablate`.",
+            )
+
+    def medians(self, walk: str = "exo", kind: str = "network") -> pd.DataFrame:
+        """Median R2 over variables: one row a length, one column a model."""
+        chosen = self.table[(self.table["walk"] == walk) & (self.table["kind"] == kind)]
+        return chosen.pivot_table(index="length_s", columns="model", values="r2", aggfunc="median")
+
+
+def _held_out(arrays: Arrays) -> HeldOut:
+    predicted, bands = keyed_arrays(arrays, "predicted_"), keyed_arrays(arrays, "band_")
+    return HeldOut(arrays["time"], arrays["phi"], arrays["measured"], predicted, bands)
+
+
+def _predicted(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
+    held = response.held_out
+    every = {"predicted": held.predicted, "band": held.bands, "residual": response.residuals}
+    own = {f"{word}_{model}": values for word, of in every.items() for model, values in of.items()}
+    return {"time": held.time, "phi": held.phi, "measured": held.measured, **own}
+
+
+RESPONSE = Kind(
+    ParticipantResponse,
+    "response.json",
+    ("participant", "inputs", "outputs", "units", "held_out_s"),
+    {"r2": CSV("r2.csv", R2_COLUMNS), "fits": CSV("fits.csv", FIT_COLUMNS)},
+    {"held_out": _held_out, "residuals": partial(keyed_arrays, prefix="residual_")},
+    _predicted,
+    unit=lambda response: response.participant,
+)
+QUANTITY = Kind(
+    DataQuantity,
+    "quantity.json",
+    ("participant", "part", "left_away"),
+    {"table": CSV("quantity.csv", QUANTITY_COLUMNS)},
+    reasons="length_s",
+    unit=lambda quantity: quantity.participant,
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ResponseRun(StudyRun):
+    """The content of a response report; drawing it needs no new fit.
+
+    Parameters
+    ----------
+    title : str
+        Title of the study.
+    nominal, exo : str
+        The study's names of the two conditions; `exo` is empty if no device is compared.
+    refusals : tuple of Refusal
+        Persons and walks left out, with reasons.
+    provenance : Provenance
+        Settings, seed, files, versions.
+    units : mapping of str to tuple
+        Saved units, by the file of their kind: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
+    unfitted : tuple of Refusal
+        In a study with a device: participants with pooled cycles but without fitted models, with reasons.
+    renewed : tuple of str
+        Files of an earlier run that were changed or unreadable and were computed again; not saved.
+    """
+
+    @property
+    def walks(self) -> tuple[WalkSummary, ...]:
+        """Every walk that could be processed."""
+        return self.of(WALK)
+
+    @property
+    def responses(self) -> tuple[ParticipantResponse, ...]:
+        """Every participant whose models could be fitted."""
+        return self.of(RESPONSE)
+
+    @property
+    def tests(self) -> PairTests | None:
+        """Paired comparisons of the models over participants; None in runs of older versions."""
+        return next(iter(self.of(TESTS)), None)
+
+    @property
+    def quantities(self) -> tuple[DataQuantity, ...]:
+        """Results with less training data, if `gaitdisc ablate` was run."""
+        return self.of(QUANTITY)
+
+    @property
+    def over(self) -> OverParticipants | None:
+        """Training lengths, residuals and baselines compared over participants, and sub-groups; None in older runs."""
+        return next(iter(self.of(OVER)), None)
+
+    @property
+    def cycles(self) -> tuple[PooledCycles, ...]:
+        """Pooled cycles of each participant, session and condition."""
+        return self.of(CYCLES)
+
+    @property
+    def reported(self) -> tuple[str, ...]:
+        """Participants with reported models or cycles."""
+        names = [response.participant for response in self.responses]
+        return tuple(dict.fromkeys([*names, *(one.subject for one in self.cycles if len(one.kept))]))
+
+    def to_frame(self) -> pd.DataFrame:
+        """R2 of every participant, variable, model, kind and walk, one row each."""
+        tables = [r.r2.assign(participant=r.participant) for r in self.responses]
+        columns = ["participant", "variable", "model", "kind", "walk", "r2", "n"]
+        return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+
+    r2_table = to_frame
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.responses)} responses, {len(self.cycles)} sets of cycles, {len(self.refusals)} refusals"
+        return f"ResponseRun({self.title!r}, {counts})"
+
+    def _repr_html_(self) -> str:
+        rows = [("conditions", " and ".join(word for word in (self.nominal, self.exo) if word))]
+        rows += [("participants", ", ".join(self.reported)), ("refusals", str(len(self.refusals)))]
+        table = self.r2_table()
+        table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
+        middle = table.groupby("model", sort=False)["r2"].median()
+        rows += [(f"median R² of {model}", f"{value:.2f}") for model, value in middle.items()]
+        return html_of(self.title or "Response run", rows)
+
+
+def load_run(folder: Path) -> ResponseRun:
+    """Load a run with all its units."""
+    return load_run_as(ResponseRun, folder)
+
+
+RUN = Kind(
+    ResponseRun,
+    "run.json",
+    write=save_whole_run,
+    read=load_run,
+    page="gaitdisc.response.page:write_report",
+    page_folder="report",
+    beside=QUESTIONS,
+)

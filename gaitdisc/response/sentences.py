@@ -1,0 +1,236 @@
+"""The answer in sentences, as honest when the device model does not help, and R2 for a terminal of 80 columns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.response.participant_response import ParticipantResponse, ResponseRun
+from gaitdisc.response.r2_tables import R2_TABLE, held_out_text, participant_medians, r2_by_variable, sample_counts
+from gaitdisc.words import MODEL_WORDS, counted, label, listed, number, plain
+
+if TYPE_CHECKING:
+    import rich.table
+
+MARGIN = 0.005  # a difference in R2 that two printed digits cannot show is called none
+MOST_NAMED = 6  # variables in one sentence
+_ON_EXO = {model: f"{model}_on_exo" for model in ("nominal", "augmented", "exo")}
+_SHOWN = [
+    column for column in R2_TABLE if (column.kind, column.walk) != ("ridge", "nominal") and column.kind != "linear"
+]
+_SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
+
+
+def study_sentences(run: ResponseRun) -> list[str]:
+    """What the study as a whole says: who was analysed, and what the models explain over participants."""
+    refused = sorted({refusal.participant for refusal in run.refusals})
+    left_out = f"; left out entirely or in part: {listed(refused)} (see “Left out”)" if refused else ""
+    if not run.responses:
+        if refused:
+            return [f"No participant could be analysed{left_out}. There are no results."]
+        return ["No participant could be analysed: the study contains none. There are no results."]
+    analysed = len(run.responses)
+    who = f"{counted(analysed, 'participant')} {'was' if analysed == 1 else 'were'} analysed{left_out}."
+    if analysed == 1:
+        return [f"{who} One participant is not enough for a test: the results describe this participant only."]
+    table = participant_medians(run)
+    parts = [f"{MODEL_WORDS[model]} {_median_iqr(table[column])}" for model, column in _ON_EXO.items()]
+    sentences = [
+        who,
+        f"The models explain the following shares of the variance of held-out device walking ({run.exo}), median "
+        f"[quartiles] over participants of each participant's median over variables: {', '.join(parts)}.",
+        _study_verdict(table["augmented_on_exo"] - table["nominal_on_exo"]),
+    ]
+    ridge = (table["ridge_augmented_on_exo"] - table["augmented_on_exo"]).dropna()
+    if len(ridge):
+        wins = int((ridge >= MARGIN).sum())
+        sentences.append(
+            "Ridge regression with phase harmonics instead of the networks gives Augmented "
+            f"{_median_iqr(table['ridge_augmented_on_exo'])} and exceeds the network in {wins} of "
+            f"{counted(len(ridge), 'participant')}."
+        )
+    if table["null_on_exo"].notna().any():
+        sentences.append(f"Band-limited noise alone would reach {_median_iqr(table['null_on_exo'])}.")
+    return sentences
+
+
+def participant_sentences(response: ParticipantResponse) -> list[str]:
+    """What one participant shows: what the models explain, whether the device model helps, ridge, and the null."""
+    table = r2_by_variable(response)
+    middle = table.median()
+    computed = int(table[_ON_EXO["nominal"]].notna().sum())
+    whole = len(table)
+    over = f"{whole} variables" if computed == whole else f"{computed} of {whole} variables, the others not computed"
+    if whole == 1:
+        over = "the only variable"
+    nominal, augmented, exo = (middle[column] for column in _ON_EXO.values())
+    explains = f"explains {number(nominal)}"
+    if not np.isfinite(nominal):
+        explains = "explains a share that was not computed"
+    elif nominal < 0:
+        explains = f"is worse than the mean and explains nothing (R² {number(nominal)})"
+    sentences = [
+        f"In {response.participant}, the Nominal model {explains} of the device walk's variance "
+        f"(R², median over {over}, held-out last {response.held_out_s:.4g} s, n = {sample_counts(response)} samples), "
+        f"the Augmented model {number(augmented)}, the Exo model {number(exo)}."
+    ]
+    if np.isfinite(middle["nominal_on_nominal"]):
+        sentences.append(
+            "On held-out walking without the device, on which it was trained, the Nominal model reaches "
+            f"{number(middle['nominal_on_nominal'])}."
+        )
+    sentences.append(_verdict(table, middle))
+    for sentence in (_ridge(middle), _null(table, middle)):
+        if sentence:
+            sentences.append(sentence)
+    return sentences
+
+
+def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:
+    gain = (table["augmented_on_exo"] - table["nominal_on_exo"]).dropna()
+    if not len(gain):
+        return "It was not computed whether the Discrepancy model helps."
+    median = float(gain.median())
+    better = f"better in {int((gain > 0).sum())} of {counted(len(gain), 'variable')}"
+    if median >= MARGIN:
+        return (
+            f"The Discrepancy model helps: R² rises by {number(median)} (median of the differences; "
+            f"{better}){_closed(middle)}."
+        )
+    if median <= -MARGIN:
+        return (
+            f"The Discrepancy model makes the prediction worse: R² falls by {number(-median)} (median of the "
+            f"differences; {better})."
+        )
+    return (
+        "The Discrepancy model does not help: the Augmented model is no better than the Nominal model (median of the "
+        f"differences {number(median, 3)}; {better})."
+    )
+
+
+def _closed(middle: pd.Series) -> str:
+    nominal, augmented, exo = (float(middle[column]) for column in _ON_EXO.values())
+    if not np.isfinite(exo) or exo - nominal < 0.01:
+        return ""
+    share = (augmented - nominal) / (exo - nominal)
+    if share >= 1:
+        return ", equal to the Exo model or above it"
+    if share <= 0:
+        return ""
+    return f", {100 * share:.0f}\u00a0% of the way from the Nominal to the Exo model"
+
+
+def _ridge(middle: pd.Series) -> str:
+    ridge = {model: float(middle[f"ridge_{column}"]) for model, column in _ON_EXO.items()}
+    ridge = {model: value for model, value in ridge.items() if np.isfinite(value)}
+    if not ridge:
+        return ""
+    said = listed([f"{MODEL_WORDS[model]} {number(value)}" for model, value in ridge.items()])
+    start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches {said}"
+    wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
+    if wins:
+        beaten = listed([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])
+        return f"{start}: ridge exceeds the network for {beaten}, so the network has no advantage there."
+    if "augmented" not in ridge or not np.isfinite(middle["augmented_on_exo"]):
+        return f"{start}."
+    gain = float(middle["augmented_on_exo"]) - ridge["augmented"]
+    if gain < MARGIN:
+        return f"{start}: the networks are no better."
+    return f"{start}: the networks add {number(gain)} to the Augmented model."
+
+
+def _null(table: pd.DataFrame, middle: pd.Series) -> str:
+    null = float(middle["null_on_exo"])
+    if not np.isfinite(null):
+        return ""
+    start = f"Band-limited noise alone would reach {number(null)}"
+    below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
+    if below:
+        return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not exceed it."
+    lost = [str(v) for v in table.index[table["augmented_on_exo"] <= table["null_on_exo"] + MARGIN]]
+    if not lost:
+        return f"{start}."
+    named = f" ({'; '.join(label(variable) for variable in lost)})" if len(lost) <= MOST_NAMED else ""
+    return f"{start}, and in {len(lost)} of {counted(len(table), 'variable')} the Augmented model is no better{named}."
+
+
+def _study_verdict(gains: pd.Series) -> str:
+    gains = gains.dropna()
+    if not len(gains):
+        return "It was not computed whether the Discrepancy model helps."
+    median = float(gains.median())
+    better = f"better in {int((gains >= MARGIN).sum())} of {counted(len(gains), 'participant')}"
+    if median >= MARGIN:
+        return f"The Discrepancy model raises R² by {number(median)} (median over participants; {better})."
+    if median <= -MARGIN:
+        return f"The Discrepancy model lowers R² by {number(-median)} (median over participants; {better})."
+    return (
+        "The Discrepancy model does not help: the Augmented model is no better than the Nominal model (median "
+        f"difference {number(median, 3)}; {better})."
+    )
+
+
+def _median_iqr(values: pd.Series) -> str:
+    known = int(values.notna().sum())
+    if not known:
+        return "not computed"
+    q1, middle, q3 = np.quantile(values.dropna(), [0.25, 0.5, 0.75])
+    some = f" (n = {known})" if known < len(values) else ""
+    return f"{number(middle)} [{number(q1)}, {number(q3)}]{some}"
+
+
+def r2_text(run: ResponseRun) -> rich.table.Table:
+    """R2 of one participant by variable, of several by person (medians over variables), or who was refused, and why."""
+    if not run.responses:
+        table = _empty(f"No participant could be analysed; left out: n = {len(run.refusals)}.")
+        for heading in ("participant", "walk", "reason"):
+            table.add_column(heading)
+        for refusal in run.refusals:
+            table.add_row(plain(refusal.participant), plain(refusal.condition or "all"), plain(refusal.reason))
+        return table
+    about = f"last {held_out_text(run)} s of each walk held out; null: band-limited noise alone"
+    if len(run.responses) == 1:
+        [response] = run.responses
+        title = (
+            f"{response.participant}: R² on the held-out device walk, n = {sample_counts(response)} samples; {about}"
+        )
+        return _printed(r2_by_variable(response), title)
+    people = counted(len(run.responses), "participant")
+    return _printed(
+        participant_medians(run), f"R² on the held-out device walk, median over variables, n = {people}; {about}"
+    )
+
+
+def _printed(values: pd.DataFrame, caption: str) -> rich.table.Table:
+    table = _empty(caption)
+    table.add_column(plain(str(values.index.name)), vertical="bottom", no_wrap=True)
+    for column in _SHOWN:
+        kind = "" if column.kind == "null" else column.kind
+        place = "no dev." if column.walk == "nominal" else ""
+        table.add_column(plain(f"{kind}\n{_SHORT[column.model]}\n{place}"), justify="right", no_wrap=True)
+    for name, row in values.iterrows():
+        table.add_row(plain(str(name)), *(_short(float(row[column.key])) for column in _SHOWN))
+    table.add_section()
+    middle = values.median()
+    table.add_row("median", *(_short(float(middle[column.key])) for column in _SHOWN), style="bold")
+    return table
+
+
+def _empty(caption: str) -> rich.table.Table:
+    from rich import box
+    from rich.table import Table
+
+    return Table(
+        box=box.SIMPLE,
+        caption=plain(caption),
+        caption_justify="left",
+        show_edge=False,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
+
+
+def _short(value: float) -> str:
+    return "–" if pd.isna(value) else number(value)

@@ -1,0 +1,115 @@
+"""What a participant's models explain when one thing is changed: an input left away, a filter, a training length."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.response.participants_result import TEST_COLUMNS
+from gaitdisc.saved.kind import CSV, Kind, Saved, plain
+from gaitdisc.saved.provenance import Refusal
+from gaitdisc.saved.unit_folder import load_unit, save_unit, with_words
+
+QUESTIONS = ("modalities", "sensitivity")
+VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
+VARIANT_TEST_COLUMNS = ("variant", "model", *TEST_COLUMNS)
+
+
+@dataclass(frozen=True, eq=False)
+class Variants:
+    """R2 on held-out device walking of one participant, under every variant."""
+
+    participant: str
+    question: str  # of `QUESTIONS`: `modalities`, inputs left away; `sensitivity`, filters and training lengths
+    # columns `VARIANT_COLUMNS`: variant (in words), variable, model, kind, r2, n (held-out samples)
+    table: pd.DataFrame
+    left_away: Mapping[str, str]  # variant -> why there is no row of it
+
+    def __post_init__(self) -> None:
+        """Check question and columns once."""
+        missing = [column for column in VARIANT_COLUMNS if column not in self.table.columns]
+        if missing or self.question not in QUESTIONS:
+            found = f"lacks {', '.join(missing)}" if missing else f"belongs to the question {self.question!r}"
+            raise SchemaError(
+                f"variants must have the columns {', '.join(VARIANT_COLUMNS)} and a question: {', '.join(QUESTIONS)}",
+                f"the table of {self.participant} {found}",
+                "Compute it again: `gaitdisc modalities` or `gaitdisc sensitivity`.",
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class VariantRun(Saved, file="variant_run.json"):
+    """The variants of a study, over its participants."""
+
+    title: str
+    exo: str  # the study's word for the device walk
+    question: str
+    people: tuple[Variants, ...]  # every participant whose models could be fitted
+    tests: pd.DataFrame  # columns `VARIANT_TEST_COLUMNS`; empty for fewer than six participants
+    refusals: tuple[Refusal, ...]
+    held_out_s: tuple[float, float]  # shortest and longest held-out part [s]
+    renewed: tuple[str, ...] = ()
+
+    def to_frame(self) -> pd.DataFrame:
+        """R2 of every participant, variant, variable, model and kind, one row each."""
+        tables = [each.table.assign(participant=each.participant) for each in self.people]
+        columns = ["participant", *VARIANT_COLUMNS]
+        return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+
+    r2_table = to_frame
+
+
+VARIANTS = Kind(
+    Variants,
+    "variants.json",
+    ("participant", "question", "left_away"),
+    {"table": CSV("variants.csv", VARIANT_COLUMNS)},
+    reasons="variant",
+)
+
+
+def save_variant_run(run: VariantRun, folder: Path) -> None:
+    """Save what was found over the participants, beside theirs, which were saved as they were computed."""
+    data = {
+        "title": run.title,
+        "exo": run.exo,
+        "question": run.question,
+        "people": [each.participant for each in run.people],
+        "refusals": plain(run.refusals),
+        "held_out_s": list(run.held_out_s),
+    }
+    save_unit(folder, "variant_run.json", data, {"tests.csv": run.tests}, {})
+
+
+def save_whole_variant_run(run: VariantRun, folder: Path) -> None:
+    """Save what was found over the participants, and the variants of each, as they are in memory."""
+    for each in run.people:
+        VARIANTS.save(each, folder / "people" / each.participant)
+    save_variant_run(run, folder)
+
+
+def load_variant_run(folder: Path) -> VariantRun:
+    """Load what was found over the participants."""
+    data, tables, _ = load_unit(folder, "variant_run.json", {"tests.csv": VARIANT_TEST_COLUMNS})
+    return VariantRun(
+        data["title"],
+        data["exo"],
+        data["question"],
+        tuple(VARIANTS.load(folder / "people" / name) for name in data["people"]),
+        with_words(tables["tests.csv"], "left_out"),
+        tuple(Refusal(**one) for one in data["refusals"]),
+        (data["held_out_s"][0], data["held_out_s"][1]),
+    )
+
+
+VARIANT_RUN = Kind(
+    VariantRun,
+    "variant_run.json",
+    write=save_whole_variant_run,
+    read=load_variant_run,
+    page="gaitdisc.response.variants_page:write_variants",
+)

@@ -1,1 +1,0 @@
-"""Results: frozen, with provenance, saved and loaded; never plots, trains or logs."""

@@ -1,0 +1,176 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_joint import made_joint
+from texts import says
+
+from gaitdisc.channel import vocabulary
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.device_study import (
+    DeviceWalks,
+    NoMomentsError,
+    beside,
+    check_calibrated,
+    check_kinetics,
+    device_walks,
+    weighed_foot,
+)
+from gaitdisc.discovery.discover_files import discover_study
+from gaitdisc.discovery.effect_words import estimate_text
+from gaitdisc.discovery.joint_and_trials import nominal_moment
+from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.recording import Finding, Recording, Trial
+
+
+def trial(*keys, findings=()):
+    channel = vocabulary().named("emg_sol_r")
+    one = Recording(np.arange(4) / 100, np.zeros((4, 1)), (channel,))
+    return Trial("W01_exo", dict.fromkeys(keys, one), findings=tuple(findings))
+
+
+def test_a_walk_whose_forces_do_not_carry_the_body_is_refused_with_the_balance():
+    balance = Finding("warning", "force balance", "walk.c3d", "mean -29.4 % of weight", "")
+    with pytest.raises(SchemaError, match=r"W01_exo.*-29.4 %.*mass_kg"):
+        check_kinetics(trial("emg", "moments", findings=[balance]))
+
+
+def test_moments_per_kg_that_say_newton_metres_are_refused():
+    per_kg = Finding("warning", "per body mass", "id.sto", "peaks at 1.4 N m", "", "ankle_angle_r_moment")
+    with pytest.raises(SchemaError, match=r"ankle_angle_r_moment.*1.4 N m.*m/kg.*\[channels\]"):
+        check_kinetics(trial("emg", "moments", findings=[per_kg]))
+
+
+@pytest.mark.parametrize(("has", "lacks", "mend"), [("moments", "EMG", "file with the EMG"),
+                                                    ("emg", "joint moments", "force plates")])  # fmt: skip
+def test_a_walk_without_emg_or_forces_says_which(has, lacks, mend):
+    with pytest.raises(NoMomentsError, match=rf"{lacks}.*both.*W01_exo has no {lacks}.*{mend}"):
+        check_kinetics(trial(has))
+
+
+def one_walk(word="nominal", **others):
+    walk = PlannedTrial(condition=word, files=(f"{word}.mot",))
+    person = Participant(id="W01", trials=(walk,))
+    return Study(title="x", conditions=Conditions(nominal="nominal", device="exo"), participants=(person,), **others)
+
+
+def test_conditions_without_a_pair_are_refused():
+    with pytest.raises(SchemaError, match=r"both.*W01.*1.*'nominal', none.*'exo'"):
+        device_walks(one_walk(), "W01")
+
+
+def test_a_joint_that_is_none_is_refused():
+    with pytest.raises(SchemaError, match=r"ankle_angle, knee_angle, hip_flexion.*'toe'"):
+        device_walks(one_walk(), "W01", "toe")
+
+
+@pytest.fixture(scope="module")
+def walks():
+    nominal = made_joint(seed=1)
+    return DeviceWalks(nominal, made_joint(seed=3, spring=150.0), nominal_moment(nominal))
+
+
+def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
+    """Augmented can follow the spring; Exo, whose muscles cannot, leaves more of it."""
+    held = np.flatnonzero(walks.device.stride >= 18)
+    blank = np.full((1, len(held), 2), np.nan)
+    runs = Runs(np.zeros(1, int), walks.device.time[held][None], np.empty((0, 0)), blank, blank, blank)
+    size = GapSize(1.0, 0.2, 0.1, channels={"net_moment": (9.0, 1.5, 1.0)})
+    found = Discovery("no_gap", "s", (), (), (), size, size, ("ankle_angle", "net_moment"), ("rad", "N m"), runs)
+    sizes = beside(walks, found)
+    assert list(sizes)[:2] == ["Nominal", "Nominal + named effect"]
+    assert sizes["Nominal + named effect"] == sizes["Nominal"]  # nothing is named
+    assert 0.5 < sizes["Augmented (plain regression)"] < sizes["Exo"] < sizes["Nominal"]
+
+
+def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weighed(walks):
+    said = [finding.what for finding in walks.findings]
+    assert any("the ankle's moment model is" in one and "ms later" in one for one in said)
+    assert any(says(line, "not estimated", "no marker") for line in said)
+    heavier = replace(walks, device=replace(walks.device, per_kg=0.5 * np.cos(walks.device.time)))
+    assert any(says(finding.what, "kg", "the foot would") for finding in heavier.findings)
+
+
+def loaded(seed, kg, per_kg):
+    device = made_joint(seed=seed)
+    per_kg = per_kg * np.cos(2 * np.pi * device.phase)
+    return replace(device, per_kg=per_kg, moment=device.moment - kg * per_kg)
+
+
+def knee_and_hip(walks, knee, hip):
+    return {"knee_angle": (walks.nominal, knee), "hip_flexion": (walks.nominal, hip)}
+
+
+@pytest.mark.parametrize(("kg", "named"), [(0.8, True), (0.0, False)])
+def test_a_mass_at_the_foot_is_what_the_knee_says_and_the_hip_bears_out(walks, kg, named):
+    mass = weighed_foot(knee_and_hip(walks, loaded(5, kg, 5.0), loaded(6, kg / 2, 8.0)))
+    assert (mass is not None) == named
+    assert not named or mass.low < mass.value == pytest.approx(kg, rel=0.15)
+
+
+def test_joints_that_disagree_about_a_mass_or_do_not_know_the_foot_name_none(walks):
+    assert weighed_foot(knee_and_hip(walks, loaded(5, 1.2, 5.0), loaded(6, -0.4, 5.0))) is None
+    assert weighed_foot(knee_and_hip(walks, made_joint(seed=5), made_joint(seed=5))) is None
+    assert weighed_foot({"knee_angle": (walks.nominal, loaded(5, 1.2, 5.0))}) is None
+
+
+def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscles_is_doubted(walks):
+    own = FoundEffect("port", "hip_moment", "one_sided_spring", "", {"stiffness": Estimate(140.0, 139.0, 141.0)})
+    size = GapSize(1.0, 0.2, 0.1)
+    found = Discovery("missing_physics", "a spring.", (), (own,), (), size, size, (), (), None)
+    at_hip = {"joint": "hip_flexion", "muscles": ("emg_ham_r", "emg_bf_r", "emg_rf_r")}
+    hip = DeviceWalks(replace(walks.nominal, **at_hip), replace(walks.device, **at_hip), walks.model)
+    said = hip.with_model_error(found).sentence
+    assert says(said, "size is unreliable")
+    assert "trusted" not in walks.with_model_error(found).sentence
+
+
+def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walks):
+    """The discovery's own interval knows the noise alone."""
+    own = FoundEffect(
+        "port", "ankle_moment", "one_sided_spring", "", {"stiffness": Estimate(140.0, 139.0, 141.0, "N m/rad")}
+    )
+    size = GapSize(1.0, 0.2, 0.1)
+    told = f"a spring, {estimate_text(own.estimates['stiffness'])}."
+    found = Discovery("missing_physics", told, (), (own,), (), size, size, (), (), None)
+    mended = walks.with_model_error(found)
+    new = mended.effects[0].estimates["stiffness"]
+    assert new.value == walks.changed.value
+    assert new.high - new.low > 2 * 1.96 * walks.changed.spread
+    assert estimate_text(new) in mended.sentence
+    assert says(mended.sentence, "140 N m/rad")
+
+
+def test_a_walk_that_the_nominal_model_follows_lacks_nothing_whatever_a_search_makes_of_the_rest(walks):
+    same = replace(walks, device=made_joint(seed=2))
+    assert same.agrees and not walks.agrees
+    candidate = Candidate("missing_physics", "port", "ankle_moment", "phase_locked_moment", ("1",), None, "")
+    assert not same.weighed(candidate)
+    size = GapSize(1.0, 0.2, 0.1)
+    invented = FoundEffect("port", "ankle_moment", "phase_locked_moment", "")
+    found = Discovery("missing_physics", "s", (), (invented,), (), size, size, (), (), None)
+    mended = same.with_model_error(found)
+    assert (mended.verdict, mended.effects) == ("no_gap", ())
+    assert "as well as held-out Nominal strides" in mended.sentence
+
+
+def test_a_model_that_does_not_explain_the_nominal_walk_names_no_device(walks):
+    check_calibrated(walks.model, walks.nominal)
+    noise = np.random.default_rng(0).normal(0.0, 30.0, len(walks.nominal.time))
+    model = nominal_moment(replace(walks.nominal, moment=noise))
+    with pytest.raises(SchemaError, match=r"W01.*24 strides\..*more strides"):
+        check_calibrated(model, walks.nominal)
+
+
+@pytest.mark.slow
+def test_without_moments_the_motion_is_compared_and_nothing_is_named(tmp_path):
+    from gaitdisc.cohort.demonstration import write_demonstration
+
+    study = write_demonstration(tmp_path, 30.0, 1)
+    write_study(study, tmp_path / "study.toml")
+    found = discover_study(tmp_path / "study.toml", "W01")[0]
+    assert "has no joint moments" in found.sentence
+    assert says(found.sentence, "needs joint moments in both walks")

@@ -1,0 +1,51 @@
+"""Numbers fitted by the engine's own runs: those of the truth, wherever the expansion's lay."""
+
+import numpy as np
+import pytest
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.discover_engine import _NOTHING
+from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.measured import Measured
+
+PENDULUM = """<mujoco><option timestep="0.002"/><worldbody><body name="rod">
+<joint name="pivot" type="hinge" axis="0 -1 0" damping="0.3"/>
+<inertial pos="0 0 -0.4" mass="2" diaginertia="0.05 0.05 0.001"/></body></worldbody>
+<actuator><motor name="drive" joint="pivot" gear="5"/></actuator></mujoco>
+"""
+SPRING = Candidate(
+    "missing_physics", "port", "pivot_moment", "linear_stiffness", ("pivot",), names={"factor": "stiffness"}
+)
+WEAK = Candidate("input_error", "input", "drive", "input_gain")
+
+
+@pytest.mark.parametrize(
+    ("change", "part", "number", "truth"),
+    [
+        (("damping=", 'stiffness="6" damping='), Part(SPRING, {"factor": -6.6}), "stiffness", 6.0),
+        (('gear="5"', 'gear="4"'), Part(WEAK, {"gain": 0.88}), "gain", 0.8),
+    ],
+)
+def test_the_engines_own_runs_bring_a_number_to_the_truth(tmp_path, change, part, number, truth):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
+    from dataclasses import replace
+
+    from gaitdisc.discovery.result import FoundEffect
+    from gaitdisc.engines.engine import Motion, read_model
+    from gaitdisc.engines.mapping import drafted
+
+    (tmp_path / "plain.xml").write_text(PENDULUM)
+    (tmp_path / "truth.xml").write_text(PENDULUM.replace(*change))
+    plain, t, rng = read_model(tmp_path / "plain.xml"), np.arange(300) / 100, np.random.default_rng(2)
+    controls = [0.5 * np.sin(2 * np.pi * f * t)[:, None] + 0.2 * np.cos(5 * f * t)[:, None] for f in (0.6, 1.0, 1.3)]
+    start = Motion(np.full((3, 1), 0.2), np.zeros((3, 1)), np.zeros((3, 1)))
+    whole = read_model(tmp_path / "truth.xml").run(start, np.stack(controls), 100.0)
+    seen = whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1))
+    measured = Measured(Drive.of(controls, 100.0), seen, tuple("123"), ("pivot",))
+    fit = EngineFit(drafted(plain), plain, measured, whole, (part,))
+    effect = FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, "")
+    found = fit.fitted(replace(_NOTHING, effects=(effect,)), fit.mapping, base_runs(plain, fit))
+    one = found.effects[0].estimates[number]
+    assert one.low < truth < one.high and one.high - one.low < 0.05 * truth
