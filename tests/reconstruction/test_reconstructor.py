@@ -56,7 +56,7 @@ def test_the_networks_of_the_dissertations_code_have_its_weights():
 
 
 def test_a_network_is_fitted_for_as_many_steps_as_the_dissertations_code_makes(pair, monkeypatch):
-    monkeypatch.setattr(reconstructor, "TEXT_STEPS", 40)
+    monkeypatch.setattr(window_model, "TEXT_STEPS", 40)
     seen = {}
     monkeypatch.setattr("gaitdisc.models.training_settings.LEAST_STEPS", 1)
     monkeypatch.setattr("gaitdisc.models.trainer.descend", lambda *a: seen.update(settings=a[4]) or descend(*a))
