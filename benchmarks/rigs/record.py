@@ -3,8 +3,9 @@
     python benchmarks/rigs/record.py NAME CHECKOUT OUT
 
 CHECKOUT is a clone of the repository that the rig's recipe names; its files are read at the stated commit, and their
-SHA-256 is checked. OUT/NAME gets measured.csv, holdout.csv, simulation.toml, truth.json and oracle.toml (the simulation
-with the numbers and effects that truth.json states).
+SHA-256 is checked, and that of the made measured.csv where the recipe states it. OUT/NAME gets measured.csv,
+holdout.csv, simulation.toml, truth.json and oracle.toml (the simulation with the numbers and effects that truth.json
+states).
 """
 
 import hashlib
@@ -74,14 +75,15 @@ def build_oracle(simulation, oracle):
 
 def make_case(name, checkout, out):
     """Writes the five files of one rig."""
-    folder = next(
-        f for f in (HERE / "open", HERE / "kept", HERE / "second", HERE / "third") if (f / f"{name}.py").exists()
-    )
+    folder = next(HERE / f for f in ("open", "kept", "second", "third", "fourth") if (HERE / f / f"{name}.py").exists())
     recipe = runpy.run_path(str(folder / f"{name}.py"))
     learned, unseen = recipe["read_trials"](load_files(recipe, checkout))
     case = Path(out) / name
     case.mkdir(parents=True, exist_ok=True)
     write_table(case / "measured.csv", learned)
+    made = hashlib.sha256((case / "measured.csv").read_bytes()).hexdigest()
+    if made != recipe.get("MEASURED", made):
+        sys.exit(f"{name}: the made measured.csv has SHA-256 {made}, expected {recipe['MEASURED']}.")
     write_table(case / "holdout.csv", unseen)
     shutil.copy(folder / f"{name}.toml", case / "simulation.toml")
     if (folder / f"{name}.json").exists():
