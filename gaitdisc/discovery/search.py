@@ -120,6 +120,7 @@ class Search:
 
     def _limits(self, model: CandidateModel) -> Iterator[tuple[float, tuple[float, float]]]:
         """Yield each constant of a model, and between which limits it means what its name says."""
+        lagging = {part.candidate.place for part in model.parts if part.candidate.name == "input_lag"}
         for part in model.parts:
             for slot, kind in (part.candidate.constants or {}).items():
                 if kind == "quantiles of x":
@@ -133,9 +134,12 @@ class Search:
                     yield part.values[slot], LIMITS[kind]
             if part.candidate.bounds:
                 yield part.candidate.beyond_bounds(part.values["value"]), (0.0, np.inf)
-            if part.candidate.is_late:
-                early = -self.rhythm.period if part.candidate.name == "input_delay" else 0.0
-                yield part.values["seconds"], (early, self.rhythm.period)
+            if part.candidate.name == "coulomb_friction":  # where v keeps its sign it is a constant, and cannot drive
+                low, high = self._visited(model, part.candidate.pieces[0])
+                yield part.values["factor"], (-np.inf, 0.0 if low * high > 0 else np.inf)
+            if part.candidate.is_late:  # a signal that lags is not early as well: the two would cancel
+                early = part.candidate.name == "input_delay" and part.candidate.place not in lagging
+                yield part.values["seconds"], (-self.rhythm.period * early, self.rhythm.period)
 
     def _visited(self, model: CandidateModel, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""

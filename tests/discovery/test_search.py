@@ -14,6 +14,8 @@ SLACK = Candidate("missing_physics", "port", "load", "slack", ("max(0, x - _d)",
 LATE = Candidate("missing_physics", "port", "load", "late", ("delay(x, _d)",), {"d": "delays"}, "x")
 DELAY = Candidate("input_error", "input", "push", "input_delay")
 LAG = Candidate("sensor_error", "observation", "x", "sensor_lag")
+FRICTION = Candidate("missing_physics", "port", "load", "coulomb_friction", ("sign(v)",), None, "x")
+ONE_WAY = replace(FRICTION, pieces=("sign(v + 99)",))  # faster than any v: it keeps its sign
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
 
@@ -37,10 +39,20 @@ def _with(model, candidate, **values):
         (DELAY, {"seconds": -99.0}, False),
         (LAG, {"seconds": 0.1}, True),
         (LAG, {"seconds": -0.1}, False),
+        (FRICTION, {"factor": 9.0}, True),
+        (ONE_WAY, {"factor": -9.0}, True),
+        (ONE_WAY, {"factor": 9.0}, False),
     ],
 )
 def test_a_number_has_to_lie_where_it_means_what_its_name_says(case, as_read, candidate, values, sensible):
     assert case.search.sensible(_with(as_read.model, candidate, **values)) is sensible
+
+
+@pytest.mark.parametrize(("seconds", "sensible"), [(0.1, True), (-0.1, False)])
+def test_an_input_that_lags_is_not_early_as_well(case, as_read, seconds, sensible):
+    late = Part(DELAY, {"seconds": seconds})
+    lagging = Part(Candidate("input_error", "input", "push", "input_lag"), {"seconds": 0.1})
+    assert case.search.sensible(replace(as_read.model, parts=(late, lagging))) is sensible
 
 
 def test_a_fit_that_failed_is_not_sensible(case, as_read):

@@ -3,6 +3,7 @@ import pytest
 
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
 from gaitdisc.models.descent import descend
+from gaitdisc.reconstruction import window_model
 from gaitdisc.reconstruction.window_model import (
     KINDS,
     fit_reconstructor,
