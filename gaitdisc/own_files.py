@@ -173,6 +173,13 @@ def under_this_guard(work: Callable[..., Result]) -> Callable[..., Result]:
     return work if guard is None else partial(_work_under, replace(guard, held=ExitStack()), work)
 
 
+def note_outputs() -> None:
+    """Take note of the files that other processes of this command have written."""
+    guard = _GUARD.get()
+    for place in guard.places if guard is not None else ():
+        place.lines.update(_listed(place.folder))
+
+
 def _work_under(guard: Guard, work: Callable[..., Result], *given: Any) -> Result:
     with _at_work(guard):
         return work(*given)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from gaitdisc._version import __version__
-from gaitdisc.own_files import under_this_guard
+from gaitdisc.own_files import note_outputs, under_this_guard
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, as_markdown, save_tables
 from gaitdisc.whole_file import write_whole
@@ -102,5 +102,6 @@ def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ..
             delayed(work)(*arguments) for arguments in each
         )
     except BrokenProcessPool:  # killed, mostly for its memory: one after the other takes the least
+        note_outputs()
         return [draw(*arguments) for arguments in each]
     return list(drawn)

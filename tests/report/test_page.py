@@ -8,6 +8,7 @@ from chapter3.pages import statements_table
 from texts import says
 
 import gaitdisc
+from gaitdisc.own_files import claim_folder, guarded
 from gaitdisc.recording import Finding
 from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_blocks, write_markdown, write_page
 from gaitdisc.report.table import (
@@ -22,6 +23,7 @@ from gaitdisc.report.table import (
     words_table,
 )
 from gaitdisc.saved.provenance import Refusal
+from gaitdisc.whole_file import write_whole
 
 
 def test_a_page_lies_in_its_folder_and_says_the_version(tmp_path):
@@ -65,6 +67,20 @@ def test_few_are_drawn_here_and_many_elsewhere_in_order(monkeypatch):
     assert few == [("a", os.getpid()), ("b", os.getpid())]
     many = drawn_side_by_side(_where, [("a",), ("b",), ("c",)], 2)
     assert [word for word, _ in many] == ["a", "b", "c"] and os.getpid() not in {at for _, at in many}
+
+
+def _written(folder, number, here):
+    write_whole(folder / f"{number}.txt", "drawn")
+    if os.getpid() != here:
+        os._exit(1)
+
+
+def test_what_was_drawn_before_the_processes_broke_is_drawn_again(monkeypatch, tmp_path):
+    monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
+    with guarded("gaitdisc test"):
+        claim_folder(tmp_path)
+        drawn_side_by_side(_written, [(tmp_path, number, os.getpid()) for number in range(4)], 2)
+    assert {path.read_text() for path in tmp_path.glob("*.txt")} == {"drawn"}
 
 
 def test_one_processor_draws_alone(monkeypatch):
