@@ -64,6 +64,7 @@ def fenced(printed: str) -> str:
 FORMS: dict[str, Callable[[str], str]] = {
     "sentence": quoted,
     "two sentences": first_two,
+    "two sentences, measured": first_two,
     "scores": scores,
     "code": fenced,
     "markdown": lambda printed: printed.strip("\n"),
@@ -73,7 +74,7 @@ FORMS: dict[str, Callable[[str], str]] = {
 
 def difference(block: Block, printed: str) -> str:
     """What a block has otherwise than it is printed; empty where words and numbers agree."""
-    return apart(block.written, printed, numbers=block.form != "measured")
+    return apart(block.written, printed, numbers="measured" not in block.form)
 
 
 def apart(written: str, printed: str, numbers: bool = True) -> str:
