@@ -280,7 +280,7 @@ class FusedSteps:
         paces[:, 2] = 1 / np.sqrt(1 - 0.999**number)
         x, y = self._part
         sizes = (self._nodes, self._schedule.batch)
-        descend_epoch(self._weights, self._moments, x, y, order.numpy(), sizes, paces)
+        descend_epoch(self._weights, moments=self._moments, x=x, y=y, order=order.numpy(), sizes=sizes, paces=paces)
 
     def loss(self) -> float:
         """Mean squared error of the scaled outputs on the check part."""

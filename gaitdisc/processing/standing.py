@@ -275,4 +275,4 @@ def standing_of(study: Study, participant: Participant, session: str, read: Read
     except GaitdiscError:
         circled = None
     markers, weighed_n = trial.streams.get("markers"), standing_weight_n(trial) if "markers" in trial.streams else None
-    return Standing(study, participant, planned, markers, unread, sizes, circled, weighed_n)
+    return Standing(study, participant, planned, markers, unread, emg_sizes=sizes, circled=circled, weighed_n=weighed_n)
