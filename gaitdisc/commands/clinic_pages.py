@@ -174,7 +174,7 @@ def write_people(
 
 
 def write_before_after(
-    run: StudyRun, run_folder: Path, person: str, words: tuple[str, str], pdf: bool = False
+    run: StudyRun, run_folder: Path, person: str, first: str, second: str, pdf: bool = False
 ) -> list[Path]:
     """Write the page of a person before and after, as HTML and where wanted as PDF."""
     from gaitdisc.clinic.clinical_reference import PersonSession
@@ -183,8 +183,8 @@ def write_before_after(
     from gaitdisc.report.figure import file_names
 
     reference = kept_reference(run_folder)
-    before, after = before_and_after(run, reference, person, words)
-    title = f"{person} {words[0]} {words[1]}"
+    before, after = before_and_after(run, reference, person, (first, second))
+    title = f"{person} {first} {second}"
     page = PersonSession(title, (after, before), (contrast_of(before, after),))
     name = file_names([title])[title]
     return _pages(page, name, reference, run.provenance, run_folder / "report", say=kept_words(run_folder), pdf=pdf)
