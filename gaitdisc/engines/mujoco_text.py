@@ -46,7 +46,7 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
     joint: its name in the file
     own: stiffness, damping and frictionloss that the joint has, which may come from a default class
     """
-    tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
+    tags = [one for one in _tags(text) if _is(text, one, "joint", joint)]
     if not joint or len(tags) != 1:
         return None
     tag, name = tags[0], effect.term.name
