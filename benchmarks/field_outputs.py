@@ -98,7 +98,7 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     import torch
 
     from gaitdisc.models.descent import TorchSteps
-    from gaitdisc.models.training_settings import TrainingSettings, schedule_of
+    from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, schedule_of
 
     torch.set_num_threads(1)
     torch.manual_seed(0)
@@ -112,7 +112,7 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     model = built(network, x.shape[1], y.shape[1])
     settings = TrainingSettings(epochs=epochs, batch=BATCH, learning_rate=RATE)
     rates = schedule_of(len(x), DECAY, settings).rates
-    steps = TorchSteps(model, (x, y), (x[:1], y[:1]), schedule_of(len(x), DECAY, settings))
+    steps = TorchSteps(model, ScaledSamples(x, y), ScaledSamples(x[:1], y[:1]), schedule_of(len(x), DECAY, settings))
     order, seconds = torch.Generator().manual_seed(0), []
     for epoch in range(epochs):
         begun = time.process_time()

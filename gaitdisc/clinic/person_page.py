@@ -148,7 +148,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
     return {
         **words,
-        **{one.name: _sheet(one.panels, one.caption, (beside, f"{stem}{one.name}"), say) for one in sheets},
+        **{one.name: _sheet(one.panels, one.caption, beside, f"{stem}{one.name}", say) for one in sheets},
         "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
         "distances": _saved(values_table(reading), beside, stem, say),
         "numbers": _saved(numbers_table(reading), beside, stem, say),
@@ -156,8 +156,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     }
 
 
-def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str], say: PageWords) -> dict[str, Any]:
-    beside, name = place
+def _sheet(panels: list[Panel], caption: str, beside: Path, name: str, say: PageWords) -> dict[str, Any]:
     if panels:
         means = [replace(one, lines=tuple(line for line in one.lines if line.look != "single")) for one in panels]
         save_table(panel_numbers(means), beside / f"{name}.csv")
@@ -177,7 +176,7 @@ def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any
     for side in contrast.second.legs:
         panels = contrast_sheet(contrast, side)
         if panels:
-            one = _sheet(panels, CONTRAST.format(first, second), (beside, f"{stem}-{SIDE_WORDS[side]}"), say)
+            one = _sheet(panels, CONTRAST.format(first, second), beside, f"{stem}-{SIDE_WORDS[side]}", say)
             sheets.append({**one, "heading": say(SIDE_WORDS[side]).capitalize()})
     changes = _saved(change_table(contrast), beside, f"{stem}-", say)
     words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}

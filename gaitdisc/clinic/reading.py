@@ -305,5 +305,5 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
         largest = float(own[np.argmax(np.abs(own))])
         name = names[cluster.channel]
         matters = abs(largest) >= MATTERS[BY_NAME[name].unit]
-        found.append(DifferingSpan(name, first.side, cluster.first, cluster.last, largest, cluster.p, matters))
+        found.append(DifferingSpan(name, first.side, cluster.first, cluster.last, largest, cluster.p, matters=matters))
     return found, len(names)

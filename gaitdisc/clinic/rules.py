@@ -173,7 +173,7 @@ def outstanding(
         found.append(_note(rule, leg.side, number, sample.limits(tests, own_speed), count))
     if score is not None:
         limits = limits_about(score.reference_mean, score.reference_sd, score.people, tests)
-        rule = Rule(SCORE, "", "profile_deg", "", "", SCORE_LEAST, "", SCORE_WORDS)
+        rule = Rule(SCORE, "", value="profile_deg", part="", take="", least=SCORE_LEAST, less="", more=SCORE_WORDS)
         found.append(_note(rule, "", score.value, limits, min(leg.count for leg in legs.values())))
     return tuple(sorted(found, key=lambda one: (-one.tier, -one.excess))), ""
 

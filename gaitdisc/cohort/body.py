@@ -45,7 +45,7 @@ def leg_of(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
     >>> round(leg_of(1.69, 66.5).thigh_m, 3)
     0.414
     """
-    l1, l2, sole = 0.245 * height_m, 0.246 * height_m, 0.152 * height_m
+    l1, l2, sole, ankle = 0.245 * height_m, 0.246 * height_m, 0.152 * height_m, 0.039 * height_m
     m1, own2, own3 = 0.100 * mass_kg, 0.0465 * mass_kg, 0.0145 * mass_kg
     m2, m3 = own2 + SHANK_KG, own3 + FOOT_KG + added_foot_kg
     r1, r2 = 0.433 * l1, 0.433 * l2
@@ -54,7 +54,7 @@ def leg_of(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
     i2 = own2 * (0.302 * l2) ** 2 + m2 * r2**2 + m3 * l2**2
     i3 = own3 * (0.475 * sole) ** 2 + m3 * (forward**2 + down**2)
     s1, s2 = m1 * r1 + (m2 + m3) * l1, m2 * r2 + m3 * l2
-    return Leg(l1, l2, s1, s2, m3, forward, down, i1, i2, i3, 0.039 * height_m, sole)
+    return Leg(l1, l2, s1, s2, m3, forward, foot_down_m=down, i1=i1, i2=i2, i3=i3, ankle_m=ankle, sole_m=sole)
 
 
 @compiled

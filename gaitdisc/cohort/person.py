@@ -170,21 +170,21 @@ def drawn(name: str, seed: int, sex: str) -> Person:
     return Person(
         name,
         sex,
-        float(23.9 + 1.8 * _held(rng)),
-        float(height),
-        float(mass),
-        float(speed),
-        float(2 / cadence * np.sqrt(leg / 9.81)),
-        float(-1.0 + 1.5 * _held(rng)),
-        _style(rng, np.random.default_rng([seed, 15])),
-        Adaptation(
+        age_years=float(23.9 + 1.8 * _held(rng)),
+        height_m=float(height),
+        mass_kg=float(mass),
+        speed_m_per_s=float(speed),
+        stride_s=float(2 / cadence * np.sqrt(leg / 9.81)),
+        engaged_deg=float(-1.0 + 1.5 * _held(rng)),
+        style=_style(rng, np.random.default_rng([seed, 15])),
+        adaptation=Adaptation(
             float(np.clip(0.40 + 0.15 * _held(rng), 0.05, 0.95)),
             _waves(rng, 0.9, 0.3),
             np.clip(0.10 * rng.normal(size=len(GROUPS)), -0.25, 0.25),
         ),
-        _waves(rng, 0.15, 0.06),
-        float(np.clip(1 + 0.15 * _held(rng), 0.7, 1.3)),
-        float(STANCE + STANCE_SPREAD * _held(rng)),
+        drift_deg=_waves(rng, 0.15, 0.06),
+        unrest=float(np.clip(1 + 0.15 * _held(rng), 0.7, 1.3)),
+        stance=float(STANCE + STANCE_SPREAD * _held(rng)),
     )
 
 

@@ -122,7 +122,7 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
         [np.stack([learnt_table(person, side, drifted) for side in (0, 1)]) for drifted in (0.0, CHANGE_SIZE)]
     )
     noise = _noise(person, device, duration_s + WARM_UP_S, seed)
-    quick, slow, upright = moved(leg, tuple(strengths), Belt(), _loop(person), worn, tables, noise)
+    quick, slow, upright = moved(leg, tuple(strengths), Belt(), _loop(person), worn=worn, tables=tables, noise=noise)
     if not upright:
         raise StrideError(
             "the legs of a simulated walk must stay under the body",
@@ -192,15 +192,15 @@ def _kept(person: Person, device: Spring, seed: int, quick: NDArray[np.float64],
         person,
         device,
         seed,
-        np.arange(len(quick)) / QUICK_HZ,
-        np.arange(len(slow)) / SLOW_HZ,
-        quick[:, 0],
-        quick[:, 1:5].reshape(-1, 2, 2),
-        quick[:, 5:].reshape(-1, 2, len(GROUPS)),
-        np.degrees(np.stack(flexion, axis=2)),
-        slow[:, 11:17].reshape(-1, 2, 3),
-        slow[:, 17:19],
-        slow[:, 19:21],
-        np.degrees(np.stack(joints, axis=2)),
-        slow[:, 21:23],
+        quick_s=np.arange(len(quick)) / QUICK_HZ,
+        slow_s=np.arange(len(slow)) / SLOW_HZ,
+        phase=quick[:, 0],
+        force=quick[:, 1:5].reshape(-1, 2, 2),
+        excitation=quick[:, 5:].reshape(-1, 2, len(GROUPS)),
+        angles=np.degrees(np.stack(flexion, axis=2)),
+        moments=slow[:, 11:17].reshape(-1, 2, 3),
+        spring=slow[:, 17:19],
+        sole=slow[:, 19:21],
+        acceleration=np.degrees(np.stack(joints, axis=2)),
+        pelvis=slow[:, 21:23],
     )

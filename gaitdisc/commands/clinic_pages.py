@@ -159,7 +159,7 @@ def write_people(
             failed.append((title, str(error)))
             continue
         try:
-            pages = _pages(person, name, reference, run.provenance, report, say, pdf)
+            pages = _pages(person, name, reference, provenance=run.provenance, report=report, say=say, pdf=pdf)
             for page in pages:
                 progress(page)
             drawn = index_rows(person, name, say)
@@ -174,7 +174,7 @@ def write_people(
 
 
 def write_before_after(
-    run: StudyRun, run_folder: Path, person: str, words: tuple[str, str], pdf: bool = False
+    run: StudyRun, run_folder: Path, person: str, first: str, second: str, pdf: bool = False
 ) -> list[Path]:
     """Write the page of a person before and after, as HTML and where wanted as PDF."""
     from gaitdisc.clinic.clinical_reference import PersonSession
@@ -183,11 +183,11 @@ def write_before_after(
     from gaitdisc.report.figure import file_names
 
     reference = kept_reference(run_folder)
-    before, after = before_and_after(run, reference, person, words)
-    title = f"{person} {words[0]} {words[1]}"
+    before, after = before_and_after(run, reference, person, (first, second))
+    title = f"{person} {first} {second}"
     page = PersonSession(title, (after, before), (contrast_of(before, after),))
     name = file_names([title])[title]
-    return _pages(page, name, reference, run.provenance, run_folder / "report", kept_words(run_folder), pdf)
+    return _pages(page, name, reference, run.provenance, run_folder / "report", say=kept_words(run_folder), pdf=pdf)
 
 
 def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
@@ -204,7 +204,7 @@ def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False
     report, found = run_folder / "report", []
     for title, cycles in own.items():
         session = read_session(title, cycles, run.nominal, reference)
-        found += _pages(session, names[title], reference, run.provenance, report, say, pdf)
+        found += _pages(session, names[title], reference, provenance=run.provenance, report=report, say=say, pdf=pdf)
     return found
 
 

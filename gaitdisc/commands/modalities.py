@@ -10,4 +10,4 @@ def modalities(
     study: StudyPlace, out: RunPlace = None, jobs: Jobs = 1, cluster: Cluster = "", quiet: Quiet = False
 ) -> None:
     """Fit the models without one family of inputs at a time, to find the important inputs."""
-    vary(study, out, "modalities", (jobs, cluster), quiet)
+    vary(study, out, "modalities", jobs, cluster, quiet)

@@ -32,7 +32,7 @@ def new(
     from gaitdisc.engines.engine import is_model
 
     if external_loads or forces or actuators:
-        _write_tracked(out, recordings, (external_loads, forces, actuators))
+        _write_tracked(out, recordings, external_loads, forces, actuators)
         return
     if is_model(recordings):
         _write_mapping(out, recordings, degrees)
@@ -73,13 +73,13 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
         typer.echo("For a walk with recorded ground forces add --external-loads grf.xml, --forces, --actuators.")
 
 
-def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | None, Path | None]) -> None:
+def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | None, actuators: Path | None) -> None:
     from gaitdisc.engines.tracked_files import drafted_tracked
     from gaitdisc.engines.tracked_mapping import write_tracked_mapping
     from gaitdisc.words import counted
 
     _claim_mapping(file, model)
-    tracked, engine = drafted_tracked(model, *files)
+    tracked, engine = drafted_tracked(model, loads, forces, actuators)
     write_tracked_mapping(tracked, file)
     given = f"forces of {counted(len(engine.actuators), 'actuator')}" if tracked.forces else "no forces of muscles"
     typer.echo(

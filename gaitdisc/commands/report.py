@@ -50,7 +50,7 @@ def report(
         typer.echo(f"{len(lacking)} words remain in English: {'; '.join(lacking)}")
     named = bool(person or before or after or reference or pdf)
     if named or (place / "cycles").is_dir():
-        _people(place, named, person, (before, after), reference, pdf)
+        _people(place, named, person, before, after, reference=reference, pdf=pdf)
         return
     if (folder / "model.json").is_file():
         raise SchemaError(
@@ -63,7 +63,7 @@ def report(
 
 
 def _people(
-    run_folder: Path, named: bool, person: str, pair: tuple[str, str], reference: Path | None, pdf: bool
+    run_folder: Path, named: bool, person: str, before: str, after: str, reference: Path | None, pdf: bool
 ) -> None:
     """Draw pages of a run's people again: all, those of one person, or two sessions or conditions of one."""
     from gaitdisc.report.saved_page import draw_beside
@@ -73,15 +73,15 @@ def _people(
     if named and not run.cycles:
         raise SchemaError("pages of people need a run with pooled cycles", f"{run_folder} has none", "Run one.")
     keep_reference(reference, run_folder)
-    if any(pair) and not (person and all(pair)):
+    if (before or after) and not (person and before and after):
         raise SchemaError(
             "a comparison needs --person, --before and --after",
-            f"they are person {person!r}, before {pair[0]!r}, after {pair[1]!r}",
+            f"they are person {person!r}, before {before!r}, after {after!r}",
             "Name all three.",
         )
     if person:
         where = (run, run_folder, person)
-        for page in write_before_after(*where, pair, pdf) if any(pair) else write_person(*where, pdf):
+        for page in write_before_after(*where, before, after, pdf) if before else write_person(*where, pdf):
             _said(page)
     elif pdf:
         typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")

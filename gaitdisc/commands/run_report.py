@@ -57,7 +57,7 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
     end(done.refusals, len(done.reported), page, time.perf_counter() - started)
 
 
-def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
+def vary(place: Path, out: Path | None, question: str, jobs: int, cluster: str, quiet: bool) -> None:
     """Answer a question beside the study with the progress shown, and write its page."""
     from gaitdisc.own_files import claim_file
     from gaitdisc.response.variants_page import variant_sentences, write_variants
@@ -65,7 +65,7 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
     from gaitdisc.run.workers import Workers
 
     study, folder = claimed(place, out)
-    started, side_by_side = time.perf_counter(), Workers(*workers)
+    started, side_by_side = time.perf_counter(), Workers(jobs, cluster)
     claim_file(folder / question / "report.html")
     people = [person.id for person in study.participants]
     done = worked(lambda progress: vary_study(study, folder, question, side_by_side, progress), people, quiet)

@@ -49,7 +49,7 @@ def watch(
                     typer.echo(f"  {note}")
                 said.update(notes)
                 with guarded("gaitdisc run", [file, *(recordings / one for one in files)], overwrite):
-                    run(file, None, None, jobs, "", reference, quiet)
+                    run(file, out=None, participant=None, jobs=jobs, cluster="", reference=reference, quiet=quiet)
                 code = 0
             except typer.Exit as ended:
                 if ended.exit_code == STOPPED:

@@ -107,7 +107,7 @@ def compare_walks(
     unit = "stride" if length == 1 else f"block of {length} strides"
     exchange = _exchange(unit, (count, len(blocks)), (len(one), len(other)), test)
     limits = _limits(common.channels, other.mean(axis=0), smallest)
-    compared = _Compared(test, exchange, means[1] - means[0], means, (_sd(one), _sd(other)), alignment, limits)
+    compared = _Compared(test, exchange, means[1] - means[0], means, (_sd(one), _sd(other)), alignment, limits=limits)
     return _mismatch(names, common, compared, (first, second), _settings(plan, smallest))
 
 
@@ -145,9 +145,9 @@ def compare_people(
     sds = tuple(np.sqrt(np.mean(np.square(one), axis=0)) for one in spreads)
     middles = (means[0].mean(axis=0), means[1].mean(axis=0))
     limits = _limits(common.channels, middles[1], smallest)
-    compared = _Compared(test, exchange, gap, middles, (sds[0], sds[1]), alignment, limits)
-    names = (pairs[0][0].condition, pairs[0][1].condition)
-    return _mismatch(names, common, compared, walks, _settings(plan, smallest))
+    compared = _Compared(test, exchange, gap, means=middles, sds=(sds[0], sds[1]), alignment=alignment, limits=limits)
+    conditions = (pairs[0][0].condition, pairs[0][1].condition)
+    return _mismatch(conditions, common, compared, walks, _settings(plan, smallest))
 
 
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
@@ -196,16 +196,16 @@ def _mismatch(
         "t": compared.test.t,
     }
     return Mismatch(
-        names[0],
-        names[1],
-        common.channels,
-        curves,
-        _regions(common.channels, compared),
-        _summary(common.channels, compared),
-        compared.exchange,
-        tuple(sorted(kept, key=lambda finding: finding.rank)),
-        made_now(settings, settings["seed"], files, SECTION),
-        compared.alignment,
+        first=names[0],
+        second=names[1],
+        channels=common.channels,
+        curves=curves,
+        regions=_regions(common.channels, compared),
+        summary=_summary(common.channels, compared),
+        exchange=compared.exchange,
+        findings=tuple(sorted(kept, key=lambda finding: finding.rank)),
+        provenance=made_now(settings, settings["seed"], files, SECTION),
+        alignment=compared.alignment,
     )
 
 

@@ -45,14 +45,14 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
     turned = {one.name for one in found if degrees and one.unit == "rad"}
     scale = repr(float(np.rad2deg(1.0)))
     return Simulation(
-        f"{engine.path.name}, a model of {engine.called}",
-        tuple(states),
-        engine.controls,
-        tuple(parameters),
-        tuple(ports),
-        (),
-        any_equations(states, (*engine.controls, *parameters, *ports)),
-        tuple((one.name, f"{scale}*{one.name}" if one.name in turned else one.name) for one in found),
+        title=f"{engine.path.name}, a model of {engine.called}",
+        states=tuple(states),
+        inputs=engine.controls,
+        parameters=tuple(parameters),
+        ports=tuple(ports),
+        definitions=(),
+        equations=any_equations(states, (*engine.controls, *parameters, *ports)),
+        observations=tuple((one.name, f"{scale}*{one.name}" if one.name in turned else one.name) for one in found),
         sensors=tuple(Sensor(one.name, "deg" if one.name in turned else one.unit) for one in found),
         model=engine.path.name,
     )

@@ -194,7 +194,7 @@ class MujocoModel:
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
         kind, number = self._places[name].part
-        return with_value(text, name, value, (kind, self._called(kind, number)))
+        return with_value(text, name, value, kind, self._called(kind, number))
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""

@@ -15,11 +15,11 @@ BEYOND = 10.0  # [rad], where a one-sided spring pulls that pulls at all
 MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
 
 
-def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> str | None:
+def with_value(text: str, name: str, value: float, kind: str, called: str) -> str | None:
     """Text with a number of a joint, body or option changed; None where the file does not say it.
 
     name: `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss`, `_gear`, `_force`, or gravity
-    element: tag and name of the element in the file
+    kind, called: tag and name of the element in the file
     """
     if name == "gravity":
         tags = [one for one in _tags(text) if one[0] == "option"]
@@ -29,7 +29,7 @@ def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> 
         end = f'  <option gravity="{words}"/>\n'
         return _with_attribute(text, tags[0], "gravity", words) if tags else _before_end(text, end)
     word = name.rpartition("_")[2]
-    tags = [one for one in _tags(text) if _is(text, one, element)]
+    tags = [one for one in _tags(text) if _is(text, one, kind, called)]
     if len(tags) != 1:
         return None
     if word == "mass":
@@ -46,7 +46,7 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
     joint: its name in the file
     own: stiffness, damping and frictionloss that the joint has, which may come from a default class
     """
-    tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
+    tags = [one for one in _tags(text) if _is(text, one, "joint", joint)]
     if not joint or len(tags) != 1:
         return None
     tag, name = tags[0], effect.term.name
@@ -144,11 +144,11 @@ def _tags(text: str) -> list[_Tag]:
     return found
 
 
-def _is(text: str, tag: _Tag, element: tuple[str, str]) -> bool:
+def _is(text: str, tag: _Tag, kind: str, called: str) -> bool:
     """Whether a tag is that of an element; an actuator's may be any."""
-    kinds = (element[0],) if element[0] != "actuator" else (tag[0],)
-    inside = tag[0] in kinds and _attribute(text, tag, "name") == element[1]
-    return inside and (element[0] != "actuator" or text[tag[3] :].startswith("<actuator"))
+    kinds = (kind,) if kind != "actuator" else (tag[0],)
+    inside = tag[0] in kinds and _attribute(text, tag, "name") == called
+    return inside and (kind != "actuator" or text[tag[3] :].startswith("<actuator"))
 
 
 def _attribute(text: str, tag: _Tag, name: str) -> str | None:

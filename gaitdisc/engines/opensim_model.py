@@ -131,8 +131,7 @@ class OpensimModel:
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a coordinate."""
-        one = self.coordinates[effect.coordinate]
-        return with_effect(text, effect.term, (one.name, one.speed), one.called)
+        return with_effect(text, effect.term, self.coordinates[effect.coordinate])
 
     def _query(self, question: str, *arguments: Any) -> Any:
         """What the process answers; it is started with the model at the first question, and anew after it died."""
@@ -174,19 +173,15 @@ def _ended(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-def with_effect(text: str, term: Term, names: tuple[str, str], coordinate: str) -> str | None:
-    """Text with a force of an expression on a coordinate; None where the expression knows more than that coordinate.
-
-    names: coordinate and speed as the term calls them
-    coordinate: as the file calls it
-    """
-    expression = _translated(parsed(term.term), {names[0]: "q", names[1]: "qdot"})
+def with_effect(text: str, term: Term, coordinate: Coordinate) -> str | None:
+    """Text with a force of an expression on a coordinate; None where the expression knows more than that coordinate."""
+    expression = _translated(parsed(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})
     found = re.search(r"<ForceSet\b.*?</ForceSet>", text, re.DOTALL)
     if expression is None or found is None:
         return None
     own = (
-        f"<ExpressionBasedCoordinateForce name={quoteattr(f'{term.name}_{coordinate}')}>"
-        f"<coordinate>{escape(coordinate)}</coordinate><expression>{escape(expression)}</expression>"
+        f"<ExpressionBasedCoordinateForce name={quoteattr(f'{term.name}_{coordinate.called}')}>"
+        f"<coordinate>{escape(coordinate.called)}</coordinate><expression>{escape(expression)}</expression>"
         "</ExpressionBasedCoordinateForce>\n"
     )
     whole = found[0]

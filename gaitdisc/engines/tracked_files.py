@@ -154,7 +154,9 @@ def tracked_motion(
     kept = np.flatnonzero(inside)
     kept = np.arange(kept[0], kept[-1] + 1)
     ends = float(time[0]), float(time[-1])
-    return TrackedMotion(time[kept], q[kept], v[kept], a[kept], names, pulls[kept], not rates, ends)
+    return TrackedMotion(
+        time[kept], q[kept], v[kept], a[kept], actuators=names, forces=pulls[kept], differentiated=not rates, span=ends
+    )
 
 
 def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:

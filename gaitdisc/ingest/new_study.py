@@ -227,14 +227,14 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
     angles = kinematics and tuple(channel.name for channel in kinematics.channels if channel.quantity == "angle")
     return FoundTrial(
         files,
-        person_word(files[0]),
-        group_word(files[0]),
-        session_word(files[0])[1],
-        word,
-        which,
-        angles,
-        kinematics and tuple(name for name in angles or () if _varies(kinematics, name)),
-        emg and emg.names,
+        person=person_word(files[0]),
+        group=group_word(files[0]),
+        session=session_word(files[0])[1],
+        word=word,
+        which=which,
+        angles=angles,
+        varying=kinematics and tuple(name for name in angles or () if _varies(kinematics, name)),
+        emg=emg and emg.names,
     )
 
 

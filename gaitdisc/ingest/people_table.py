@@ -149,7 +149,7 @@ def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) ->
     unit, factors = (f" {stated[1]}", [_METRES[stated[1]]]) if stated else (" m, cm or mm", list(_METRES.values()))
     age = _within(cells["age"], "age", AGE_YEARS, "years", notes)
     mass = _within(cells["mass"], "body mass", MASS_KG, "kg", notes)
-    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], "m", notes, factors, unit)
+    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], "m", notes=notes, factors=factors, given=unit)
     sex = _SEX.get(cells["sex"].lower(), "")
     if not sex and cells["sex"].lower() not in _MISSING:
         notes.append(f"sex {cells['sex']!r} is neither f nor m; the mean of both is used")

@@ -177,7 +177,7 @@ def _frozen_finding(recording: Recording, place: int, still: NDArray[np.bool_]) 
     what = f"is constant at {value} from {start:.3f} to {end:.3f} s{more}; no measurement is constant for so long; "
     what += "treated as missing"
     name = channel.name.removesuffix(".x") if marker else channel.name
-    return Finding("warning", "frozen", recording.source.file, what, "these frames; fill the gap", name, spans)
+    return Finding("warning", "frozen", recording.source.file, what, "these frames; fill the gap", name, spans=spans)
 
 
 def _other_unit(recording: Recording, place: int, limits: PlausibleRange) -> Finding:
@@ -213,7 +213,7 @@ def _finding(
     most = "the unit or the name of the channel, if most of its samples are affected"
     spoils = most if beyond.mean() > 0.5 else "these frames"
     spans, what = spans_s(recording.time, beyond), f"{where}; treated as missing"
-    return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans)
+    return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans=spans)
 
 
 def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, Recording], list[Finding]]:

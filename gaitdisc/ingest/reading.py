@@ -112,7 +112,7 @@ def read_trial(
     if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader reports unused labels itself
         findings += _unused(channels, named, parts[0].name)
     surfaces = tuple(surface for one in parts for surface in one.surfaces)
-    trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition, surfaces)
+    trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition=condition, surfaces=surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
     trial = trial if crop_s is None else _cropped(trial, *crop_s)  # only what a crop leaves is checked
     kept, turned = with_flexion_positive(trial.streams)
@@ -127,7 +127,9 @@ def read_planned_trial(
 ) -> Trial:
     """Trial as a study plans it, named by pseudonym, session, condition, and a number where there are several."""
     paths = [study.path_of(file) for file in planned.files]
-    trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader, planned.part)
+    trial = read_trial(
+        paths, study.channels, participant.id, planned.condition, planned.crop_s, reader=reader, part=planned.part
+    )
     return replace(trial, name=participant.trial_name(planned))
 
 

@@ -114,8 +114,7 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
         "endheader",
         "\t".join(["time", *recording.names]),
     ]
-    table = np.column_stack([recording.time, recording.values])
-    rows = ("\t".join(map(repr, row)) for row in table.tolist())
+    rows = ("\t".join(map(repr, row)) for row in np.column_stack([recording.time, recording.values]).tolist())
     return write_whole(path, "\n".join([*header, *rows]) + "\n")
 
 

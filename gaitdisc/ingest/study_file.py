@@ -145,8 +145,7 @@ def _pair(part: BaseModel, name: str) -> str:
     value = getattr(part, name)
     about = type(part).model_fields[name].description
     unused = value is None or (name == "share" and getattr(part, "seconds", None) is not None)
-    example = EXAMPLES.get(name)
-    text = f"{name} = {_value(example if unused else value)}"
+    text = f"{name} = {_value(EXAMPLES.get(name) if unused else value)}"
     if "\n" in text:
         return f"# {about}\n{text}\n"
     return f"{'# ' if unused else ''}{text}  # {about}\n"

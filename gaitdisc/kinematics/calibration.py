@@ -118,12 +118,12 @@ class _Builder:
         points = {segment: self._points(segment) for segment in SEGMENTS}
         return Calibration(
             self.marker_set,
-            MappingProxyType(body),
-            MappingProxyType(points),
-            MappingProxyType(self.static),
-            tuple(self.findings),
-            MappingProxyType(dict(self.places)),
-            self._spoiled(),
+            body=MappingProxyType(body),
+            points=MappingProxyType(points),
+            static=MappingProxyType(self.static),
+            findings=tuple(self.findings),
+            places=MappingProxyType(dict(self.places)),
+            spoiled=self._spoiled(),
         )
 
     def _place(self, key: str, side: str) -> NDArray[np.float64]:

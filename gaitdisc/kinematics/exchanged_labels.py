@@ -135,12 +135,13 @@ def exchange_findings(
         what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "
         what += f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm from the static trial, not {before}"
         spans = spans_s(markers.time, one.frames)
-        findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans))
+        findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans=spans))
     for segment, frames in broken.items():
         if frames.any():
             what = f"{segment}: in {int(frames.sum())} of {len(frames)} frames its markers are more than "
             what += f"{1000.0 * BROKEN_M:.0f} mm from their positions in the static trial, and no two labels explain it"
-            findings.append(Finding("warning", "broken segment", file, what, SPOILS, "", spans_s(markers.time, frames)))
+            spans = spans_s(markers.time, frames)
+            findings.append(Finding("warning", "broken segment", file, what, SPOILS, spans=spans))
     return findings
 
 

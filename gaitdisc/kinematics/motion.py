@@ -148,14 +148,14 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         angles = angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
     return Motion(
         angles,
-        MappingProxyType(poses),
-        MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
-        walking,
-        MappingProxyType(residuals),
-        calibration,
-        without_exchanged(markers, exchanges, calibration),
-        tuple(exchanges),
-        tuple(findings),
+        poses=MappingProxyType(poses),
+        joint_centres=MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
+        walking=walking,
+        residual_m=MappingProxyType(residuals),
+        calibration=calibration,
+        markers=without_exchanged(markers, exchanges, calibration),
+        exchanged=tuple(exchanges),
+        findings=tuple(findings),
     )
 
 

@@ -188,7 +188,9 @@ def _foot_force(forces: Recording, key: str) -> Platform:
     floor = float(np.median(point[pressed, 1])) if pressed.any() else 0.0
     wrench = Wrench.at(np.nan_to_num(point), force, np.nan_to_num(moment))
     side = key if key in ("r", "l") else ""
-    return Platform(f"ground_force_{key}", forces.time, wrench, up, np.array([0.0, floor, 0.0]), None, side)
+    return Platform(
+        f"ground_force_{key}", forces.time, wrench, up, point=np.array([0.0, floor, 0.0]), surface=None, side=side
+    )
 
 
 def _three(forces: Recording, pattern: str) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.feedforward import FeedForward
-from gaitdisc.models.training_settings import Schedule, TrainingSettings
+from gaitdisc.models.training_settings import ScaledSamples, Schedule, TrainingSettings
 
 if TYPE_CHECKING:
     from gaitdisc.models.fused_steps import FusedSteps
@@ -26,8 +26,7 @@ class TorchSteps:
 
     Decay acts on weight matrices only; weights stay float32.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check by; on
-        the device of the network
+    part, check: what it descends on, and is checked by
     precision: of the matrix products, `float32` or `bfloat16` (needs AVX-512 or a GPU: else torch has no LSTM)
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization.
     """
@@ -37,13 +36,13 @@ class TorchSteps:
     def __init__(
         self,
         network: nn.Module,
-        part: tuple[Tensor, Tensor],
-        check: tuple[Tensor, Tensor],
+        part: ScaledSamples,
+        check: ScaledSamples,
         schedule: Schedule,
         precision: str = "float32",
     ) -> None:
         self._network, self._part, self._check, self._batch = network, part, check, schedule.batch
-        able = part[0].is_cuda or "AVX512" in torch.backends.cpu.get_cpu_capability()
+        able = part.x.is_cuda or "AVX512" in torch.backends.cpu.get_cpu_capability()
         self._short = able and precision == "bfloat16"
         matrices = [p for p in network.parameters() if p.ndim > 1]
         others = [p for p in network.parameters() if p.ndim <= 1]
@@ -68,7 +67,7 @@ class TorchSteps:
         """Mean squared error of the scaled outputs on the check part."""
         self._network.eval()
         with torch.no_grad():
-            return float(nn.functional.mse_loss(self._network(self._check[0]), self._check[1]))
+            return float(nn.functional.mse_loss(self._network(self._check.x), self._check.y))
 
     def weights(self) -> dict[str, Any]:
         """Copy of the weights as they are: a reference would follow the descent."""
@@ -90,8 +89,8 @@ class Descent:
 
 def descend(
     network: nn.Module,
-    part: tuple[Tensor, Tensor],
-    check: tuple[Tensor, Tensor],
+    part: ScaledSamples,
+    check: ScaledSamples,
     schedule: Schedule,
     settings: TrainingSettings,
     progress: Callable[[float], None] = lambda _: None,
@@ -100,8 +99,7 @@ def descend(
 
     Decay acts on weight matrices only. The best weights are kept as a copy: a reference would follow the descent.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check each
-        epoch by
+    part, check: what it descends on, and is checked by after each epoch
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it
         trained.
     """
@@ -111,7 +109,7 @@ def descend(
     best: Any = steps.weights()
     epochs = len(schedule.rates)
     for epoch in range(1, epochs + 1):
-        steps.epoch(torch.randperm(len(part[0]), generator=order), schedule.rates[epoch - 1])
+        steps.epoch(torch.randperm(len(part.x), generator=order), schedule.rates[epoch - 1])
         losses.append(steps.loss())
         if not math.isfinite(losses[-1]):
             raise TrainingError(
@@ -130,11 +128,7 @@ def descend(
 
 
 def _steps(
-    network: nn.Module,
-    part: tuple[Tensor, Tensor],
-    check: tuple[Tensor, Tensor],
-    schedule: Schedule,
-    settings: TrainingSettings,
+    network: nn.Module, part: ScaledSamples, check: ScaledSamples, schedule: Schedule, settings: TrainingSettings
 ) -> TorchSteps | FusedSteps:
     """What computes a descent: compiled code where it can, torch elsewhere."""
     if settings.arithmetic == "auto" and settings.precision == "float32":

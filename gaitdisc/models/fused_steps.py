@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from gaitdisc.compiled import compiled
 from gaitdisc.models.feedforward import FeedForward
-from gaitdisc.models.training_settings import Schedule
+from gaitdisc.models.training_settings import ScaledSamples, Schedule
 
 F32 = np.float32
 LOG2_E = F32(1.4426950408889634)
@@ -255,14 +255,12 @@ class FusedSteps:
     Same weights to start from, same order of samples, same steps as `TorchSteps`: the two differ by rounding. Nothing
     is dispatched between two matrix products, and what lies between them is one pass over memory.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check by
+    part, check: what it descends on, and is checked by
     """
 
     arithmetic = "fused"
 
-    def __init__(
-        self, network: FeedForward, part: tuple[Tensor, Tensor], check: tuple[Tensor, Tensor], schedule: Schedule
-    ) -> None:
+    def __init__(self, network: FeedForward, part: ScaledSamples, check: ScaledSamples, schedule: Schedule) -> None:
         self._network, self._schedule = network, schedule
         self._part, self._check = (tuple(t.contiguous().numpy() for t in pair) for pair in (part, check))
         self._nodes = network.radial.out_features
@@ -280,7 +278,7 @@ class FusedSteps:
         paces[:, 2] = 1 / np.sqrt(1 - 0.999**number)
         x, y = self._part
         sizes = (self._nodes, self._schedule.batch)
-        descend_epoch(self._weights, self._moments, x, y, order.numpy(), sizes, paces)
+        descend_epoch(self._weights, moments=self._moments, x=x, y=y, order=order.numpy(), sizes=sizes, paces=paces)
 
     def loss(self) -> float:
         """Mean squared error of the scaled outputs on the check part."""

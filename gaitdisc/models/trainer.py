@@ -17,7 +17,7 @@ from torch import Tensor, nn
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.descent import Descent, descend
 from gaitdisc.models.trained_network import TrainedNetwork, pinned_threads
-from gaitdisc.models.training_settings import TrainingSettings, schedule_of
+from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, schedule_of
 from gaitdisc.recording import Samples, Scale, scale_of
 
 LEAST_SAMPLES = 50
@@ -120,16 +120,16 @@ class _Candidate:
 
 def _best_candidate(
     build: Callable[[int, int], nn.Module],
-    part: tuple[Tensor, Tensor],
-    check: tuple[Tensor, Tensor],
+    part: ScaledSamples,
+    check: ScaledSamples,
     settings: TrainingSettings,
     progress: Callable[[float], None],
 ) -> _Candidate:
     """Try decays from weak to strong, each from the weights of the one before, until the inner block does worse."""
     count = len(settings.decays)
     torch.manual_seed(settings.seed)
-    network = build(part[0].shape[1], part[1].shape[1]).to(part[0].device)
-    schedule = schedule_of(len(part[0]), settings.decays[0], settings)
+    network = build(part.x.shape[1], part.y.shape[1]).to(part.x.device)
+    schedule = schedule_of(len(part.x), settings.decays[0], settings)
     best = None
     for number, decay in enumerate(settings.decays):
         shared = partial(lambda number, fraction: progress((number + fraction) / count), number)
@@ -164,42 +164,39 @@ def chosen_device(wanted: str) -> torch.device:
     )
 
 
-def _tensors(samples: Samples, x_scale: Scale, y_scale: Scale, device: torch.device) -> tuple[Tensor, Tensor]:
+def _tensors(samples: Samples, x_scale: Scale, y_scale: Scale, device: torch.device) -> ScaledSamples:
     x, y = x_scale.scaled(samples.x), y_scale.scaled(samples.y)
-    return torch.from_numpy(x.astype(np.float32)).to(device), torch.from_numpy(y.astype(np.float32)).to(device)
+    return ScaledSamples(*(torch.from_numpy(one.astype(np.float32)).to(device) for one in (x, y)))
 
 
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 
-def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: float) -> None:
+def solve_readout(network: nn.Module, part: ScaledSamples, penalty: float) -> None:
     """Replace the last layer by its ridge least squares solution for the features as they are.
 
     Minimises sum (y - W h - b)^2 / samples + penalty sum W^2, in double precision; b is not penalised.
 
     network: with `features` and a linear layer `readout`; its readout is changed in place
-    part pair of Tensor ((sample, input), (sample, output)): scaled samples
     """
     readout = cast(nn.Linear, network.readout)
     network.eval()
     with torch.no_grad():
-        squares = _squares(_features(network, part[0]), part[1].cpu().double().numpy())
+        squares = _squares(_features(network, part.x), part.y.cpu().double().numpy())
         weights, offset = squares.solved(penalty)
         readout.weight.copy_(torch.from_numpy(weights))
         readout.bias.copy_(torch.from_numpy(offset))
 
 
-def choose_penalty(
-    network: nn.Module, part: tuple[Tensor, Tensor], check: tuple[Tensor, Tensor]
-) -> tuple[float, float]:
+def choose_penalty(network: nn.Module, part: ScaledSamples, check: ScaledSamples) -> tuple[float, float]:
     """Penalty of the readout that does best on a check part, and the mean squared error it reaches there.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to solve on, and to check by
+    part, check: what it solves on, and is checked by
     returns penalty, loss: one of `PENALTIES`; mean squared error of the scaled outputs
     """
     network.eval()
-    squares = _squares(_features(network, part[0]), part[1].cpu().double().numpy())
-    h, y = _features(network, check[0]), check[1].cpu().double().numpy()
+    squares = _squares(_features(network, part.x), part.y.cpu().double().numpy())
+    h, y = _features(network, check.x), check.y.cpu().double().numpy()
     losses = []
     for penalty in PENALTIES:
         weights, offset = squares.solved(penalty)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
+
+if TYPE_CHECKING:
+    from torch import Tensor
 
 PRECISIONS = ("float32", "bfloat16")
 
@@ -85,6 +89,13 @@ class Schedule:
         """
         epochs, steps = math.ceil(len(self.rates) / 3), self.rates.shape[1]
         return Schedule(_cosine(self.rates[0, 0] / 2, epochs, steps), decay, self.batch)
+
+
+class ScaledSamples(NamedTuple):
+    """Scaled samples to train on or to check by, on the device of the network."""
+
+    x: Tensor  # (sample, input)
+    y: Tensor  # (sample, output)
 
 
 def schedule_of(samples: int, decay: float, settings: TrainingSettings) -> Schedule:

@@ -271,16 +271,18 @@ def _findings(
             agreement = taken[side].compared(contacts[side])
             if name in refused and not len(agreement.difference_s):
                 continue
-            findings.append(_compared(trial.name, (name, chosen, side), agreement, name == reference, name in refused))
+            corrected, partial = name == reference, name in refused
+            findings.append(_compared(trial.name, name, chosen, side, agreement, corrected=corrected, partial=partial))
     for name, error in refused.items():
         reason = str(error) if error else "it finds no strides of both feet"
         findings.append(Finding("note", "detector", trial.name, f"{name} is not used: {reason}", ""))
     return findings
 
 
-def _compared(file: str, who: tuple[str, str, str], agreement: Agreement, corrected: bool, partial: bool) -> Finding:
+def _compared(
+    file: str, name: str, chosen: str, side: str, agreement: Agreement, corrected: bool, partial: bool
+) -> Finding:
     """What two detectors make of one foot: an offset that is not corrected, single steps apart, steps only one sees."""
-    name, chosen, side = who
     what = f"{name} against {chosen}, side {side}: {agreement.line()}"
     apart = np.abs(1e3 * agreement.difference_s - agreement.median_ms) > DISAGREEMENT_MS
     spoils = []

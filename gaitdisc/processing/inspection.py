@@ -151,7 +151,7 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
             kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
             counts = {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
             found[places[id(planned)]] = Inspection(
-                _named(planned), participant.id, where, streams.get(called, {}), counts, _sorted(own), reason
+                _named(planned), participant.id, where, streams.get(called, {}), counts, _sorted(own), refusal=reason
             )
         for reason in reasons.values():
             found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
@@ -229,7 +229,7 @@ def _seen(
     trial: Trial, name: str, strides: Mapping[str, Strides], findings: Sequence[Finding], refusal: str = ""
 ) -> Inspection:
     counts = {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
-    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sorted(findings), refusal)
+    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sorted(findings), refusal=refusal)
 
 
 def _line_of(severity: str, kind: str, same: list[Finding]) -> str:

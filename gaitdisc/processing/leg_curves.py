@@ -138,25 +138,25 @@ class ClinicalVariable:
 
 
 def _angle(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
-    return ClinicalVariable(name, words, KINEMATICS, f"{stem}_{{side}}", (1.0, 1.0), "deg", up, down)
+    return ClinicalVariable(name, words, KINEMATICS, f"{stem}_{{side}}", signs=(1.0, 1.0), unit="deg", up=up, down=down)
 
 
 def _pelvis(name: str, words: str, signs: tuple[float, float], up: str, down: str) -> ClinicalVariable:
     stem = {"pelvis_obliquity": "pelvis_list"}.get(name, name)
-    return ClinicalVariable(name, words, KINEMATICS, stem, signs, "deg", up, down)
+    return ClinicalVariable(name, words, kind=KINEMATICS, stem=stem, signs=signs, unit="deg", up=up, down=down)
 
 
 def _moment(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
-    return ClinicalVariable(name, words, MOMENTS, f"{stem}_{{side}}_moment", (1.0, 1.0), "N m/kg", up, down)
+    return ClinicalVariable(name, words, MOMENTS, f"{stem}_{{side}}_moment", (1.0, 1.0), "N m/kg", up=up, down=down)
 
 
 def _power(joint: str) -> ClinicalVariable:
     stem, up, down = f"{joint}_power_{{side}}", "generated", "absorbed"
-    return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), "W/kg", up, down)
+    return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), unit="W/kg", up=up, down=down)
 
 
 def _force(name: str, words: str, axis: str, up: str, down: str) -> ClinicalVariable:
-    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up, down)
+    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up=up, down=down)
 
 
 # in the order of a sheet, three in a row

@@ -183,8 +183,7 @@ class Sums(NamedTuple):
 
     def left(self, found: Values) -> Values:
         """Return the sum of squares that coefficients leave of each piece (piece,) [(N m)2]."""
-        own = np.einsum("pij,i,j->p", self.squares, found, found)
-        return self.power - 2 * self.match @ found + own
+        return self.power - 2 * self.match @ found + np.einsum("pij,i,j->p", self.squares, found, found)
 
 
 def sums_of(columns: Values, moment: Values, pieces: NDArray[np.intp], count: int) -> Sums:
@@ -239,7 +238,7 @@ def model_of(form: Form, found: Values, muscles: int, left_nm: float, before_nm:
     """Return the model of some coefficients."""
     gains, rest = found[: 2 * muscles].reshape(muscles, 2), found[2 * muscles :]
     firm, waves = rest[1 : 1 + FIRMNESS], rest[1 + FIRMNESS : 1 + FIRMNESS + 2 * HARMONICS]
-    return MuscleMoment(form, gains, float(rest[0]), firm, waves, left_nm, before_nm)
+    return MuscleMoment(form, gains, float(rest[0]), firmness=firm, unseen=waves, left_nm=left_nm, before_nm=before_nm)
 
 
 def fitted_moment(
@@ -292,8 +291,7 @@ def parts_of_stride(phase: Values, parts: int) -> Values:
     if parts == 1:
         return np.ones((len(phase), 1))
     at = np.mod(np.nan_to_num(phase), 1.0)[:, None] * parts
-    apart = np.abs(np.mod(at - np.arange(parts) + parts / 2, parts) - parts / 2)
-    return np.maximum(1.0 - apart, 0.0)
+    return np.maximum(1.0 - np.abs(np.mod(at - np.arange(parts) + parts / 2, parts) - parts / 2), 0.0)
 
 
 def cycle(phase: Values, harmonics: int) -> Values:

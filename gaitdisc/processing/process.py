@@ -63,13 +63,13 @@ def walk_summary(
         trial.subject,
         trial.condition,
         lead.duration_s,
-        lead.rate_hz,
-        strides[follow].detector,
-        tuple(channel for state in states for channel in state.channels),
-        stride_curves(states, strides, follow),
-        pd.DataFrame(rows, columns=pd.Index(STRIDE_COLUMNS)),
-        tuple(findings),
-        {one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
+        rate_hz=lead.rate_hz,
+        detector=strides[follow].detector,
+        channels=tuple(channel for state in states for channel in state.channels),
+        curves=stride_curves(states, strides, follow),
+        strides=pd.DataFrame(rows, columns=pd.Index(STRIDE_COLUMNS)),
+        findings=tuple(findings),
+        files={one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
     )
 
 
@@ -209,12 +209,12 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
         )
     return Recording(
         angles.time,
-        np.hstack([angles.values, values]),
-        (*angles.channels, *envelope.channels),
-        trial.subject,
-        trial.condition,
-        angles.source,
-        np.hstack([np.asarray(angles.suspect), marks | ~np.isfinite(values)]),
+        values=np.hstack([angles.values, values]),
+        channels=(*angles.channels, *envelope.channels),
+        subject=trial.subject,
+        condition=trial.condition,
+        source=angles.source,
+        suspect=np.hstack([np.asarray(angles.suspect), marks | ~np.isfinite(values)]),
     )
 
 

@@ -57,13 +57,13 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     within = np.isfinite(trajectory.phi)
     rows = within & trajectory.usable.all(axis=1)
     samples = Samples(
-        np.hstack([trajectory.x, trajectory.xdot, trajectory.phi[:, None]])[rows],
-        trajectory.xddot[rows][:, columns],
-        (*trajectory.names, *(f"d({name})/dt" for name in trajectory.names), PHASE),
-        tuple(f"d2({name})/dt2" for name in outputs),
-        trajectory.time[rows],
-        trajectory.phi[rows],
-        trajectory.subject,
+        x=np.hstack([trajectory.x, trajectory.xdot, trajectory.phi[:, None]])[rows],
+        y=trajectory.xddot[rows][:, columns],
+        inputs=(*trajectory.names, *(f"d({name})/dt" for name in trajectory.names), PHASE),
+        outputs=tuple(f"d2({name})/dt2" for name in outputs),
+        time=trajectory.time[rows],
+        phi=trajectory.phi[rows],
+        subject=trajectory.subject,
     )
     bad = (~trajectory.usable & within[:, None]).sum(axis=0)
     unusable = {name: int(count) for name, count in zip(trajectory.names, bad, strict=True) if count}

@@ -91,7 +91,7 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
         what += f"{sum(exchanged)} of {len(exchanged)} if the two are exchanged: {names} are exchanged"
         spoils = "the assignment of feet to plates, moments and powers; exchange their channels"
         spans = tuple((step.start, step.end) for step in steps)
-        return [Finding("warning", "swapped plates", file, what, spoils, names, spans)]
+        return [Finding("warning", "swapped plates", file, what=what, spoils=spoils, channel=names, spans=spans)]
     said = []
     for doubt in ("warning", "note"):  # one finding of all such steps: a belt has hundreds
         own = [finding for step in steps if step.doubt == doubt and (finding := step.finding(file))]

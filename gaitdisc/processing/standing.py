@@ -129,8 +129,7 @@ class Standing:
         except GaitdiscError as error:
             return ComputedTrial(self._without_angles(given_up, trial.name, error))
         made = found.trial.findings[len(trial.findings) :]
-        whole = replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings))))
-        return replace(found, trial=whole)
+        return replace(found, trial=replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))))
 
     def _with_own_kinetics(self, planned: PlannedTrial, trial: Trial) -> Trial:
         """Trial with the moments of its file, but where the person weighs something else than they were divided by."""
@@ -201,8 +200,7 @@ class Standing:
             return self._without_angles(trial, trial.name, error)
         except GaitdiscError:  # markers of no set that is known: nothing is checked
             return trial
-        made = found.findings[len(trial.findings) :]
-        return replace(found, findings=(*trial.findings, *self._new(made)))
+        return replace(found, findings=(*trial.findings, *self._new(found.findings[len(trial.findings) :])))
 
     def _new(self, findings: Sequence[Finding]) -> tuple[Finding, ...]:
         """Those that no earlier trial has said."""
@@ -275,4 +273,4 @@ def standing_of(study: Study, participant: Participant, session: str, read: Read
     except GaitdiscError:
         circled = None
     markers, weighed_n = trial.streams.get("markers"), standing_weight_n(trial) if "markers" in trial.streams else None
-    return Standing(study, participant, planned, markers, unread, sizes, circled, weighed_n)
+    return Standing(study, participant, planned, markers, unread, emg_sizes=sizes, circled=circled, weighed_n=weighed_n)

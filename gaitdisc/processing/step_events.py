@@ -129,13 +129,13 @@ def step_events(
         ground_offs["force"][side] = times[np.array(shown, bool)]
     late = ground if chosen in SEEN_LATE else {}
     return StepEvents(
-        chosen,
-        off_detector,
-        contacts,
-        offs,
-        _merged({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
-        _merged(ground_offs),
-        tuple(findings),
+        detector=chosen,
+        off_detector=off_detector,
+        contacts=contacts,
+        foot_offs=offs,
+        ground_contacts=_merged({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
+        ground_offs=_merged(ground_offs),
+        findings=tuple(findings),
     )
 
 
@@ -197,8 +197,7 @@ def over_ground(trial: Trial) -> bool:
         places = places[np.isfinite(places).all(axis=1)]
         away = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
         return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
-    longest = max((recording.duration_s for recording in trial.streams.values()), default=0.0)
-    return longest <= NO_WALKWAY_S
+    return max((recording.duration_s for recording in trial.streams.values()), default=0.0) <= NO_WALKWAY_S
 
 
 def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], list[str], Direction] | None:

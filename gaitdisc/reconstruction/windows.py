@@ -95,9 +95,9 @@ def windows_of(
         for ago in range(lags.count - 1, -1, -1)
         for sensor in sensors
     )
-    kept = last[whole] + lags.ahead
+    at = last[whole] + lags.ahead
     return Samples(
-        x[whole], wanted[kept], names, tuple(states), recording.time[kept], np.asarray(phi)[kept], recording.subject
+        x[whole], wanted[at], names, tuple(states), recording.time[at], np.asarray(phi)[at], subject=recording.subject
     )
 
 

@@ -279,10 +279,10 @@ class Trial:
         marks = [interpolated(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,
-            np.hstack(values),
-            tuple(channel for recording in streams for channel in recording.channels),
-            self.subject,
-            self.condition,
-            streams[0].source,
-            np.hstack(marks),
+            values=np.hstack(values),
+            channels=tuple(channel for recording in streams for channel in recording.channels),
+            subject=self.subject,
+            condition=self.condition,
+            source=streams[0].source,
+            suspect=np.hstack(marks),
         )

@@ -114,13 +114,13 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
     r2, dropped = (r2_table(response, name) if response else None), dropped_table(run, person, name)
     save_tables((table for table in (r2, dropped) if table is not None), folder)
     return Section(
-        person,
-        f"participant-{name}",
-        participant_sentences(response) if response else [],
-        r2,
-        not_computed(run, response) if response else [],
-        dropped,
-        {subject: save_figures(figures, folder, limit) for subject, figures in drawn.items()},
+        participant=person,
+        anchor=f"participant-{name}",
+        sentences=participant_sentences(response) if response else [],
+        r2=r2,
+        reasons=not_computed(run, response) if response else [],
+        dropped=dropped,
+        figures={subject: save_figures(figures, folder, limit) for subject, figures in drawn.items()},
     )
 
 

@@ -96,13 +96,13 @@ def load_variant_run(folder: Path) -> VariantRun:
     """Load what was found over the participants."""
     data, tables, _ = load_unit(folder, "variant_run.json", {"tests.csv": VARIANT_TEST_COLUMNS})
     return VariantRun(
-        data["title"],
-        data["exo"],
-        data["question"],
-        tuple(VARIANTS.load(folder / "people" / name) for name in data["people"]),
-        with_words(tables["tests.csv"], "left_out"),
-        tuple(Refusal(**one) for one in data["refusals"]),
-        (data["held_out_s"][0], data["held_out_s"][1]),
+        title=data["title"],
+        exo=data["exo"],
+        question=data["question"],
+        people=tuple(VARIANTS.load(folder / "people" / name) for name in data["people"]),
+        tests=with_words(tables["tests.csv"], "left_out"),
+        refusals=tuple(Refusal(**one) for one in data["refusals"]),
+        held_out_s=(data["held_out_s"][0], data["held_out_s"][1]),
     )
 
 

@@ -28,15 +28,15 @@ class Part(NamedTuple):
 
 PARTS = (
     Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the included cells", 0.1, 0.1,
-         ("all",), ("all",)),
+         words=("all",), quick_words=("all",)),
     Part(3, "van_der_pol", "ch3_van_der_pol", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 1, libraries=METHODS),
     Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 25, 1.5, libraries=METHODS),
     Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 60, 1.3, libraries=METHODS),
     Part(3, "measurement_bias", "ch3_measurement_bias", "3.4.4, Fig. 3.13", 8, 0.6, libraries=METHODS),
     Part(3, "who_names", "ch3_who_names", "who names the hidden effect, 3.4 and 3.5", 30, 3, libraries=METHODS),
     Part(3, "seeds", "ch3_seeds", "the cells of `tables`, computed again with twelve seeds", 35, 1,
-         (OUT, "--sets", "van_der_pol_text", "van_der_pol_code", "lorenz", "van_der_pol_text_short", "lorenz_short",
-          "lorenz_fine"), libraries=METHODS),
+         words=(OUT, "--sets", "van_der_pol_text", "van_der_pol_code", "lorenz", "van_der_pol_text_short",
+                "lorenz_short", "lorenz_fine"), libraries=METHODS),
     Part(3, "further", "ch3_further", "methods, noise, starts and trajectories that 3.4 and 3.5 also mention", 40, 2,
          quick_words=(OUT, "--seeds", "1", "--tables", "variance", "filters"), libraries=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the entire chapter, Figs. 4.2-4.4", 15, 1),

@@ -66,8 +66,7 @@ def run_part(
     with write_lock(folder, run=True):
         write_whole(folder / NAME, sealed_text({**begun, "seconds": None}))
         started = time.perf_counter()
-        printed = _study(part, folder, quick, data, ticked)
-        write_whole(folder / PRINTED, printed)
+        write_whole(folder / PRINTED, _study(part, folder, quick, data, ticked))
         write_whole(folder / NAME, sealed_text({**begun, "seconds": round(time.perf_counter() - started, 1)}))
     return Made(folder, False)
 

@@ -193,14 +193,13 @@ def run_study(
             tests = (compare_models(responses),)
             over = (compare_participants(responses, quantities, study.models.seed),)
         files = {name: sha for one in units for walk in (*one.walks, *one.cycles) for name, sha in walk.files.items()}
-        section = POOLED if study.conditions.device is None else SECTION
         run = ResponseRun(
-            public_title(study),
-            study.conditions.nominal,
-            study.conditions.device or "",
-            tuple(refusal for unit in units for refusal in unit.refusals),
-            made_now(settings, study.models.seed, files, section),
-            {
+            title=public_title(study),
+            nominal=study.conditions.nominal,
+            exo=study.conditions.device or "",
+            refusals=tuple(refusal for unit in units for refusal in unit.refusals),
+            provenance=made_now(settings, study.models.seed, files, SECTION if tests else POOLED),
+            units={
                 WALK.file: tuple(walk for unit in units for walk in unit.walks),
                 RESPONSE.file: responses,
                 TESTS.file: tests,
@@ -208,8 +207,10 @@ def run_study(
                 OVER.file: over,
                 CYCLES.file: tuple(pooled for unit in units for pooled in unit.cycles),
             },
-            tuple(Refusal(who.id, "", one.unfitted) for who, one in zip(people, units, strict=True) if one.unfitted),
-            renewed,
+            unfitted=tuple(
+                Refusal(who.id, "", one.unfitted) for who, one in zip(people, units, strict=True) if one.unfitted
+            ),
+            renewed=renewed,
         )
         run = created_before(run, folder)
         save_run(run, folder)

@@ -60,7 +60,9 @@ def vary_study(
         lengths = [response.held_out_s for response in run.responses] or [0.0]
         tests = compare_variants(people, question)
         held_out_s = (min(lengths), max(lengths))
-        varied = VariantRun(run.title, run.exo, question, people, tests, run.refusals, held_out_s, run.renewed)
+        varied = VariantRun(
+            run.title, run.exo, question, people, tests, run.refusals, held_out_s=held_out_s, renewed=run.renewed
+        )
         save_variant_run(varied, folder / question)
     return varied
 
@@ -99,8 +101,7 @@ def _varied(
     with write_lock(folder, run=True):
         people = [study.participant(response.participant) for response in run.responses]
         found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
-        refused = tuple(each for each in found if isinstance(each, Refusal))
-        run = replace(run, refusals=(*run.refusals, *refused))
+        run = replace(run, refusals=(*run.refusals, *(each for each in found if isinstance(each, Refusal))))
         yield run, tuple(each for each in found if not isinstance(each, Refusal))
 
 
@@ -110,8 +111,7 @@ def computed_variants(
     """Compute one participant's variants, or load what was computed from the same files and settings."""
     place = folder / question / "people" / participant.id
     varied = [question, *(repr(setting) for setting in _settings(study) if question == "sensitivity")]
-    parts = [response_key(unit_keys(study, participant)), *varied]
-    key = hashlib.sha256("\n".join(parts).encode()).hexdigest()
+    key = hashlib.sha256("\n".join([response_key(unit_keys(study, participant)), *varied]).encode()).hexdigest()
     stored = VARIANTS.kept(place, key)
     if stored is not None:
         return stored

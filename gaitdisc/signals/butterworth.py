@@ -87,7 +87,7 @@ def short_run_findings(
             what += f"({need / recording.rate_hz:.3f} s)"
             spoils = f"these segments: a filter of {cutoff_hz:g} Hz needs {need} samples; they are excluded"
             spans = spans_s(recording.time, short)
-            findings.append(Finding("warning", "short run", file, what, spoils, channel.name, spans))
+            findings.append(Finding("warning", "short run", file, what, spoils, channel=channel.name, spans=spans))
     return findings
 
 

@@ -117,7 +117,7 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
     what, spoils = words[kind]
     where = f"in {places} place{'s' if places > 1 else ''}, {seconds:.2f} s in all"
     spans = spans_s(recording.time, marks)
-    return Finding("warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans)
+    return Finding("warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans=spans)
 
 
 def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:
@@ -174,7 +174,7 @@ def drift_findings(forces: Recording) -> list[Finding]:
             what += f" and drifts by {drift:+.1f} N in {time[-1] - time[0]:.0f} s ({60 * slope:+.1f} N per minute)"
         spoils = f"contacts near the threshold of {RISE_N:g} N, and moments; subtract the baseline"
         spans = ((float(time[0]), float(time[-1])),)
-        findings.append(Finding("warning", "force drift", forces.source.file, what, spoils, channel.name, spans))
+        findings.append(Finding("warning", "force drift", forces.source.file, what, spoils, channel.name, spans=spans))
     return findings
 
 
@@ -239,7 +239,7 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
         what = f"stops at {plateau.limit:.1f} deg in {len(runs(plateau.marks))} places, "
         what += f"{100 * plateau.marks.mean():.0f} % of the samples"
         spans = spans_s(kinematics.time, plateau.marks)
-        findings.append(Finding("warning", "plateau", file, what, spoils, plateau.channel, spans))
+        findings.append(Finding("warning", "plateau", file, what, spoils=spoils, channel=plateau.channel, spans=spans))
     return findings
 
 

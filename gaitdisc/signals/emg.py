@@ -183,7 +183,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
             continue
         spoils = "the peaks of the envelope there" if kind == "clipped" else "the channel, which is excluded"
         spans = spans_s(emg.time, at_rail) if kind == "clipped" else ()
-        findings.append(Finding(severity, kind, emg.source.file, what, spoils, channel.name, spans))
+        findings.append(Finding(severity, kind, emg.source.file, what, spoils, channel=channel.name, spans=spans))
     return findings
 
 

@@ -97,7 +97,7 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
             spoils = "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
         name = channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name
         severity, file = "note" if fits else "warning", recording.source.file
-        findings.append(Finding(severity, "gap", file, what, spoils, name, spans))
+        findings.append(Finding(severity, "gap", file, what=what, spoils=spoils, channel=name, spans=spans))
     return findings
 
 
@@ -206,5 +206,5 @@ def spike_findings(recording: Recording) -> list[Finding]:
         what += f"{channel.unit}; {places} place{'s' if places > 1 else ''} in all"
         spoils = "nothing: removed before the filter, interpolated where short, and marked"
         file, spans = recording.source.file, spans_s(recording.time, here)
-        findings.append(Finding("warning", "spike", file, what, spoils, channel.name, spans))
+        findings.append(Finding("warning", "spike", file, what=what, spoils=spoils, channel=channel.name, spans=spans))
     return findings

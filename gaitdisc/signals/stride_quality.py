@@ -92,7 +92,7 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
         spoils = "means and models that include these strides"
         spans = tuple((float(strides.start[k]), float(strides.end[k])) for k in rows)
         file = recording.source.file
-        findings.append(Finding("warning", "outlying stride", file, what, spoils, channel.name, spans))
+        findings.append(Finding("warning", "outlying stride", file, what, spoils, channel=channel.name, spans=spans))
     return findings
 
 

@@ -101,7 +101,7 @@ class Compiled:
             from gaitdisc.simulation.machine import delay_signals
 
             delays = self._delays(self.observation)
-            delay_signals(delays, seconds, self._driven(drive), place, self._before(past), states, late)
+            delay_signals(delays, seconds, self._driven(drive), place, self._before(past), states=states, into=late)
         points = count * steps
         columns = leaf_columns(t.ravel(), states.reshape(points, n), np.empty((points, 0)), values[0])
         columns[1 + n : 1 + n] = [

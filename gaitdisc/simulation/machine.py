@@ -103,7 +103,7 @@ def integrate_block(program, drive, rows, plan, past, into):
                     if timed:
                         _set_times(registers, drive, place, now[0])
                     if delays.shape[0]:
-                        _set_delayed(registers, now, program, drive, rows, past, history)
+                        _set_delayed(registers, now, program, drive=drive, rows=rows, past=past, history=history)
                 derive(main, flat, out, there)
                 _advance(x, registers, rates, total, (part, 1.0 / (rate * substeps)), width)
             if history.shape[1] > 1:

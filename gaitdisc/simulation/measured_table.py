@@ -79,7 +79,7 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
         for wanted in dict.fromkeys((*inputs, *channels)):
             if wanted not in recording.names:
                 raise _missing(wanted, recording.names, name)
-            values = _converted(recording, wanted, simulation, (name, findings))
+            values = _converted(recording, wanted, simulation, name, findings)
             doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
             if doubtful:
                 what = f"{doubtful} of {len(values)} samples are marked as unreliable"
@@ -238,10 +238,9 @@ def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[st
 
 
 def _converted(
-    recording: Recording, name: str, simulation: Simulation, named: tuple[str, dict[str, Finding]]
+    recording: Recording, name: str, simulation: Simulation, file: str, findings: dict[str, Finding]
 ) -> NDArray[np.float64]:
     """Channel in the simulation's unit."""
-    file, findings = named
     channel = recording.channels[recording.names.index(name)]
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
     observed = dict(simulation.observations).get(name, name)

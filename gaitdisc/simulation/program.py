@@ -167,7 +167,7 @@ def _laid_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Progra
     order.run(rest, parts, wanted)
     code = np.array(order.code, np.int64).reshape(-1, 4)
     seconds = tuple((signal, tree) for (signal, _), tree in graph.delays.items())
-    return Program(graph.leaves, seconds, np.array(constants), code, setup, max(order.most, 1), len(wanted))
+    return Program(graph.leaves, seconds, np.array(constants), code, setup, max(order.most, 1), outputs=len(wanted))
 
 
 def _needed(parts: list[tuple], wanted: list[int]) -> list[int]:

@@ -56,11 +56,11 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         simulation,
         states,
         inputs,
-        parameters,
-        observed,
-        defaults,
-        compiled_program(wanted, leaves, parameters, defined),
-        compiled_program(seen, leaves, parameters, defined),
+        parameters=parameters,
+        observed=observed,
+        defaults=defaults,
+        right_hand_side=compiled_program(wanted, leaves, parameters, defined),
+        observation=compiled_program(seen, leaves, parameters, defined),
     )
 
 

@@ -193,7 +193,7 @@ def _tested(
         for channel, first, last, sign, mass in _stretches(t, threshold)
     )
     p = np.array([np.mean(over_all >= peak * (1 - 1e-9)) for peak in np.abs(t).max(axis=0)])
-    return ClusterTest(t, error, threshold, p, clusters, len(over_all), exact, plan.alpha)
+    return ClusterTest(t, error, threshold, p, clusters, permutations=len(over_all), exact=exact, alpha=plan.alpha)
 
 
 def _stretches(t: NDArray[np.float64], threshold: float) -> Iterator[tuple[int, int, int, int, float]]:

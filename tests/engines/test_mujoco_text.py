@@ -65,17 +65,17 @@ def test_a_damper_of_a_default_class_is_kept(pendulum):
 
 
 def test_numbers_of_the_model(pendulum):
-    pendulum.write_text(with_value(PENDULUM, "rod_mass", 2.5, ("body", "rod")))
+    pendulum.write_text(with_value(PENDULUM, "rod_mass", 2.5, "body", "rod"))
     assert np.allclose(read_model(pendulum).accelerations(AT, {}), by_hand(AT, 2.5), rtol=1e-9)
-    pendulum.write_text(with_value(PENDULUM, "gravity", 8.0, ("joint", "")))
+    pendulum.write_text(with_value(PENDULUM, "gravity", 8.0, "joint", ""))
     still = Motion(np.array([[np.pi / 2]]), np.zeros((1, 1)), np.zeros((1, 1)))
     wanted = -MASS * 8.0 * LENGTH / (INERTIA + MASS * LENGTH**2)
     assert read_model(pendulum).accelerations(still, {})[0, 0] == pytest.approx(wanted)
-    assert 'gear="6.5"' in with_value(PENDULUM, "drive_gear", 6.5, ("actuator", "drive"))
+    assert 'gear="6.5"' in with_value(PENDULUM, "drive_gear", 6.5, "actuator", "drive")
 
 
 def test_what_has_no_form_or_no_name_is_not_written():
     odd = ByHand(Term("pivot_moment", "port", "gravity_moment", ""), 0, lambda x, v: np.sin(x))
     assert with_effect(PENDULUM, odd, "pivot", OWN) is None
     assert with_effect(PENDULUM, effect("viscous_damping"), "elsewhere", OWN) is None
-    assert with_value(PENDULUM, "foot_mass", 1.0, ("body", "foot")) is None
+    assert with_value(PENDULUM, "foot_mass", 1.0, "body", "foot") is None

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Motion, read_model
+from gaitdisc.engines.engine import Coordinate, Motion, read_model
 from gaitdisc.engines.opensim_model import with_effect, with_value
 from gaitdisc.engines.opensim_worker import serve
 from gaitdisc.errors import GaitdiscError
@@ -61,7 +61,7 @@ def test_its_own_run_starts_with_its_own_acceleration(model):
 def test_a_force_in_the_file_is_the_force_by_hand(model, tmp_path):
     term = Term("knee_moment", "port", "spring", "-30*max(0, knee - 0.1) - 0.4*sign(knee_speed)")
     path = tmp_path / "augmented.osim"
-    path.write_text(with_effect(FILE.read_text(), term, ("knee", "knee_speed"), "knee"))
+    path.write_text(with_effect(FILE.read_text(), term, Coordinate("knee", "rad", "knee")))
     force = -30 * np.maximum(0, AT.q[:, 1] - 0.1) - 0.4 * np.tanh(AT.v[:, 1] / 0.02)
     by_hand = model.accelerations(AT, {}, np.column_stack([np.zeros(2), force]))
     assert np.allclose(read_model(path).accelerations(AT, {}), by_hand, rtol=1e-10)
@@ -168,16 +168,16 @@ TEXT = """<OpenSimDocument Version="40600"><Model name="arm"><gravity>0 -9.81 0<
 <max_isometric_force>500</max_isometric_force></ThelenMuscle>
 <CoordinateActuator name="knee_motor"><optimal_force>15</optimal_force></CoordinateActuator></objects></ForceSet>
 </Model></OpenSimDocument>"""
-NAMES = ("knee", "knee_speed")
+KNEE = Coordinate("knee", "rad", "knee")
 
 
 def inserted(term):
-    text = with_effect(TEXT, Term("knee_moment", "port", "spring", term), NAMES, "knee")
+    text = with_effect(TEXT, Term("knee_moment", "port", "spring", term), KNEE)
     return text and text[text.index("<expression>") + 12 : text.index("</expression>")]
 
 
 def test_a_force_goes_to_the_end_of_the_models_own_forces():
-    text = with_effect(TEXT, Term("knee_moment", "port", "spring", "-2*knee"), NAMES, "knee")
+    text = with_effect(TEXT, Term("knee_moment", "port", "spring", "-2*knee"), KNEE)
     assert "</CoordinateActuator><ExpressionBasedCoordinateForce" in text
     assert text.replace(text[text.index("<Expr") : text.index("</Expr")], "").count("</objects>") == 2
 
@@ -192,7 +192,7 @@ def test_an_expression_is_written_as_opensim_reads_it():
 def test_what_knows_more_than_its_own_coordinate_has_no_form():
     assert inserted("-2*hip") is None
     assert inserted("-2*step(knee)") is None
-    assert with_effect("<Model/>", Term("knee_moment", "port", "x", "knee"), NAMES, "knee") is None
+    assert with_effect("<Model/>", Term("knee_moment", "port", "x", "knee"), KNEE) is None
 
 
 def test_numbers_of_the_model():

@@ -9,7 +9,7 @@ from gaitdisc.errors import TrainingError
 from gaitdisc.models.descent import TorchSteps, descend
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.shred import Shred
-from gaitdisc.models.training_settings import PRECISIONS, TrainingSettings, epochs_of, schedule_of
+from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, epochs_of, schedule_of
 
 
 def test_one_epoch_is_that_of_a_loop_written_out():
@@ -20,7 +20,7 @@ def test_one_epoch_is_that_of_a_loop_written_out():
     theirs.load_state_dict(ours.state_dict())
     schedule = schedule_of(10, 0.5, settings)
     order = torch.randperm(10)
-    TorchSteps(ours, (x, y), (x, y), schedule).epoch(order, schedule.rates[0])
+    TorchSteps(ours, ScaledSamples(x, y), ScaledSamples(x, y), schedule).epoch(order, schedule.rates[0])
     groups = [{"params": [theirs.weight], "weight_decay": 0.5}, {"params": [theirs.bias], "weight_decay": 0.0}]
     adam = torch.optim.AdamW(groups, lr=settings.learning_rate)
     for start, rate in zip((0, 4, 8), schedule.rates[0].tolist(), strict=True):
@@ -38,7 +38,7 @@ def test_weights_are_a_copy_and_come_back():
     network = nn.Linear(1, 1)
     x = torch.ones(8, 1)
     schedule = schedule_of(8, 0.0, TrainingSettings())
-    steps = TorchSteps(network, (x, 5 * x), (x, 5 * x), schedule)
+    steps = TorchSteps(network, ScaledSamples(x, 5 * x), ScaledSamples(x, 5 * x), schedule)
     before, loss = steps.weights(), steps.loss()
     steps.epoch(torch.arange(8), schedule.rates[0])
     assert steps.loss() < loss
@@ -55,7 +55,7 @@ def test_steps_in_bfloat16_lead_nearly_where_those_in_float32_do(cell):
         torch.manual_seed(0)
         network = Shred(8, 1, 2, nodes=8, cell=cell)
         schedule = schedule_of(64, 0.0, TrainingSettings(batch=16, learning_rate=1e-3))
-        steps = TorchSteps(network, (x, y), (x, y), schedule, precision)
+        steps = TorchSteps(network, ScaledSamples(x, y), ScaledSamples(x, y), schedule, precision)
         before = steps.loss()
         steps.epoch(torch.arange(64), schedule.rates[0])
         assert {weights.dtype for weights in network.parameters()} == {torch.float32}
@@ -79,7 +79,7 @@ class Slope(nn.Module):
 
 def walked(target, count=200):
     x = torch.linspace(-1, 1, count)[:, None]
-    return x, target * x
+    return ScaledSamples(x, target * x)
 
 
 def descended(network, part, check, decay, settings, *progress):
@@ -114,7 +114,8 @@ def test_decay_pulls_matrices_to_zero_and_spares_offsets():
         torch.manual_seed(0)
         network = nn.Sequential(nn.Linear(1, 1))
         x, y = walked(3.0)
-        descended(network, (x, y + 2), (x, y + 2), decay, TrainingSettings(batch=50, learning_rate=0.05))
+        part = ScaledSamples(x, y + 2)
+        descended(network, part, part, decay, TrainingSettings(batch=50, learning_rate=0.05))
         weights[decay] = network[0].weight.item(), network[0].bias.item()
     assert weights[0.0] == pytest.approx((3.0, 2.0), abs=0.01)
     assert weights[3.0][0] < 2.7

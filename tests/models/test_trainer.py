@@ -14,7 +14,7 @@ from gaitdisc.models.descent import descend
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.shred import ShallowDecoder
 from gaitdisc.models.trainer import PENALTIES, choose_penalty, chosen_device, solve_readout, train
-from gaitdisc.models.training_settings import TrainingSettings, epochs_of, schedule_of
+from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, epochs_of, schedule_of
 from gaitdisc.recording import scale_of
 from gaitdisc.statistics.r2 import r2
 
@@ -157,16 +157,13 @@ def test_the_weights_that_did_best_are_restored_when_the_descent_goes_astray(swi
     samples = swing.with_outputs(np.random.default_rng(0).normal(size=swing.y.shape))
     part, check = samples.rows(slice(0, 100)), samples.rows(slice(200, 400))
     scales = scale_of(part.x), scale_of(part.y)
-    tensors = [
-        tuple(torch.from_numpy(s.scaled(v).astype(np.float32)) for s, v in zip(scales, (p.x, p.y), strict=True))
-        for p in (part, check)
-    ]
+    tensors = [trainer._tensors(each, *scales, torch.device("cpu")) for each in (part, check)]
     torch.manual_seed(0)
     network = ShallowDecoder(3, 2)
     settings = TrainingSettings(epochs=60, batch=20, decays=(0.0,))
     done = descend(network, tensors[0], tensors[1], schedule_of(100, 0.0, settings), settings)
     with torch.no_grad():
-        restored = float(torch.nn.functional.mse_loss(network(tensors[1][0]), tensors[1][1]))
+        restored = float(torch.nn.functional.mse_loss(network(tensors[1].x), tensors[1].y))
     assert done.losses[-1] > 1.2 * min(done.losses)  # noise is learnt by heart after the best epoch
     assert restored == pytest.approx(min(done.losses), rel=1e-6)
 
@@ -182,7 +179,7 @@ def features_and_noise(count=300, noise=0.0, seed=0):
 
 def test_the_solution_is_the_minimum_of_the_penalised_squares():
     network, x, y = features_and_noise(noise=0.3)
-    solve_readout(network, (x, y), 0.01)
+    solve_readout(network, ScaledSamples(x, y), 0.01)
     h = network.features(x).detach().double().numpy()
     w = network.readout.weight.detach().double().numpy()[0]
     rest = y.double().numpy()[:, 0] - h @ w - float(network.readout.bias.detach())
@@ -192,11 +189,12 @@ def test_the_solution_is_the_minimum_of_the_penalised_squares():
 
 def test_the_penalty_is_weak_without_noise_and_strong_for_nothing_but_noise():
     network, x, y = features_and_noise()
-    part, check = (x[:200], y[:200]), (x[200:], y[200:])
+    part, check = ScaledSamples(x[:200], y[:200]), ScaledSamples(x[200:], y[200:])
     before = network.readout.weight.detach().clone()
     assert choose_penalty(network, part, check)[0] == PENALTIES[0]
     torch.manual_seed(1)
-    assert choose_penalty(network, (x[:20], torch.randn(20, 1)), (x[200:], torch.randn(100, 1)))[0] >= 0.01
+    noise = [ScaledSamples(each, torch.randn(len(each), 1)) for each in (x[:20], x[200:])]
+    assert choose_penalty(network, *noise)[0] >= 0.01
     assert torch.equal(before, network.readout.weight)
 
 
