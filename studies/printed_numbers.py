@@ -5,7 +5,7 @@
 A block is opened by `<!-- printed by: COMMAND; COMMAND | FORM -->` and closed by `<!-- end -->`. The commands run in an
 empty folder, each once for all pages, and what the last one prints is brought into its FORM. DATA stands for the
 folder of real recordings; what needs it is skipped where it is absent. --check writes nothing and ends with 1 where
-words differ, or a number by more than one unit of its last printed digit. Numbers of the forms with `measured` (seconds,
+words differ, or a number by more than one unit of its last printed digit. Numbers of a form with `measured` (seconds,
 and what follows a chaotic path) are those of one machine, and only their words are compared.
 """
 
