@@ -114,7 +114,9 @@ def _templates(module: ast.Module) -> Iterator[str]:
     for node in ast.walk(module):
         name = ast.unparse(node.func).rpartition(".")[2] if isinstance(node, ast.Call) else ""
         if isinstance(node, ast.Call) and (name.endswith("Error") or name == "Finding") and len(node.args) >= 2:
-            words = [_template(one, _assigned(inside.get(node, module))) for one in node.args]
+            assigned = _assigned(inside.get(node, module))
+            named = (_template(one.value, assigned) for one in node.keywords)
+            words = [*(_template(one, assigned) for one in node.args), *(one for one in named if " " in one)]
             if any(" " in one for one in words):
                 yield f"{name}: {' / '.join(words)}"
 
