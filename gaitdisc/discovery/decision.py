@@ -159,17 +159,16 @@ def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
 def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
     """Return what held-out data prefer beyond chance among explanations that cost as much; what there was if nothing.
 
-    near: what costs hardly more; of these, what has as many explanations and no more numbers
+    near: what costs hardly more; of these, what has no more numbers. The plainest of what is preferred is returned
     """
-    parts, size = len(now.model.parts), now.model.size
-    equal = [one for one in near if len(one.model.parts) == parts and one.model.size <= size]
+    equal = [one for one in near if one.model.size <= now.model.size]
     proofs = [proof_of(case, now, one, one) for one in equal]
     better = [
-        (proof.test.fall, one)
+        (one.model.penalty, -proof.test.fall, one)
         for proof, one in zip(proofs, equal, strict=True)
         if proof.bears_out and proof.test.p < case.alpha / len(equal)
     ]
-    return max(better, key=lambda one: one[0])[1] if better else now
+    return min(better, key=lambda one: one[:2])[2] if better else now
 
 
 def searched(case: Case, as_read: ScoredModel, scale: GapScale) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:

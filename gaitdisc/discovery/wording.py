@@ -101,8 +101,8 @@ def _nothing(discovery: Discovery) -> str:
                 "along a run."
             )
         return (
-            "No effect is named: simulation and data differ by more than the sensors' noise, and no tested "
-            "explanation is significant."
+            "No effect is named: simulation and data differ by more than the sensors' noise, and no tested explanation "
+            f"meets the criteria for a name.{_removes_most(discovery)}"
         )
     pieces = discovery.held_out.pieces
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} independent samples)" if pieces else ""
@@ -116,6 +116,17 @@ def _nothing(discovery: Discovery) -> str:
         f"No effect is named: the training data indicate {for_what}, but the held-out data do not support it{tested}. "
         "More trials of varied movement can decide."
     )
+
+
+def _removes_most(discovery: Discovery) -> str:
+    """Say which of the listed explanations removes most of the held-out error beyond chance."""
+    for one in discovery.explanations:
+        size = one.held_out
+        if size and size.p < size.alpha and size.unexplained < 1:
+            effects = " and ".join(f"{spoken(each.name)} {at_place(each.kind, each.place)}" for each in one.effects)
+            closed = f"{100 * (1 - size.unexplained):.0f} % of the squared held-out error above the noise"
+            return f" Of those listed, {effects} removes most: {closed}. New trials can test it."
+    return ""
 
 
 def may_be_left(error: float, size: GapSize) -> bool:

@@ -10,7 +10,15 @@ from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed, strongest
+from gaitdisc.discovery.decision import (
+    Verdict,
+    decide,
+    held_out_proof,
+    kept_on_longer_runs,
+    needed,
+    prefer_on_held_out,
+    strongest,
+)
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
@@ -41,6 +49,19 @@ def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case,
     assert needed(case, as_read, both).labels == ("cubic_stiffness@load",)
     alone = _with(case, as_read, (Part(cubic, {"factor": -14.0}),))
     assert needed(case, as_read, alone) is alone
+
+
+def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imitates_them(case, as_read, cubic):
+    by_label = {one.label: one for one in case.search.candidates}
+    idle = Part(by_label["viscous_damping@load"], {"factor": 0.0})
+    imitates = Part(by_label["periodic_forcing@load"], {"factor": 1.0, "factor_1": 1.0, "w": 3.0})
+    one = _with(case, as_read, (imitates,))
+    true, two = (_with(case, as_read, (Part(cubic, {"factor": -14.0}), *more)) for more in ((), (idle,)))
+    assert one.model.size > two.model.size > true.model.size
+    assert prefer_on_held_out(case, one, (two,)) is two
+    assert prefer_on_held_out(case, one, (two, true)) is true  # the plainest of what is preferred
+    assert prefer_on_held_out(case, true, (one, two)) is true  # more numbers are none of its equals
+    assert prefer_on_held_out(case, two, (true,)) is two  # not beyond chance
 
 
 def test_of_three_names_the_one_that_is_missed_least_goes(case, as_read, cubic):

@@ -8,7 +8,7 @@ from texts import says
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import known_shapes
-from gaitdisc.discovery.result import Correction, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.discovery.result import Correction, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.simulation.simulation_file import bundled
 
@@ -49,6 +49,16 @@ def test_where_nothing_is_named_it_says_what_is_left(verdict, before, words):
     said = sentence(verdict=verdict, effects=(), parts=(), where=(), rivals=(), held_out=size)
     assert says(said, *words)
     assert says(said, "3.09 deg", "0.50")
+
+
+def test_where_nothing_meets_the_criteria_the_listed_explanation_that_removes_most_is_said():
+    sizes = {"theta": (0.054, 0.0105, 0.0087)}
+    size, left = GapSize(0.5, 0.5, 0.1, 0.4, sizes, 14), GapSize(0.5, 0.2, 0.1, 0.004, sizes, 14)
+    listed = (Explanation((SPRING,), replace(left, p=0.2)), Explanation((replace(SPRING, name="hysteresis"),), left))
+    none = {"verdict": "unexplained", "effects": (), "parts": (), "where": (), "rivals": (), "held_out": size}
+    said = sentence(**none, explanations=listed)
+    assert says(said, "no tested explanation meets the criteria", "hysteresis", "removes most: 88 %", "New trials")
+    assert "removes most" not in sentence(**none, explanations=listed[:1])
 
 
 def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
