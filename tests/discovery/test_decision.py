@@ -93,6 +93,22 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
     assert verdict.proof.test.p < 0.05
 
 
+def test_a_shape_stands_before_a_name_that_held_out_data_do_not_bear_out(case, as_read, cubic, monkeypatch):
+    slack = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
+    likelier = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(slack, {"factor": 0.0})))
+    shape = _with(case, as_read, (Part(replace(cubic, name="unnamed"), {"factor": -14.0}),))
+    borne = {likelier.labels: True, shape.labels: True}
+    monkeypatch.setattr(decision, "held_out_proof", lambda *of: SimpleNamespace(bears_out=borne[of[-1].labels]))
+    monkeypatch.setattr(decision, "with_random_pushes", lambda *_: "pushes")
+    both = case, as_read, likelier, shape, []
+    assert decision.with_autocorrelation(*both) is None  # the two are as likely: the name stands
+    borne[likelier.labels] = False
+    found = decision.with_autocorrelation(*both)
+    assert (found.word, found.found.labels, found.rivals[0]) == ("unnamed", shape.labels, likelier)
+    borne[shape.labels] = False
+    assert decision.with_autocorrelation(*both) == "pushes"
+
+
 @pytest.mark.parametrize(("half", "word"), [(0.5, "missing_physics"), (1.1, "no_gap")])
 def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, as_read, cubic, monkeypatch, half, word):
     others = [
