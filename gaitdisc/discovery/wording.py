@@ -109,8 +109,8 @@ def _nothing(discovery: Discovery) -> str:
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
-            f"No effect is named, because several effects act at a time: {for_what} would explain most, but less than "
-            "half of the held-out error. Trials in which fewer effects act can distinguish them."
+            f"No effect is named: {for_what} would explain most, but less than half of the held-out error. Several "
+            "effects may act at a time; trials in which fewer effects act can distinguish them."
         )
     return (
         f"No effect is named: the training data indicate {for_what}, but the held-out data do not support it{tested}. "
