@@ -58,10 +58,7 @@ class Beam:
 
     def fit(self, sets: Iterable[tuple[Part, ...]]) -> list[CrossValidated]:
         """Fit sets, so that they are weighed as well."""
-        fitted = [
-            cross_validated(self.scale, self.as_read.shooting, self.search.base, parts, self.as_read.model)
-            for parts in sets
-        ]
+        fitted = [cross_validated(self.scale, self.as_read, parts) for parts in sets]
         fitted = [one for one in fitted if self.search.sensible(one.model)]
         self.known.update((one.model.explanations, one) for one in fitted)
         return fitted
@@ -69,7 +66,7 @@ class Beam:
     def select_forward(self, begin: CrossValidated) -> CrossValidated:
         """Return the best set found by adding explanations to one, or to a far-off number, and exchanging them."""
         self.known.setdefault(self.as_read.model.explanations, self.as_read)
-        far = self.fit(one.parts for one in self.search.far_off(self.as_read.scored))
+        far = self.fit(one.parts for one in self.search.far_off(self.as_read))
         self.known[begin.model.explanations] = begin
         if begin is not self.as_read:
             for one in far:
@@ -123,7 +120,7 @@ class Beam:
         wanted = now.model.explanations | {score.candidate.identity}
         if wanted not in self.known:
             parts = (*now.model.parts, Part(score.candidate, score.values))
-            longer = cross_validated(self.scale, now.shooting, self.search.base, parts, now.model)
+            longer = cross_validated(self.scale, now, parts)
             if not self.search.sensible(longer.model):
                 return None
             self.known[wanted] = longer
@@ -134,7 +131,7 @@ class Beam:
         wanted = now.model.explanations - {gone}
         if wanted not in self.known:
             parts = tuple(part for part in now.model.parts if part.candidate.identity != gone)
-            self.known[wanted] = cross_validated(self.scale, now.shooting, self.search.base, parts, now.model)
+            self.known[wanted] = cross_validated(self.scale, now, parts)
         return self.known[wanted]
 
     def _exchange(self, best: CrossValidated) -> None:
@@ -221,7 +218,7 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     best = beam.select_forward(as_read)
     longer = on_longer_runs(case, scale, best) if best.model.explanations else None
     if longer:
-        beam = Beam(search, scale, as_read_on(case, scale, as_read, longer))
+        beam = Beam(search, scale, as_read_on(scale, as_read, longer))
         if not beam.as_read.gap:
             return None
         best = beam.select_forward(longer)
@@ -229,11 +226,11 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     now = beam.plainest(now)
     if not now.model.explanations:
         return None
-    near, others = (tuple(one.scored for one in beam.near(now, within)) for within in (TIED, np.inf))
+    near, others = (tuple(beam.near(now, within)) for within in (TIED, np.inf))
     closed = 1 - now.gap / beam.as_read.gap
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
     test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), case.alpha)
-    return Outcome(beam.as_read.scored, now.scored, closed, test, tuple(small), near, others[:LISTED])
+    return Outcome(beam.as_read, now, closed, test, tuple(small), near, others[:LISTED])
 
 
 def near_runs(case: Case, scale: GapScale) -> CrossValidated:
@@ -248,7 +245,7 @@ def near_runs(case: Case, scale: GapScale) -> CrossValidated:
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
         enough, starts = CONVERGED * shooting.seen.size, case.guess.starts(shooting.segments)
         begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
-        now = cross_validated(scale, shooting, case.search.base, (), begun)
+        now = cross_validated(scale, ScoredModel(begun, shooting), ())
         tried.append((scale.relative(now.model.fit), now))
         if tried[-1][0] < CRITERIA.near or samples / 2 < max(FEWEST, HALF_PERIOD * period):
             break
@@ -267,20 +264,20 @@ def on_longer_runs(case: Case, scale: GapScale, now: CrossValidated) -> CrossVal
         shooting = replace(case.learned_runs(samples), past=guess.states)
         shooting = shooting.with_noise(scale.error_of(before.model.fit))
         starts = guess.starts(shooting.segments)
-        begun = fit_model(shooting, case.search.base, before.model.parts, starts, TURNS, like=before.model)
-        longer = cross_validated(scale, shooting, case.search.base, begun.parts, begun)
+        begun = before.model.refitted(shooting, starts=starts, turns=TURNS)
+        longer = cross_validated(scale, ScoredModel(begun, shooting), begun.parts)
         if not scale.relative(longer.model.fit) < CRITERIA.near:
             break
         found = longer
     return found
 
 
-def as_read_on(case: Case, scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
+def as_read_on(scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
     """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread."""
     shooting = longer.shooting.with_noise(scale.error_of(as_read.model.fit))
-    starts = longer.model.fit.starts
-    model = fit_model(shooting, case.search.base, (), starts, TURNS, like=as_read.model)
+    model = as_read.model.refitted(shooting, starts=longer.model.fit.starts, turns=TURNS)
     most = CRITERIA.lost * (scale.spread / scale.size) ** 2
     square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())
-    return CrossValidated(model, shooting, np.full(len(longer.errors), mean), scale.gap_above(mean))
+    errors = np.full(len(longer.errors), mean)
+    return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(mean))

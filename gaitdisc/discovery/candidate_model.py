@@ -11,7 +11,7 @@ from gaitdisc.discovery.candidate import Candidate, Identity
 from gaitdisc.discovery.fitted import Fitted, prior_of
 from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.penalty import penalty_of
-from gaitdisc.discovery.shooting import ENOUGH, Shooting
+from gaitdisc.discovery.shooting import ENOUGH, TURNS, Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -41,6 +41,7 @@ class Part:
 class CandidateModel:
     """The simulation with some explanations in it, fitted to segments."""
 
+    base: Simulation  # as read
     simulation: Simulation  # with the explanations, their numbers as parameters
     machine: Compiled
     parts: tuple[Part, ...]  # the explanations, with the numbers that were found
@@ -70,6 +71,21 @@ class CandidateModel:
     def bic(self) -> float:
         """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better."""
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
+
+    def refitted(
+        self,
+        shooting: Shooting,
+        parts: tuple[Part, ...] | None = None,
+        starts: NDArray[np.float64] | None = None,
+        turns: int = TURNS,
+        enough: float = ENOUGH,
+    ) -> CandidateModel:
+        """Return the simulation with the same explanations or others, fitted from where this model came to lie.
+
+        starts (segment, state): start states to begin from; this model's where absent
+        """
+        parts, starts = self.parts if parts is None else parts, self.fit.starts if starts is None else starts
+        return fit_model(shooting, self.base, parts, starts, turns, enough, self)
 
     def with_estimates(self, values: NDArray[np.float64], covariance: NDArray[np.float64]) -> CandidateModel:
         """Return the model with other numbers, and their covariance; its runs stay as they are.
@@ -102,7 +118,7 @@ def fit_model(
     base: Simulation,
     parts: tuple[Part, ...],
     starts: NDArray[np.float64],
-    turns: int = 12,
+    turns: int = TURNS,
     enough: float = ENOUGH,
     like: CandidateModel | None = None,
 ) -> CandidateModel:
@@ -132,4 +148,4 @@ def fit_model(
         Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})
         for part, slots in zip(parts, names, strict=True)
     )
-    return CandidateModel(simulation, machine, found, fit)
+    return CandidateModel(base, simulation, machine, found, fit)

@@ -139,10 +139,10 @@ class Case:
         begun = fit_model(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
-        model = fit_model(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
+        model = begun.refitted(shooting, starts=guess.starts(shooting.segments))
         if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
             model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
-        return scored(shooting.with_past(model.fit.states), self.search.base, model)
+        return scored(shooting.with_past(model.fit.states), model)
 
     def predictable_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `growth`."""
@@ -160,7 +160,7 @@ class Case:
     def fitted_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
         """Fit a model to other runs, which begin along its own."""
         starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-        return fit_model(shooting, self.search.base, now.model.parts, starts, like=now.model)
+        return now.model.refitted(shooting, starts=starts)
 
     def lengthened(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
@@ -174,7 +174,7 @@ class Case:
             longer = self.fitted_over(shooting.with_noise(now.noise), now)
             if not np.isfinite(longer.fit.misfit):
                 break
-            longer = replace(scored(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
+            longer = replace(scored(shooting.with_past(longer.fit.states), longer), gained=now.gained)
             if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.model):
                 break
             fit = longer.model.fit

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gaitdisc.discovery.beam import MOST, closing_most
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import wrong_starts
@@ -59,7 +59,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect or not names else None
     if autocorrelated:
         return autocorrelated
-    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(case, shape, named))):
+    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(shape, named))):
         unnamed = proven_shape(case, as_read, shape, (named, *rivals))
         if unnamed:
             return unnamed
@@ -71,7 +71,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
         alone = decided(case, rivals[0], rivals) if rivals else (kept, rivals)
         if alone[0] is kept or (len(kept.model.parts) > 1 and proof_of(case, alone[0], kept, kept).bears_out):
-            longer = scored(kept.shooting, case.search.base, kept.model)
+            longer = scored(kept.shooting, kept.model)
         else:
             longer, rivals = alone
     proof = held_out_proof(case, as_read, longer)
@@ -141,7 +141,7 @@ def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
     if found is None or found.closed < CRITERIA.half:
         return None
     found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
-    plain, likelier = compared([found.as_read, found.now], case.search.base)
+    plain, likelier = compared([found.as_read, found.now])
     if plain.bic - likelier.bic < CRITERIA.margin:
         return None
     now = needed(case, found.as_read, found.now)
@@ -199,15 +199,14 @@ def kept_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) ->
     kept = pruned(case.search, longer, CRITERIA.margin).model.parts
     if len(kept) == len(named.model.parts):
         return named
-    model = fit_model(named.shooting, case.search.base, kept, named.model.fit.starts, like=named.model)
-    return scored(named.shooting, case.search.base, model)
+    return scored(named.shooting, named.model.refitted(named.shooting, kept))
 
 
 def with_autocorrelation(
     case: Case, as_read: ScoredModel, named: ScoredModel, shape: ScoredModel | None, rivals: list[ScoredModel]
 ) -> Verdict | None:
     """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better."""
-    plain, *found = compared([as_read, named, *([shape] if shape else [])], case.search.base)
+    plain, *found = compared([as_read, named, *([shape] if shape else [])])
     likelier = [one for one in found if one.model.parts and plain.bic - one.bic >= CRITERIA.margin]
     ordered = [one for one in likelier if held_out_proof(case, plain, one).bears_out]
     if not ordered:
@@ -247,20 +246,20 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     of its own begins each held-out run where it suits: free runs must not stray with it.
     """
     pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
-    scale, base, among = case.scale, case.search.base, len(case.search.candidates)
+    scale, among = case.scale, len(case.search.candidates)
     span = as_read.shooting.segments.span
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     others = [one for one in others if one.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
-        before, now = compared([as_read, one], base)
+        before, now = compared([as_read, one])
         beside = rank_process_noise(now.shooting, now.model, case.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
         proof = held_out_proof(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
         stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
         if one.model.parts and likelier > CRITERIA.margin and stays:
-            pair = [cross_validated(scale, now.shooting, base, each.model.parts, now.model) for each in (before, now)]
+            pair = [cross_validated(scale, now, each.model.parts) for each in (before, now)]
             if pair[0].errors.sum() > pair[1].errors.sum():  # of pieces left out of the fit
                 borne.append((likelier, now, proof))
     if not borne:
@@ -271,9 +270,9 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     return Verdict(now.word, now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
 
 
-def says_more(case: Case, shape: ScoredModel, named: ScoredModel) -> bool:
+def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
     """Whether one shape without a name explains more than several names together."""
-    named, shape = compared([named, shape], case.search.base)
+    named, shape = compared([named, shape])
     return shape.bic < named.bic - CRITERIA.margin
 
 
@@ -285,7 +284,7 @@ def decided(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[
     near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
     near = [case.lengthened(one, longer.shooting.segments.span) for one in near]
     near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
-    first, *others = ranked(compared([longer, *near], case.search.base), case.search.candidates)
+    first, *others = ranked(compared([longer, *near]), case.search.candidates)
     others = [replace(one, gained=first.gained + first.bic - one.bic) for one in others]
     decided_on = {one.labels for one in (first, *others)}
     return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]

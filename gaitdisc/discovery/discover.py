@@ -154,7 +154,7 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
                 f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
                 "Give another effect or place.",
             )
-        now = scored(now.shooting, search.base, min(tried, key=lambda one: one.fit.misfit))
+        now = scored(now.shooting, min(tried, key=lambda one: one.fit.misfit))
     now = case.lengthened(now)
     count = len(now.model.parts)
     idle = [

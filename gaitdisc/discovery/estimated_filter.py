@@ -113,7 +113,7 @@ def _beside_the_simulation(
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    other = fit_model(filtered, simulation, (), model.fit.starts, like=model)
+    other = model.refitted(filtered)
     return found if other.fit.misfit < model.fit.misfit else {}
 
 

@@ -73,18 +73,16 @@ def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredMod
 
     returns: under the noise that it leaves; None where no shape can be fitted
     """
-    plain = cross_validated(scale, now.shooting, search.base, (), now.model)
+    plain = cross_validated(scale, now, ())
     if not np.isfinite(plain.gap):
         return None
-    tried = [_cross_validated(scale, search, plain, part) for part in _promising(now, search, plain)]
+    tried = [cross_validated(scale, plain, (part,)) for part in _promising(now, search, plain)]
     best = _cheapest(tried, plain)[:2]
     tried = best + [
-        _cross_validated(scale, search, plain, part)
-        for one in best
-        for part in (*_thinned(one.model), *_local(one.model))
+        cross_validated(scale, plain, (part,)) for one in best for part in (*_thinned(one.model), *_local(one.model))
     ]
     kept = _cheapest([one for one in tried if search.sensible(one.model)], plain)
-    return scored(now.shooting, search.base, kept[0].model) if kept else None
+    return scored(now.shooting, kept[0].model) if kept else None
 
 
 def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
@@ -94,10 +92,6 @@ def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
     return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: cost_of(one, plain))
-
-
-def _cross_validated(scale: GapScale, search: Search, plain: CrossValidated, part: Part) -> CrossValidated:
-    return cross_validated(scale, plain.shooting, search.base, (part,), plain.model)
 
 
 def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:

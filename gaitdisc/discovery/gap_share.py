@@ -7,19 +7,17 @@ person can use is another question: how much of the disagreement goes, and with 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.noise import Noise, white_noise
 from gaitdisc.discovery.paired_test import errors_rise_p
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.simulation.simulation import Simulation
 
 CONVERGED = 1e-4  # of a number's share of the misfit
 TURNS, AGAIN = 15, 6
@@ -79,39 +77,32 @@ class GapScale:
 
 
 @dataclass(frozen=True, eq=False)
-class CrossValidated:
+class CrossValidated(ScoredModel):
     """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to."""
 
-    model: CandidateModel
-    shooting: Shooting
-    errors: NDArray[np.float64]  # (piece,), mean squares left out of the fit, in squares of the scale's size
-    gap: float  # their root mean square above the sensors' noise
-
-    @property
-    def scored(self) -> ScoredModel:
-        """The same, scored by its information criterion."""
-        return ScoredModel(self.model, self.shooting)
+    # (piece,), mean squares left out of the fit, in squares of the scale's size; infinite where it failed
+    errors: NDArray[np.float64] = field(default_factory=lambda: np.full(1, np.inf))
+    gap: float = np.inf  # their root mean square above the sensors' noise
 
 
-def cross_validated(
-    scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: CandidateModel
-) -> CrossValidated:
+def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]) -> CrossValidated:
     """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
 
-    like: of the same segments: where start states and numbers with bounds begin
+    begun: on the same segments: where start states and numbers with bounds begin
     """
+    model, shooting = begun.model, begun.shooting
     enough = CONVERGED * shooting.seen.size / CRITERIA.independent
-    shooting = shooting.with_noise(scale.error_of(like.fit))
-    model = fit_model(shooting, base, parts, like.fit.starts, TURNS, enough, like)
+    shooting = shooting.with_noise(scale.error_of(model.fit))
+    model = model.refitted(shooting, parts, turns=TURNS, enough=enough)
     if not np.isfinite(model.fit.misfit):
-        return CrossValidated(model, shooting, np.full(1, np.inf), float("inf"))
+        return CrossValidated(model, shooting)
     shooting = shooting.with_noise(scale.error_of(model.fit)).with_past(model.fit.states)
-    model = fit_model(shooting, base, model.parts, model.fit.starts, AGAIN, enough, model)
+    model = model.refitted(shooting, turns=AGAIN, enough=enough)
     if not np.isfinite(model.fit.misfit):
-        return CrossValidated(model, shooting, np.full(1, np.inf), float("inf"))
+        return CrossValidated(model, shooting)
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
     errors = left_out_errors(model.fit) * square / shooting.known.mean()
-    return CrossValidated(model, shooting, errors, scale.gap_above(float(errors.mean())))
+    return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(float(errors.mean())))
 
 
 def errs_more(one: CrossValidated, other: CrossValidated) -> float:

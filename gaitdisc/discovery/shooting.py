@@ -25,7 +25,7 @@ MOST_DAMPING = 1e6
 NUDGE = 1e-5
 STUCK = 5.0  # times the median misfit of a segment
 FREED = 0.5  # of their misfit, which another start must leave at most
-FEW_TURNS = 6
+TURNS, FEW_TURNS = 12, 6
 ENOUGH = 1e-2
 
 
@@ -161,7 +161,7 @@ class Shooting:
         free: tuple[str, ...],
         values: NDArray[np.float64],
         starts: NDArray[np.float64],
-        turns: int = 12,
+        turns: int = TURNS,
         enough: float = ENOUGH,
     ) -> Fitted:
         """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).

@@ -61,15 +61,14 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     if verdict.word != UNNAMED or len(shape.model.parts) != 1 or not verdict.proof:
         return verdict
     search, scale = case.search, case.scale
-    plain = cross_validated(scale, shape.shooting, search.base, (), shape.model)
+    plain = cross_validated(scale, shape, ())
     if not np.isfinite(plain.gap):
         return verdict
-    readings = [
-        cross_validated(scale, shape.shooting, search.base, (part,), plain.model) for part in _readings(search, shape)
-    ]
+    begun = ScoredModel(plain.model, shape.shooting)
+    readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
     readings = [one for one in readings if search.sensible(one.model)]
     for one in sorted(readings, key=lambda one: cost_of(one, plain)):
-        found = scored(shape.shooting, search.base, one.model)
+        found = scored(shape.shooting, one.model)
         proof = held_out_proof(case, as_read, found)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
             reads_as = effect_of(search, one.model.parts[0].candidate)

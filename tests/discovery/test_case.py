@@ -108,7 +108,7 @@ def test_as_read_only_the_starts_are_fitted(as_read):
 def test_a_right_account_is_followed_over_half_a_trial_or_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
     true = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
-    longer = case.lengthened(scored(as_read.shooting, case.search.base, true))
+    longer = case.lengthened(scored(as_read.shooting, true))
     assert longer.shooting.segments.length >= case.measured.samples.min() / 2
     assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
 

@@ -56,6 +56,6 @@ def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     assert shape is not None
     (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
-    plain = now.under(shape, case.search.base)
+    plain = now.under(shape)
     before, after, noise = plain.model.fit.misfit, shape.model.fit.misfit, shape.model.fit.white.size
     assert 1 - (after - noise) / (before - noise) > 0.7

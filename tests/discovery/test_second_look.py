@@ -28,7 +28,7 @@ def _with(case, as_read, label, **values):
     candidate = next(one for one in case.search.candidates if one.label == label)
     parts = (Part(candidate, values),)
     model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
-    return scored(as_read.shooting, case.search.base, model)
+    return scored(as_read.shooting, model)
 
 
 def test_hysteresis_that_yields_within_a_step_is_dry_friction():
