@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.candidate import candidates_of
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
-from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.catalogue import ALL, Request, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import record_filter_of
 from gaitdisc.discovery.first_states import StateGuess, guess_states
@@ -187,33 +186,26 @@ class Case:
         return now
 
 
-def set_up_case(
-    simulation: Simulation,
-    measured: Measured,
-    shapes: tuple[Shape, ...] = (),
-    progress: Callable[[str], None] = lambda _: None,
-    possible: Callable[[Candidate], bool] = lambda _: True,
-    alpha: float = ALPHA,
-) -> Case:
+def set_up_case(simulation: Simulation, measured: Measured, request: Request = ALL) -> Case:
     """Prepare a case: split the trials, list places and explanations, guess the states.
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
     """
-    simulation = with_constant_errors(matched(simulation, measured, shapes))
+    simulation = with_constant_errors(matched(simulation, measured, request.shapes))
     if len(measured.trials) == 1:
         measured = split_in_time(measured)
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    considered = tuple(filter(possible, candidates_of(simulation, places, (*known_shapes(), *shapes))))
-    search = Search(simulation, places, considered, rhythm, progress)
+    considered = tuple(filter(request.possible, candidates_of(simulation, places, (*known_shapes(), *request.shapes))))
+    search = Search(simulation, places, considered, rhythm, request.progress)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
     passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
     learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
-    case = Case(search, measured, learned, held_out, guess, passed, alpha)
+    case = Case(search, measured, learned, held_out, guess, passed, alpha=request.alpha)
     return _less_idle(replace(case, substeps=_count_substeps(case)))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -50,9 +49,7 @@ class TrackedAnswer:
     said: tuple[str, ...]
 
 
-def discover_tracked(
-    tracked: Tracked, kinematics: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
-) -> TrackedAnswer:
+def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
     if request.effects or request.alpha != ALPHA:
         raise SchemaError(
@@ -60,13 +57,14 @@ def discover_tracked(
             f"{kinematics.name} is a walk that is tracked",
             "Leave them out: each joint is searched.",
         )
+    progress = request.progress
     progress(f"reading {kinematics.name} and the forces")
     walk = tracked_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
     progress("computing what noise of the angles makes of them")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, angle_noise, request.shapes, progress)
+    base, joints = joints_of(walk, angle_noise, request)
     found = discovery_of(base, joints)
     progress("writing it into the model")
     augmented = drafted(engine)

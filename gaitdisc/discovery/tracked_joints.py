@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, candidates_of
-from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.catalogue import ALL, Request, Shape, known_shapes
 from gaitdisc.discovery.joint_and_trials import EFFECTS, STRENGTH
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.prescribed import JointFinding, ResidualMoment, joint_finding
@@ -27,9 +27,7 @@ FEWEST = 20  # samples that hold what passes the low-pass
 BEYOND = 3.0  # times the noise of a joint, from which what is left is worth a word
 
 
-def joints_of(
-    walk: Pass, angle_noise: Values, more: tuple[Shape, ...] = (), progress: Callable[[str], None] = lambda _: None
-) -> tuple[Simulation, list[JointFinding]]:
+def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[Simulation, list[JointFinding]]:
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     if len(walk.times) < FEWEST:
         raise SamplingError(
@@ -39,10 +37,10 @@ def joints_of(
             "Record longer.",
         )
     base = _simulation(walk)
-    candidates = _candidates(base, walk, more)
+    candidates = _candidates(base, walk, request.shapes)
     joints = []
     for number in walk.joints:
-        progress(f"weighing what is left at {walk.engine.coordinates[number].called}")
+        request.progress(f"weighing what is left at {walk.engine.coordinates[number].called}")
         joint = _left(walk, base, number, angle_noise)
         joints.append(joint_finding(joint, candidates[number], len(walk.joints)))
     return base, joints

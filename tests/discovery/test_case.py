@@ -6,7 +6,7 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import SHORT, hangs_on_step, set_up_case, split_in_time
-from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.noise import sensor_noise
@@ -119,7 +119,7 @@ def test_no_run_is_longer_than_wanted(case, as_read):
 
 
 def test_shapes_of_the_users_own_are_searched():
-    case = set_up_case(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
+    case = set_up_case(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), Request((Shape("quintic", ("x**5",)),)))
     assert "quintic@load" in {one.label for one in case.search.candidates}
 
 
