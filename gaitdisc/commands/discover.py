@@ -136,7 +136,7 @@ def _write(
 
 def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
     """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
-    from gaitdisc.discovery.device_people import lines, over_people
+    from gaitdisc.discovery.device_study import lines, over_people
     from gaitdisc.errors import GaitdiscError
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.spreadsheet import write_csv

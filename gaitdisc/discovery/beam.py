@@ -21,7 +21,6 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapScale, cross_validated, errs_more
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest
-from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.scored_model import ScoredModel
@@ -110,7 +109,7 @@ class Beam:
         promising = []
         for score in scores:
             left = math.sqrt(max(1 - score.gain / whole, 0.0))
-            promised = now.gap / self.as_read.gap * left + model.penalty + penalty_of(score.candidate, score.values)
+            promised = now.gap / self.as_read.gap * left + model.penalty + score.candidate.penalty(score.values)
             if promised < wanted:
                 promising.append(score)
         return promising[:most]
@@ -151,7 +150,7 @@ class Beam:
             for part in now.model.parts:
                 fewer = self.without(now, part.candidate.identity)
                 share = (fewer.gap - now.gap) / self.as_read.gap
-                worth = max(CRITERIA.matters, penalty_of(part.candidate, part.values))
+                worth = max(CRITERIA.matters, part.candidate.penalty(part.values))
                 if share < worth or errs_more(fewer, now) >= ALPHA:
                     losses.append((share, part, fewer))
             if not losses:

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from gaitdisc.discovery.catalogue import Shape, with_names
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.effect_units import unit_of_state
 from gaitdisc.simulation.expression import Tree, parsed, substituted, written
@@ -15,13 +16,6 @@ from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
-# verdict -> the kind of place it names
-PLACE_OF = {
-    "wrong_parameter": "parameter",
-    "input_error": "input",
-    "sensor_error": "observation",
-    "wrong_initial_condition": "state",
-}
 # How an error of a signal reads, {s} being the signal: (slot, value when nothing is wrong, expression)
 SIGNAL_ERRORS = {
     "input_gain": ("gain", 1.0, "{gain}*{s}"),
@@ -32,6 +26,35 @@ SIGNAL_ERRORS = {
     "sensor_drift": ("rate", 0.0, "({s}) + {rate}*t"),
     "sensor_lag": ("seconds", 0.0, "{s}"),
 }
+
+# What an explanation can imitate, by which it is the dearer; what is neither is plain
+BENT = (
+    "input_gain",
+    "input_delay",
+    "input_lag",
+    "sensor_gain",
+    "sensor_offset",
+    "sensor_lag",
+    "sensor_drift",
+    "quadratic_stiffness",
+    "linear_coupling",
+    "one_sided_spring",
+    "dead_zone_spring",
+    "one_sided_damper",
+)
+FLEXIBLE = (
+    "contact_damper",
+    "hysteresis",
+    "series_elasticity",
+    "phase_locked_moment",
+    "unnamed",
+    "input_saturation",
+    "input_product",
+    "periodic_forcing",
+    "delayed_feedback",
+    "product_coupling",
+)
+LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
 
 UNNAMED = "unnamed"
 UNNAMED_MEANS = "an effect that is not in the catalogue"
@@ -123,6 +146,18 @@ class Candidate:
             return math.inf
         low, high = self.bounds
         return max(low - value, value - high)
+
+    def penalty(self, values: Mapping[str, float]) -> float:
+        """Return the share of the gap that it must close to be worth its statement.
+
+        The more kinds of motion an explanation can imitate, the more of a gap it has to close.
+
+        values: its numbers: a friction that drives costs the least that is named more than one that resists
+        """
+        drives = self.name in LOSSES and values.get("factor", 0.0) > 0
+        flexible, bent = self.name in FLEXIBLE, self.name in BENT
+        price = CRITERIA.bent if bent else CRITERIA.plain
+        return price + CRITERIA.bent * flexible + CRITERIA.matters * drives
 
     def pieces_at(self, constants: Mapping[str, str]) -> tuple[str, ...]:
         """Return the pieces of a missing term with its constants written in."""

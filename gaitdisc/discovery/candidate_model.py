@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, Identity
+from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted, prior_of
-from gaitdisc.discovery.own_states import with_own_states
-from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.shooting import ENOUGH, TURNS, Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation
@@ -60,7 +59,7 @@ class CandidateModel:
     @property
     def penalty(self) -> float:
         """What its explanations have to close [of the gap of the simulation as read]."""
-        return sum(penalty_of(part.candidate, part.values) for part in self.parts)
+        return sum(part.candidate.penalty(part.values) for part in self.parts)
 
     @property
     def size(self) -> int:

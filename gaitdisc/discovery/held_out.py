@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
 from gaitdisc.discovery.result import GapSize, Runs
 from gaitdisc.discovery.scored_model import ScoredModel

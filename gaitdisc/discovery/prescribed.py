@@ -20,7 +20,6 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
-from gaitdisc.discovery.penalty import penalty_of
 
 Values = NDArray[np.float64]
 LATEST_S, DELAYS = 0.12, 25
@@ -108,9 +107,7 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     proven = sorted((_proven(joint, noise, one) for one in near), key=lambda one: -one.held_out)
     alike = [one for one in proven if one.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
     order = [one.identity for one in candidates]  # of two with one penalty the first in the catalogue is the simpler
-    alike.sort(
-        key=lambda one: (penalty_of(one.part.candidate, one.part.values), order.index(one.part.candidate.identity))
-    )
+    alike.sort(key=lambda one: (one.part.candidate.penalty(one.part.values), order.index(one.part.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
     first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
     return JointFinding(joint, noise, first, tuple(ordered), open_ones)

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.first_states import followed
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
-from gaitdisc.discovery.own_states import followed
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, mass, two_rods
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of, unnamed_terms
+from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, candidates_of, unnamed_terms
 from gaitdisc.discovery.candidate_model import Part, fit_model, with_parts
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.penalty import BENT, FLEXIBLE, penalty_of
 from gaitdisc.discovery.places import places_of
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -182,7 +181,7 @@ def test_each_compiles_where_it_is_put():
 
 def penalty(case, label, **values):
     candidate = next(one for one in case.search.candidates if one.label == label)
-    return penalty_of(candidate, dict.fromkeys(candidate.slots, 1.0) | values)
+    return candidate.penalty(dict.fromkeys(candidate.slots, 1.0) | values)
 
 
 def test_what_imitates_anything_costs_more_than_a_plain_term(case):
