@@ -277,11 +277,10 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] 
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None
     segments, drive, fit = now.shooting.segments, case.measured.drive, now.model.fit
-    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [
         Points(*one, fit.values, rate=drive.rate)
-        for one in zip(time, fit.states, segments.of(drive.inputs), strict=True)
+        for one in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
     ]
     return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
 

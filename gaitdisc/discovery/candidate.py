@@ -196,12 +196,17 @@ class Candidate:
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
 
-def _late(simulation: Simulation, seen: str, seconds: str) -> str:
-    """An observation as it was some seconds ago, definitions that stand in it written out."""
-    by: dict[str, Tree] = {}
+def _written_out(simulation: Simulation, expression: str, known: Mapping[str, Tree]) -> Tree:
+    """An expression with the definitions that stand in it written out, and with what is known of other names."""
+    by = {**known}
     for name, text in simulation.definitions:
         by[name] = substituted(parsed(text), by, simulation.signals)
-    whole = {"seen": substituted(parsed(seen), by, simulation.signals)}
+    return substituted(parsed(expression), by, simulation.signals)
+
+
+def _late(simulation: Simulation, seen: str, seconds: str) -> str:
+    """An observation as it was some seconds ago."""
+    whole = {"seen": _written_out(simulation, seen, {})}
     return written(substituted(parsed(f"delay(seen, {seconds})"), whole, simulation.signals))
 
 
@@ -255,8 +260,8 @@ def candidates_of(
                         shape.name,
                         shape.written(written),
                         shape.constants,
-                        role,
-                        shape.means,
+                        role=role,
+                        means=shape.means,
                         names=shape.names,
                         states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
                     )
@@ -319,12 +324,17 @@ def _occurs(name: str, text: str) -> bool:
     return re.search(rf"\b{re.escape(name)}\b", text) is not None
 
 
+def unnamed(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
+    """Return a term that no shape is; role: what stands for x in it."""
+    return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role, means=UNNAMED_MEANS)
+
+
 def unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
     inputs = [one.name for one in simulation.driving if one.name != "phase"]
     return tuple(
-        Candidate("missing_physics", place.kind, place.name, UNNAMED, (term,), None, place.motions[0][0], UNNAMED_MEANS)
+        unnamed(place, (term,), place.motions[0][0])
         for place in places
         for term in _terms(simulation, place, inputs, rate_of)
     )
@@ -338,12 +348,5 @@ def _terms(simulation: Simulation, place: Place, inputs: list[str], rate_of: dic
     if rate and isinstance(simulation, Simulation):
         for other, speed in rate_of.items():
             if other != own:
-                yield _acceleration(simulation, speed)
-
-
-def _acceleration(simulation: Simulation, speed: str) -> str:
-    """The right-hand side of a rate, definitions written out and nothing at the ports."""
-    by: dict[str, Tree] = {port.name: parsed("0") for port in simulation.ports}
-    for name, text in simulation.definitions:
-        by[name] = substituted(parsed(text), by, simulation.signals)
-    return written(substituted(parsed(dict(simulation.equations)[speed]), by, simulation.signals))
+                nothing = {port.name: parsed("0") for port in simulation.ports}
+                yield written(_written_out(simulation, dict(simulation.equations)[speed], nothing))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.simulation.simulation import Simulation
+
+OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # fields of a fit that begin with the segment
 
 
 @dataclass(frozen=True)
@@ -87,8 +89,7 @@ class Fitted:
 
     def among(self, some: NDArray[np.intp]) -> Fitted:
         """Return the fit of some of the segments, by their numbers."""
-        parts = (each[some] for each in (self.starts, self.states, self.residual, self.white, self.slopes))
-        return Fitted(self.free, self.values, *parts, prior=self.prior)
+        return replace(self, stated=None, **{name: getattr(self, name)[some] for name in OF_SEGMENTS})
 
     def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
         """Return another fit's segments where these are better, and its constants if all are.
@@ -99,24 +100,25 @@ class Fitted:
             return other
         if not better.any():
             return self
-        parts = (
-            np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
-            for mine, its in (
-                (self.starts, other.starts),
-                (self.states, other.states),
-                (self.residual, other.residual),
-                (self.white, other.white),
-                (self.slopes, other.slopes),
-            )
-        )
-        return Fitted(self.free, self.values, *parts, prior=self.prior)
+        pairs = {name: (getattr(self, name), getattr(other, name)) for name in OF_SEGMENTS}
+        parts = {
+            name: np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine) for name, (mine, its) in pairs.items()
+        }
+        return replace(self, stated=None, **parts)
+
+    @property
+    def basis(self) -> NDArray[np.float64]:
+        """What the start states can explain of `white`: an orthonormal basis (segment, number, state)."""
+        return start_basis(self.slopes[..., : self.starts.shape[1]])
 
     @property
     def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """What the start states cannot explain: of `white` (segment, number), and of the constants' slopes."""
-        n = self.starts.shape[1]
-        basis = start_basis(self.slopes[..., :n])
-        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
+        basis = self.basis
+        return without(basis, self.white[..., None])[..., 0], self._projected_slopes(basis)
+
+    def _projected_slopes(self, basis: NDArray[np.float64]) -> NDArray[np.float64]:
+        return without(basis, self.slopes[..., self.starts.shape[1] :])
 
     @property
     def stacked(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -136,8 +138,7 @@ class Fitted:
             return self.stated
         if not self.free:
             return np.zeros((0, 0))
-        n = self.starts.shape[1]
-        flat = self._with_prior(without(start_basis(self.slopes[..., :n]), self.slopes[..., n:]))
+        flat = self._with_prior(self._projected_slopes(self.basis))
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import UNNAMED, UNNAMED_MEANS, Candidate
+from gaitdisc.discovery.candidate import Candidate, unnamed
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
@@ -40,7 +40,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
         pieces = [f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres]
-        shapes.append(_unnamed(place, pieces, place.motions[0][0]))
+        shapes.append(unnamed(place, tuple(pieces), place.motions[0][0]))
     return shapes
 
 
@@ -57,11 +57,7 @@ def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search
         shapes.append([f"{piece}*{name}" for piece in across])
     if len(axes) > 1:
         shapes += [_bumps(ranges, dict.fromkeys(axes, BUMPS)), _powers(ranges)]
-    return [_unnamed(place, pieces, x) for pieces in shapes]
-
-
-def _unnamed(place: Place, pieces: list[str], role: str) -> Candidate:
-    return Candidate("missing_physics", place.kind, place.name, UNNAMED, tuple(pieces), None, role, UNNAMED_MEANS)
+    return [unnamed(place, tuple(pieces), x) for pieces in shapes]
 
 
 def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredModel | None:

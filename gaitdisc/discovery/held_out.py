@@ -235,11 +235,10 @@ def drawn_runs(case: Case, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them."""
     segments, drive = before.segments, case.measured.drive
     names = [one.name for one in case.search.base.inputs]
-    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
         segments.trial,
-        time[:, segments.compared],
+        segments.times(drive)[:, segments.compared],
         phase[:, segments.compared],
         before.measured,
         before.measured - before.fit.residual,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.first_states import followed
-from gaitdisc.discovery.fitted import Fitted, start_basis, without
+from gaitdisc.discovery.fitted import Fitted, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
 from gaitdisc.discovery.places import Place
@@ -87,7 +87,7 @@ class Scorer:
 
     def left_without_each(self, candidates: tuple[Candidate, ...]) -> NDArray[np.float64]:
         """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order."""
-        basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
+        basis = self.fit.basis
         left, slopes = self.fit.projected
         others = _Others(self.shooting.segments.trial)
         prior = self.fit.prior
@@ -111,7 +111,7 @@ class Scorer:
 
         After the measured numbers come the rows of the prior, in which no candidate changes anything.
         """
-        basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
+        basis = self.fit.basis
         left, flat = self.fit.stacked
         size = np.linalg.norm(flat, axis=0)
         known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
-from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.drive import Drive, Rows
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,10 @@ class Segments:
     def samples(self) -> NDArray[np.intp]:
         """Number, within its trial, of every sample (segment, sample)."""
         return self.begin[:, None] + np.arange(self.length)
+
+    def times(self, drive: Drive) -> NDArray[np.float64]:
+        """Time of every sample (segment, sample) [s]."""
+        return drive.time0[self.trial][:, None] + self.samples / drive.rate
 
     @property
     def steps(self) -> Segments:

@@ -185,7 +185,7 @@ class _Curve:
         shooting, known = self.shape.shooting, len(self.search.base.states)
         segments, drive = shooting.segments, shooting.measured.drive
         states = self.shape.model.fit.states[..., :known].reshape(-1, known)
-        time = (drive.time0[segments.trial][:, None] + segments.samples / drive.rate).ravel()
+        time = segments.times(drive).ravel()
         some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))
         inputs = segments.of(drive.inputs).reshape(len(states), -1)
         return Points(time[some], states[some], inputs[some])
