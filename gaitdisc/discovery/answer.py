@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
@@ -32,6 +31,7 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import TURNS
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.effect_units import places_unit, unit_of_channel
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
@@ -268,7 +268,7 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
     )
 
 
-def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] | None:
+def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     """Return how strongly an effect acts along the runs that were fitted (run, sample) [the place's unit].
 
     returns: None of what is no term, and of one that comes late

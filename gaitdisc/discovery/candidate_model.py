@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, Identity
 from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted, prior_of
 from gaitdisc.discovery.shooting import ENOUGH, TURNS, Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -75,7 +75,7 @@ class CandidateModel:
         self,
         shooting: Shooting,
         parts: tuple[Part, ...] | None = None,
-        starts: NDArray[np.float64] | None = None,
+        starts: Values | None = None,
         turns: int = TURNS,
         enough: float = ENOUGH,
     ) -> CandidateModel:
@@ -86,7 +86,7 @@ class CandidateModel:
         parts, starts = self.parts if parts is None else parts, self.fit.starts if starts is None else starts
         return fit_model(shooting, self.base, parts, starts, turns, enough, self)
 
-    def with_estimates(self, values: NDArray[np.float64], covariance: NDArray[np.float64]) -> CandidateModel:
+    def with_estimates(self, values: Values, covariance: Values) -> CandidateModel:
         """Return the model with other numbers, and their covariance; its runs stay as they are.
 
         values (parameter,): all parameters
@@ -116,7 +116,7 @@ def fit_model(
     shooting: Shooting,
     base: Simulation,
     parts: tuple[Part, ...],
-    starts: NDArray[np.float64],
+    starts: Values,
     turns: int = TURNS,
     enough: float = ENOUGH,
     like: CandidateModel | None = None,

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import candidates_of
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
@@ -28,6 +27,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, leaves, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
@@ -62,7 +62,7 @@ class Case:
         return self.search.rhythm
 
     @cached_property
-    def sensor_noise(self) -> NDArray[np.float64]:
+    def sensor_noise(self) -> Values:
         """Standard deviation of each sensor's noise in the record (channel,): as the file says, or else as the record.
 
         What the file says is that of the sensor; the record's filter leaves less. NaN where the file says nothing and a
@@ -95,7 +95,7 @@ class Case:
             return not now.noise.is_autocorrelated
         return leaves(now, self.sensor_noise) < CRITERIA.mere_noise
 
-    def noise_floor(self, noise: NDArray[np.float64]) -> NDArray[np.float64]:
+    def noise_floor(self, noise: Values) -> Values:
         """Return the size of the sensors' noise (channel,), or where it is not known, what a simulation leaves.
 
         noise (channel,): what a simulation leaves [the channel's unit]

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
 from gaitdisc.discovery.first_states import StateGuess
@@ -18,6 +17,7 @@ from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.recorded_filter import RecordedFilter, recorded_filter
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -53,7 +53,7 @@ def record_filter_of(
     return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
 
 
-def _trials(measured: Measured, channel: int) -> list[NDArray[np.float64]]:
+def _trials(measured: Measured, channel: int) -> list[Values]:
     """One channel of each trial."""
     return [seen[:samples, channel] for seen, samples in zip(measured.observed, measured.samples, strict=True)]
 
@@ -128,7 +128,7 @@ def _laid_over(
     return shooting, fit_model(shooting, simulation, (), guess.starts(segments))
 
 
-def _stitched(shooting: Shooting, model: CandidateModel, measured: Measured) -> NDArray[np.float64]:
+def _stitched(shooting: Shooting, model: CandidateModel, measured: Measured) -> Values:
     """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
     segments, fit = shooting.segments, model.fit
     runs = shooting.unfiltered(model.machine, fit.states[None], fit.values[None])[0]

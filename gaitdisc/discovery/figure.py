@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.effect_words import shown_unit
 from gaitdisc.discovery.method import method_of
 from gaitdisc.discovery.result import Discovery
+from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import MEASURED, MODELS, Room, in_style, legend, lines_of, panels, panels_for
 
@@ -107,7 +107,7 @@ def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> 
     _models(axes, time, seen - simulated, seen - augmented)
 
 
-def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
+def typical_stretch(gap: Values, samples: int) -> tuple[int, int]:
     """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
 
     gap (sample,): squared gap
@@ -121,7 +121,7 @@ def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
     return begin, min(begin + samples, len(gap))
 
 
-def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArray[np.float64]) -> pd.DataFrame:
+def binned(along: Values, values: Values, edges: Values) -> pd.DataFrame:
     """Return mean and standard deviation of values in bins, those with too few samples left out.
 
     along, values (sample,): where, and what
@@ -239,9 +239,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
     return Figure("against_state", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 
 
-def _models(
-    axes: Axes, at: NDArray[np.float64], simulated: NDArray[np.float64], augmented: NDArray[np.float64]
-) -> None:
+def _models(axes: Axes, at: Values, simulated: Values, augmented: Values) -> None:
     for values, look in ((simulated, MODELS["nominal"]), (augmented, MODELS["augmented"])):
         axes.plot(at, values, color=look.colour, linestyle=look.line, linewidth=1.1, zorder=3)
 

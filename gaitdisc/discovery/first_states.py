@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.derivatives import savgol_filter
 from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
 from gaitdisc.simulation.drive import Drive, Rows
@@ -40,13 +41,13 @@ LEFT = 0.5  # of a channel's spread, beyond which a sample is not solved
 class StateGuess:
     """States of every trial, roughly."""
 
-    states: NDArray[np.float64]  # (trial, sample, state), NaN beyond a trial's end
+    states: Values  # (trial, sample, state), NaN beyond a trial's end
 
-    def starts(self, segments: Segments) -> NDArray[np.float64]:
+    def starts(self, segments: Segments) -> Values:
         """Return the guess at each segment's first sample (segment, state)."""
         return self.states[segments.trial, segments.begin].copy()
 
-    def with_run(self, segments: Segments, states: NDArray[np.float64]) -> StateGuess:
+    def with_run(self, segments: Segments, states: Values) -> StateGuess:
         """Return the guess with a run put in its place where there is one.
 
         states (segment, sample, state): their states; those that effects bring along, after the others, are left out
@@ -86,9 +87,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     return StateGuess(out)
 
 
-def _following(
-    simulation: Simulation, drive: Drive, states: NDArray[np.float64], hidden: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDArray[np.bool_]) -> Values:
     """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
     machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden).tolist())))
     driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
@@ -104,12 +103,8 @@ def _following(
 
 
 def _states(
-    seeing: ObservationMap,
-    seen: tuple[NDArray[np.float64], NDArray[np.float64]],
-    begin: NDArray[np.float64],
-    pairs: list[tuple[int, int]],
-    rate: float,
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    seeing: ObservationMap, seen: tuple[Values, Values], begin: Values, pairs: list[tuple[int, int]], rate: float
+) -> tuple[Values, NDArray[np.bool_]]:
     """States of one trial (sample, state), and which of them the channels say (state,).
 
     A rate that they leave open is the slope of its position.
@@ -134,13 +129,11 @@ def _states(
     return x, often | ~free
 
 
-def _bridged(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _bridged(values: Values, known: NDArray[np.bool_]) -> Values:
     return values if known.all() else np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])
 
 
-def with_own_states(
-    shooting: Shooting, machine: Compiled, values: NDArray[np.float64], starts: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def with_own_states(shooting: Shooting, machine: Compiled, values: Values, starts: Values) -> Values:
     """Return start states (segment, state) with those of the effects' own states, where these are not yet among them.
 
     values (parameter,): its parameters
@@ -153,7 +146,7 @@ def with_own_states(
     return np.concatenate([starts[:, : shooting.past.shape[2]], own], axis=1)
 
 
-def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def followed(shooting: Shooting, simulation: Simulation, values: Values) -> Values:
     """Return the effects' own states along the states of the record (version, trial, sample, own state).
 
     values (version, parameter): its parameters, several versions of them
@@ -173,9 +166,7 @@ def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.floa
     return runs.reshape(versions, trials, runs.shape[1], -1)
 
 
-def run_twice(
-    machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBSTEPS
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def run_twice(machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBSTEPS) -> tuple[Values, Values]:
     """Run over whole trials, and once more from where each ended: by then it has forgotten its start.
 
     returns: both runs (row, sample, state)
@@ -205,7 +196,7 @@ def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation
     )
 
 
-def _bridged_trials(states: NDArray[np.float64], samples: NDArray[np.int64]) -> NDArray[np.float64]:
+def _bridged_trials(states: Values, samples: NDArray[np.int64]) -> Values:
     """States of every trial, unknown samples bridged by straight lines, zero beyond the end (trial, sample, state)."""
     out = np.zeros(states.shape)
     for trial, length in enumerate(samples):
@@ -221,11 +212,11 @@ class ObservationMap:
     """What a simulation observes at the samples of one trial, over each channel's spread; delays are taken as none."""
 
     machine: Compiled
-    t: NDArray[np.float64]  # (sample,), time [s]
-    u: NDArray[np.float64]  # (sample, input), inputs
-    spread: NDArray[np.float64]  # (channel,), of the measured channels [each channel's unit]
+    t: Values  # (sample,), time [s]
+    u: Values  # (sample, input), inputs
+    spread: Values  # (channel,), of the measured channels [each channel's unit]
 
-    def at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, x: Values) -> Values:
         """Return the channels that states give (sample, channel).
 
         x (sample, state): states
@@ -237,7 +228,7 @@ class ObservationMap:
             seen = at_points(program, leaf_columns(self.t, x, self.u, machine.defaults), late, len(x))
         return seen.T / self.spread
 
-    def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def jacobian(self, x: Values) -> Values:
         """Return the slopes of the channels by the states (sample, channel, state); zero where there is none.
 
         x (sample, state): states
@@ -249,7 +240,7 @@ class ObservationMap:
             columns.append((self.at(x + nudge) - self.at(x - nudge)) / (2 * nudge[state]))
         return np.nan_to_num(np.stack(columns, axis=2), nan=0.0, posinf=0.0, neginf=0.0)
 
-    def drift(self, x: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    def drift(self, x: Values, rate: float) -> Values:
         """Return how fast the channels change while the states rest, through inputs and time (sample, channel) [1/s].
 
         x (sample, state): states
@@ -260,9 +251,7 @@ class ObservationMap:
         ahead, behind = (replace(self, t=self.t[at], u=self.u[at]).at(x) for at in (after, before))
         return np.nan_to_num((ahead - behind) * rate / np.maximum(after - before, 1)[:, None])
 
-    def solved(
-        self, seen: NDArray[np.float64], begin: NDArray[np.float64], free: NDArray[np.bool_]
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def solved(self, seen: Values, begin: Values, free: NDArray[np.bool_]) -> tuple[Values, NDArray[np.bool_]]:
         """Return the states that give what is seen, by Gauss-Newton, nearest to where the search begins.
 
         What the channels do not determine stays as it began (pseudo-inverse).
@@ -288,9 +277,7 @@ class ObservationMap:
         whole = np.diagonal(space, axis1=1, axis2=2) > DETERMINED
         return x, whole & (left < LEFT**2)[:, None]
 
-    def _descended(
-        self, seen: NDArray[np.float64], x: NDArray[np.float64], free: NDArray[np.bool_]
-    ) -> NDArray[np.float64]:
+    def _descended(self, seen: Values, x: Values, free: NDArray[np.bool_]) -> Values:
         """Gauss-Newton at all samples side by side, each step halved while it gains nothing."""
         left = self._left(seen, x)
         for _ in range(SOLVING_TURNS):
@@ -307,6 +294,6 @@ class ObservationMap:
                 break
         return x
 
-    def _left(self, seen: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _left(self, seen: Values, x: Values) -> Values:
         """Mean squared misfit of each sample (sample,)."""
         return np.nan_to_num(((seen - self.at(x)) ** 2).mean(axis=1), nan=np.inf)

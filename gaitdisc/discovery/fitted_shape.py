@@ -8,7 +8,6 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, unnamed
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
@@ -17,6 +16,7 @@ from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validat
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
@@ -152,7 +152,7 @@ def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> li
         low, high = ranges[axis]
         step = (high - low) / (count - 1) or 1.0
         name = _bracketed(axis)
-        at: NDArray[np.float64] = np.linspace(low, high, count)
+        at: Values = np.linspace(low, high, count)
         centres.append([f"(({name} - {_number(centre)})/{SHARPNESS * step:.4g})**2" for centre in at])
     return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
 

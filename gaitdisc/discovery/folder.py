@@ -159,9 +159,5 @@ def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:
 
 
 DISCOVERY = Kind(
-    Discovery,
-    NAME,
-    write=save_discovery,
-    read=load_discovery,
-    page="gaitdisc.discovery.page:write_discovery_report",
+    Discovery, NAME, write=save_discovery, read=load_discovery, page="gaitdisc.discovery.page:write_discovery_report"
 )

@@ -18,6 +18,7 @@ from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.noise import Noise, white_noise
 from gaitdisc.discovery.paired_test import errors_rise_p
 from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.recording.arrays import Values
 
 CONVERGED = 1e-4  # of a number's share of the misfit
 TURNS, AGAIN = 15, 6
@@ -33,11 +34,11 @@ WEAK = 1e-11
 class GapScale:
     """What a gap is measured against."""
 
-    noise: NDArray[np.float64]  # (channel,), standard deviation of the sensors' noise [the channel's unit]
-    spread: NDArray[np.float64]  # (channel,), standard deviation of the measurement [the channel's unit]
+    noise: Values  # (channel,), standard deviation of the sensors' noise [the channel's unit]
+    spread: Values  # (channel,), standard deviation of the measurement [the channel's unit]
 
     @property
-    def size(self) -> NDArray[np.float64]:
+    def size(self) -> Values:
         """What a simulation that lacks nothing may leave (channel,): noise, and a model error of a hundredth."""
         return np.sqrt(self.noise**2 + (CRITERIA.model_error * self.spread) ** 2)
 
@@ -81,7 +82,7 @@ class CrossValidated(ScoredModel):
     """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to."""
 
     # (piece,), mean squares left out of the fit, in squares of the scale's size; infinite where it failed
-    errors: NDArray[np.float64] = field(default_factory=lambda: np.full(1, np.inf))
+    errors: Values = field(default_factory=lambda: np.full(1, np.inf))
     gap: float = np.inf  # their root mean square above the sensors' noise
 
 
@@ -112,7 +113,7 @@ def errs_more(one: CrossValidated, other: CrossValidated) -> float:
     return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
 
 
-def left_out_errors(fit: Fitted) -> NDArray[np.float64]:
+def left_out_errors(fit: Fitted) -> Values:
     """Return the mean squares of whitened residuals that the constants were estimated without (piece,).
 
     The fit is linear in its constants and start states around where it ended. Where whole runs are left out, their own
@@ -123,7 +124,7 @@ def left_out_errors(fit: Fitted) -> NDArray[np.float64]:
     return _without_pieces(fit)
 
 
-def _without_runs(fit: Fitted) -> NDArray[np.float64]:
+def _without_runs(fit: Fitted) -> Values:
     left, slopes = fit.projected
     normal = np.swapaxes(slopes, 1, 2) @ slopes
     match = np.einsum("srf,sr->sf", slopes, left)
@@ -141,7 +142,7 @@ def _without_runs(fit: Fitted) -> NDArray[np.float64]:
     return np.array(errors)
 
 
-def _without_pieces(fit: Fitted) -> NDArray[np.float64]:
+def _without_pieces(fit: Fitted) -> Values:
     """As above with one or two runs: pieces are left out, never the first of a run, which determines its start."""
     runs, rows = fit.white.shape
     pieces = math.ceil((FEW if fit.white.size < SHORT_RUN * runs else MANY) / runs)
@@ -157,9 +158,7 @@ def _without_pieces(fit: Fitted) -> NDArray[np.float64]:
     return np.array(errors)
 
 
-def _estimated_without(
-    fit: Fitted, run: int, kept: NDArray[np.intp]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _estimated_without(fit: Fitted, run: int, kept: NDArray[np.intp]) -> tuple[Values, Values]:
     """Start states of one run (state,) and the constants (free,), from its kept rows and all other runs."""
     n = fit.starts.shape[1]
     normal, match = _prior(fit)
@@ -175,7 +174,7 @@ def _estimated_without(
     return np.asarray(start, np.float64), moved
 
 
-def _prior(fit: Fitted) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _prior(fit: Fitted) -> tuple[Values, Values]:
     """What the prior adds to the normal equations (free, free), (free,)."""
     own = len(fit.prior.names)
     normal, match = np.zeros((len(fit.free), len(fit.free))), np.zeros(len(fit.free))
@@ -186,7 +185,7 @@ def _prior(fit: Fitted) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return normal, match
 
 
-def _solved(normal: NDArray[np.float64], match: NDArray[np.float64]) -> NDArray[np.float64]:
+def _solved(normal: Values, match: Values) -> Values:
     if not len(match):
         return match
     size = np.sqrt(np.maximum(np.diag(normal), 1e-300))

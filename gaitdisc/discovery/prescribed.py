@@ -20,8 +20,8 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
+from gaitdisc.recording.arrays import Values
 
-Values = NDArray[np.float64]
 LATEST_S, DELAYS = 0.12, 25
 BLOCK, MOST_BLOCKS = 4, 10  # samples of a block of time that is held out at least: a period of the low-pass; blocks
 GAP = 2  # samples to either side of it that nothing is learned from: what is half a period apart is independent

@@ -11,7 +11,6 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
@@ -19,6 +18,7 @@ from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 
 TURNS = 4
 INTEGRATED = 1e-4  # of a channel's spread: how far two integrators of one model may be apart
@@ -81,7 +81,7 @@ def scored(shooting: Shooting, model: CandidateModel, rounds: int = 2) -> Scored
     return ScoredModel(model, shooting)
 
 
-def leaves(now: ScoredModel, noise: NDArray[np.float64]) -> float:
+def leaves(now: ScoredModel, noise: Values) -> float:
     """Return the mean square of what a model leaves, over the variance of the sensors' noise.
 
     noise (channel,): its standard deviation [the channel's unit]

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import Part
@@ -26,6 +25,7 @@ from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMP = Shape("bump", ("exp(-((x - c)/w)**2)",), {"c": "quantiles of x", "w": "half widths of x"})
@@ -168,7 +168,7 @@ class _Curve:
                     break
 
     @cached_property
-    def _regression(self) -> tuple[list[Piece], NDArray[np.float64], NDArray[np.float64]]:
+    def _regression(self) -> tuple[list[Piece], Values, Values]:
         """Pieces that vary along the runs, their values (sample, piece), and the curve's (sample,)."""
         points = self._points
         along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
@@ -190,7 +190,7 @@ class _Curve:
         inputs = segments.of(drive.inputs).reshape(len(states), -1)
         return Points(time[some], states[some], inputs[some])
 
-    def _pieces(self, along: NDArray[np.float64]) -> Iterator[Piece]:
+    def _pieces(self, along: Values) -> Iterator[Piece]:
         """Pieces over the position, over its rate, over both, and products of one and the other."""
         rate = self.motion[1]
         angle = any(one.motions[0] == self.motion and one.angle for one in self.search.places)
@@ -209,14 +209,14 @@ class _Curve:
                 product = Shape("", (f"{_factor(one.pieces[0])}*{_factor(other.pieces[0])}",), one.constants)
                 yield from self._at(product, along)
 
-    def _at(self, shape: Shape, along: NDArray[np.float64]) -> Iterator[Piece]:
+    def _at(self, shape: Shape, along: Values) -> Iterator[Piece]:
         names = {"x": self.motion[0], "v": self.motion[1]} | {slot: f"_{slot}" for slot in shape.constants}
         (text,) = shape.written(names)
         for values in cells(dict(shape.constants), along, self.search.rhythm):
             yield Piece(text, dict(shape.constants), values)
 
 
-def _best_pairs(gram: NDArray[np.float64], match: NDArray[np.float64]) -> list[tuple[int, int]]:
+def _best_pairs(gram: Values, match: Values) -> list[tuple[int, int]]:
     """Pairs of unit columns, what they explain together the most first."""
     apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
     explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
@@ -225,9 +225,7 @@ def _best_pairs(gram: NDArray[np.float64], match: NDArray[np.float64]) -> list[t
     return list(zip(first[order].tolist(), second[order].tolist(), strict=True))
 
 
-def _best_triples(
-    gram: NDArray[np.float64], match: NDArray[np.float64], pairs: list[tuple[int, int]]
-) -> list[tuple[int, int, int]]:
+def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
     """Pairs with a third column beside them, what they explain together the most first."""
     found = []
     for pair in pairs:
