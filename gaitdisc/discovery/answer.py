@@ -86,21 +86,21 @@ def answer(
     discovery = Discovery(
         verdict.word if agrees else "unexplained",
         "",
-        whereabouts(case, stated, train) if effects or not agrees else (),
-        effects,
-        (
+        where=whereabouts(case, stated, train) if effects or not agrees else (),
+        effects=effects,
+        rivals=(
             *(reported_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
             *(
                 FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
                 for one in verdict.small  # that close too little of the gap to be named
             ),
         ),
-        train,
-        held_out,
-        channels,
-        tuple(unit_of_channel(base, name) for name in channels),
-        drawn_runs(case, held.before, held.after),
-        (*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
+        train=train,
+        held_out=held_out,
+        channels=channels,
+        units=tuple(unit_of_channel(base, name) for name in channels),
+        runs=drawn_runs(case, held.before, held.after),
+        findings=(*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
         explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",

@@ -229,7 +229,7 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     closed = 1 - now.gap / beam.as_read.gap
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
     test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), case.alpha)
-    return Outcome(beam.as_read, now, closed, test, tuple(small), near, others[:LISTED])
+    return Outcome(beam.as_read, now, closed, test, small=tuple(small), near=near, others=others[:LISTED])
 
 
 def near_runs(case: Case, scale: GapScale) -> CrossValidated:

@@ -84,7 +84,7 @@ class CandidateModel:
         starts (segment, state): start states to begin from; this model's where absent
         """
         parts, starts = self.parts if parts is None else parts, self.fit.starts if starts is None else starts
-        return fit_model(shooting, self.base, parts, starts, turns, enough, self)
+        return fit_model(shooting, self.base, parts, starts, turns, enough, like=self)
 
     def with_estimates(self, values: Values, covariance: Values) -> CandidateModel:
         """Return the model with other numbers, and their covariance; its runs stay as they are.

@@ -198,8 +198,9 @@ def _shape(entry: Any, where: str) -> Shape:
             f"{where} has {constants!r}",
             "Choose one of these.",
         )
-    if entry.get("needs", "") not in NEEDS:
-        raise SchemaError('a shape may need only "angle"', f"{where} has {entry['needs']!r}", "Remove the line.")
+    needs = entry.get("needs", "")
+    if needs not in NEEDS:
+        raise SchemaError('a shape may need only "angle"', f"{where} has {needs!r}", "Remove the line.")
     names = entry.get("names", {})
     numbers = ["factor", *(f"factor_{number}" for number in range(1, len(pieces))), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
@@ -209,7 +210,7 @@ def _shape(entry: Any, where: str) -> Shape:
             'Write names = { factor = "stiffness" }.',
         )
     means = str(entry.get("means", name.replace("_", " ")))
-    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), means, dict(names), dict(states))
+    return Shape(name, tuple(pieces), dict(constants), needs, means, names=dict(names), states=dict(states))
 
 
 def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:

@@ -105,23 +105,23 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
     if held < CLOSES:
         return None
     found, number, draws = _drawn_anew(both, best, value, DRAWS)
-    errors = [float(np.std(draws)), _doubted(model.form, (nominal, device), best, value)]
+    errors = [float(np.std(draws)), _doubted(model.form, nominal, device, best, value)]
     if len(best.values) > 1 and not best.columns(device.driven, value).shape[1]:  # known to a step of the finer grid
         errors.append((FINER[1] - FINER[0]) * abs(best.values[1] - best.values[0]) / np.sqrt(12))
     spread = float(np.linalg.norm(errors))
     if abs(number - best.neutral) < NORMAL_95 * spread:
         return None
     changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
-    return Changed(best, changed, number, spread, held, rival, rival_left / left)
+    return Changed(best, changed, number, spread, held, rival=rival, rival_leaves=rival_left / left)
 
 
-def _doubted(form: Form, walks: tuple[Walk, Walk], change: Change, about: float) -> float:
+def _doubted(form: Form, nominal: Walk, device: Walk, change: Change, about: float) -> float:
     """Standard deviation of a number by what nobody measured: the muscles' form, and the device walk's usual stride."""
-    both = _Both.of(form, *walks)
+    both = _Both.of(form, nominal, device)
     number = _drawn_anew(both, change, about, 0)[1]
     others = [
-        [_Both.of(replace(form, fastest=pace * form.fastest), *walks) for pace in SPEEDS],
-        [_Both.of(replace(form, lag_s=more * form.lag_s), *walks) for more in LAGS],
+        [_Both.of(replace(form, fastest=pace * form.fastest), nominal, device) for pace in SPEEDS],
+        [_Both.of(replace(form, lag_s=more * form.lag_s), nominal, device) for more in LAGS],
         [replace(both, respect=more * both.respect) for more in RESPECTS],
         [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
     ]
@@ -166,7 +166,7 @@ class _Both:
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
         return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
 
-    def found(self, sums: tuple[Sums, Sums], weights: tuple[Values, Values]) -> tuple[Values, float]:
+    def found(self, sums: Sequence[Sums], weights: Sequence[Values]) -> tuple[Values, float]:
         """Coefficients and what they leave, strides so many times."""
         found = solved(together(sums, weights), len(self.device.driven.signs), self.respect)
         left = sum(float(weight @ one.left(found)) for one, weight in zip(sums, weights, strict=True))
@@ -194,13 +194,13 @@ def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[
     sums = [both.sums(change, value) for value in values]
     linear = change.columns(both.device.driven, about).shape[1] > 0
 
-    def best(weights: tuple[Values, Values]) -> tuple[Values, float]:
+    def best(weights: Sequence[Values]) -> tuple[Values, float]:
         tried = [both.found(one, weights) for one in sums]
         at = int(np.argmin([left for _, left in tried]))
         return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
 
     found, number = best(both.once)
-    return found, number, [best((first, second))[1] for first, second in drawn_blocks(both.once)[:draws]]
+    return found, number, [best(weights)[1] for weights in drawn_blocks(both.once)[:draws]]
 
 
 def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -171,7 +171,7 @@ def joint_records(
     return dict(zip(joints, zip(*records, strict=True), strict=True))
 
 
-def weighed_foot(walks: Mapping[str, tuple[JointRecord, JointRecord]]) -> Estimate | None:
+def weighed_foot(walks: Mapping[str, Sequence[JointRecord]]) -> Estimate | None:
     """Return the mass at the foot that the knee shows and the hip bears out [kg]; None where they show none.
 
     At the hip it comes out too small: the two strongest muscles, which take part in carrying it, have no electrode.

@@ -15,7 +15,7 @@ from gaitdisc.discovery.effect_words import at_place, spoken
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
 from gaitdisc.discovery.grids import rhythm_of
-from gaitdisc.discovery.result import ENGINE, Discovery, GapSize, Runs
+from gaitdisc.discovery.result import ENGINE, Discovery
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine, Values
@@ -32,9 +32,7 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.writing import write_simulation
 from gaitdisc.whole_file import write_whole
 
-_NONE, _NO_SIZE = np.empty((0, 0)), GapSize(0.0, 0.0, 0.0)
-_NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
-_NOTHING = Discovery("no_gap", "", (), (), (), _NO_SIZE, _NO_SIZE, (), (), _NO_RUNS)
+_NOTHING = Discovery("no_gap", "")
 NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
 SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
 MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold

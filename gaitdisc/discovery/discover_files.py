@@ -115,11 +115,11 @@ def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path
     public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
     numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
     trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
-    seen = [(one, public.finding(replace(one, what=_without(one.what, trials)))) for one in found.findings]
+    seen = {one: public.finding(replace(one, what=_without(one.what, trials))) for one in found.findings}
     return replace(found, provenance=made, hide=partial(_hidden, trials=trials, findings=seen))
 
 
-def _hidden(found: Discovery, trials: Mapping[str, str], findings: list[tuple[Finding, Finding]]) -> Discovery:
+def _hidden(found: Discovery, trials: Mapping[str, str], findings: Mapping[Finding, Finding]) -> Discovery:
     """Return an answer without a name of a person.
 
     trials: names of trials that may be one, and what they are called
@@ -135,7 +135,7 @@ def _hidden(found: Discovery, trials: Mapping[str, str], findings: list[tuple[Fi
         train=sized(found.train),
         held_out=sized(found.held_out),
         runs=replace(found.runs, names=tuple(_without(one, trials) for one in found.runs.names)),
-        findings=tuple(next((public for known, public in findings if known == one), one) for one in found.findings),
+        findings=tuple(findings.get(one, one) for one in found.findings),
         explanations=tuple(replace(one, held_out=one.held_out and sized(one.held_out)) for one in found.explanations),
         hide=None,
     )

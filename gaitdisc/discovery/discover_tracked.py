@@ -100,6 +100,8 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
 
 def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     """Return what the joints show, as an answer: effects, rivals, the gap before and after."""
+    if not joints:
+        return sentence_of(Discovery("no_gap", ""), base, ())
     named = [(one, one.named) for one in joints if one.named is not None]
     effects, rivals = [], []
     for one, best in named:
@@ -110,18 +112,18 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     ordered = sorted((one for one in joints if one.rivals), key=lambda one: -one.rivals[0].gained)
     if not named:
         rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
-    units = tuple(sensor.unit for sensor in base.sensors) if joints else ()
+    units = tuple(sensor.unit for sensor in base.sensors)
     found = Discovery(
         named[0][1].part.candidate.verdict if named else "no_gap",
         "",
-        tuple(Whereabouts(one.kind, one.place, 1.0 / len(named)) for one in effects),
-        tuple(effects),
-        tuple(rivals),
-        _gap(joints, [one.named.explained if one.named else 0.0 for one in joints]),
-        _gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
-        tuple(f"net_{one.joint.port}" for one in joints),
-        units,
-        _runs(joints),
+        where=tuple(Whereabouts(one.kind, one.place, 1.0 / len(named)) for one in effects),
+        effects=tuple(effects),
+        rivals=tuple(rivals),
+        train=_gap(joints, [one.named.explained if one.named else 0.0 for one in joints]),
+        held_out=_gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
+        channels=tuple(f"net_{one.joint.port}" for one in joints),
+        units=units,
+        runs=_runs(joints),
     )
     sizes = found.held_out.channels.values()
     if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
@@ -144,8 +146,6 @@ def _effect(base: Simulation, one: Named, closed: float = float("nan")) -> Found
 
 
 def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
-    if not joints:
-        return GapSize(0.0, 0.0, 0.0)
     sizes = {}
     for one, effect in zip(joints, taken, strict=True):
         before, after = (float(np.sqrt(np.mean(each**2))) for each in (one.joint.left, one.joint.left - effect))
@@ -158,9 +158,6 @@ def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
 
 def _runs(joints: list[JointFinding]) -> Runs:
     """The whole walk, each block of its time with what was learned from the rest."""
-    none = np.empty((0, 0))
-    if not joints:
-        return Runs(np.zeros(0, int), none, none, none, none, none)
     measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
     named = np.column_stack([one.named.predicted if one.named else 0.0 * one.joint.left for one in joints])
     whole = [one[None] for one in (measured, measured - left, measured - left + named)]
@@ -287,8 +284,8 @@ def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> Res
         walk.dense(walk.left[:, number]),
         walk.dense(walk.demanded[:, number]),
         angle_noise[:, :, number],
-        motion.q[:, number],
-        columns,
+        along=motion.q[:, number],
+        columns=columns,
     )
 
 

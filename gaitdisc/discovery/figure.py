@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.discovery.effect_words import shown_unit
+from gaitdisc.discovery.effect_words import shown_channel, shown_unit
 from gaitdisc.discovery.method import method_of
 from gaitdisc.discovery.result import Discovery
 from gaitdisc.recording.arrays import Values
@@ -44,7 +44,7 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
         return []
     channel = discovery.held_out.ranked[0]
     unit, floor = noise_floor(discovery, channel)
-    factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])[1]
+    factor = shown_channel(discovery, channel)[1]
     drawn, (cells,) = panels(1, len(explanations), 1.1, Room(left=0.6, top=0.3, across=0.12))
     for number, (axes, one) in enumerate(zip(cells, explanations, strict=True), 1):
         axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
@@ -136,7 +136,7 @@ def binned(along: Values, values: Values, edges: Values) -> pd.DataFrame:
 
 def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
     """Unit in which a channel is drawn, and the standard deviation of its noise in it."""
-    text, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
+    text, factor = shown_channel(discovery, channel)
     return text or "1", factor * discovery.held_out.channels[channel][2]
 
 

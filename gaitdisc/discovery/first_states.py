@@ -69,7 +69,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     window = max(int(SHARE_OF_PERIOD * period * rate) // 2 * 2 + 1, 5)
     spread = np.nanstd(observed, axis=(0, 1))
     spread = np.where(spread > 0, spread, 1.0)
-    pairs = [(machine.states.index(one), machine.states.index(other)) for one, other in rate_of.items()]
+    rates = {machine.states.index(one): machine.states.index(other) for one, other in rate_of.items()}
     initial = np.array([state.initial or 0.0 for state in simulation.states])
     out, hidden = np.full((*observed.shape[:2], len(machine.states)), np.nan), np.ones(len(machine.states), bool)
     for trial, record in enumerate(observed):
@@ -80,7 +80,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
         slope = np.column_stack([savgol_filter(one, width, 3, 1, 1 / rate) for one in whole]) / spread
         t = drive.time0[trial] + np.arange(length) / rate
         seeing = ObservationMap(machine, t, drive.inputs[trial, :length], spread)
-        out[trial, :length], known = _states(seeing, (smooth, slope), np.tile(initial, (length, 1)), pairs, rate)
+        out[trial, :length], known = _states(seeing, smooth, slope, np.tile(initial, (length, 1)), rates, rate)
         hidden &= ~known
     if hidden.any() and not hidden.all() and isinstance(simulation, Simulation):
         out = _following(simulation, drive, out, hidden)
@@ -103,23 +103,22 @@ def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDA
 
 
 def _states(
-    seeing: ObservationMap, seen: tuple[Values, Values], begin: Values, pairs: list[tuple[int, int]], rate: float
+    seeing: ObservationMap, smooth: Values, slope: Values, begin: Values, rates: dict[int, int], rate: float
 ) -> tuple[Values, NDArray[np.bool_]]:
     """States of one trial (sample, state), and which of them the channels say (state,).
 
     A rate that they leave open is the slope of its position.
     """
-    smooth, slope = seen
     free = np.ones(begin.shape[1], bool)
     x, known = seeing.solved(smooth, begin, free)
     often = known.mean(axis=0) > OFTEN
-    rates = [(one, other) for one, other in pairs if often[one] and not often[other]]
-    free[[other for _, other in rates]] = False
-    for _ in range(TURNS if rates else 0):
+    open_ones = {one: other for one, other in rates.items() if often[one] and not often[other]}
+    free[[*open_ones.values()]] = False
+    for _ in range(TURNS if open_ones else 0):
         slopes = seeing.jacobian(x)
         beside = (slopes * ~free) @ (np.gradient(x, axis=0) * rate)[..., None]  # what the rates' own change shows
         moving = np.linalg.pinv(slopes * free, rcond=RANK) @ ((slope - seeing.drift(x, rate))[..., None] - beside)
-        for position, other in rates:
+        for position, other in open_ones.items():
             x[:, other] = _bridged(moving[:, position, 0], known[:, position])
         if not slopes[:, :, ~free].any():
             break

@@ -35,7 +35,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
 
     At a place between bodies the states may be differences of two, and another body's.
     """
-    shapes = [one for motion in place.motions for one in _shapes_over(place, motion, now, search)]
+    shapes = [one for motion in place.motions for one in _shapes_over(place, *motion, now, search)]
     if any(one.name == "phase" for one in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
@@ -44,9 +44,8 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
     return shapes
 
 
-def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search: Search) -> list[Candidate]:
+def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search) -> list[Candidate]:
     """Shapes over a position and its rate; where it has none, over it and another state."""
-    x, v = motion
     v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: _visited(axis, now, search) for axis in axes}
@@ -136,17 +135,16 @@ def _slot_of(part: Part, piece: str) -> str:
     return part.candidate.slots[part.candidate.pieces.index(piece)]
 
 
-def _visited(axis: str, now: ScoredModel, search: Search) -> tuple[float, float]:
-    """Return where a state or difference mostly lies."""
+def _visited(axis: str, now: ScoredModel, search: Search) -> Values:
+    """Return between which values a state or difference mostly lies (2,)."""
     known = len(search.base.states)
     states = now.model.fit.states[..., :known].reshape(-1, known)
     inputs = np.zeros((len(states), len(search.base.inputs)))
     along = evaluate_many(search.base, [axis], Points(np.zeros(len(states)), states, inputs))[0]
-    low, high = np.quantile(along, [0.02, 0.98])
-    return float(low), float(high)
+    return np.quantile(along, [0.02, 0.98])
 
 
-def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> list[str]:
+def _bumps(ranges: dict[str, Values], counts: dict[str, int]) -> list[str]:
     centres: list[list[str]] = []
     for axis, count in counts.items():
         low, high = ranges[axis]
@@ -157,7 +155,7 @@ def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> li
     return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
 
 
-def _powers(ranges: dict[str, tuple[float, float]]) -> list[str]:
+def _powers(ranges: dict[str, Values]) -> list[str]:
     """Return the products of powers of two states, each between -1 and 1 where it mostly lies."""
     scaled = []
     for axis, (low, high) in ranges.items():

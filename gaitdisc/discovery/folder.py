@@ -154,7 +154,7 @@ def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:
         measured,
         simulated,
         augmented,
-        names,
+        names=names,
     )
 
 

@@ -241,5 +241,5 @@ def drawn_runs(case: Case, before: Trial, after: Trial) -> Runs:
         before.measured,
         before.measured - before.fit.residual,
         after.measured - after.fit.residual,
-        case.measured.trials,
+        names=case.measured.trials,
     )

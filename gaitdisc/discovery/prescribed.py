@@ -29,6 +29,7 @@ CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
 CHANGED = 0.06  # by which a muscle group's strength differs at least, as in a device walk
 ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
 FLAT = 1e-9
+UNTESTED = PairedTest(1.0, 0, 0.0)
 SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each number that passes twice
 
 
@@ -67,8 +68,8 @@ class Named:
     explained: Values  # (sample,) [N m]
     predicted: Values  # (sample,), each block of the time from the rest of it [N m]
     gained: float  # fall of twice the log likelihood beyond the price of its numbers and of choosing it
-    held_out: float  # fall of twice the log likelihood of what was held out
-    test: PairedTest
+    held_out: float = 0.0  # fall of twice the log likelihood of what was held out
+    test: PairedTest = UNTESTED
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +143,7 @@ def _fitted(joint: ResidualMoment, noise: Noise, candidate: Candidate, open_ones
     covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
     gained = _fall(before, after, samples) - _price(count, samples, open_ones)
     part = Part(candidate, values)
-    return Named(part, covariance, explained, np.zeros(samples), gained, 0.0, PairedTest(1.0, 0, 0.0))
+    return Named(part, covariance, explained, np.zeros(samples), gained)
 
 
 def _proven(joint: ResidualMoment, noise: Noise, one: Named) -> Named:

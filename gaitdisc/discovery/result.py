@@ -177,6 +177,11 @@ class Runs:
         return columns
 
 
+NO_GAP = GapSize(0.0, 0.0, 0.0)
+_NONE = np.empty((0, 0))
+NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
+
+
 @dataclass(frozen=True)
 class Discovery(Saved, file="discovery.json"):
     """The effects that a simulation lacks.
@@ -218,14 +223,14 @@ class Discovery(Saved, file="discovery.json"):
 
     verdict: str
     sentence: str
-    where: tuple[Whereabouts, ...]
-    effects: tuple[FoundEffect, ...]
-    rivals: tuple[FoundEffect, ...]
-    train: GapSize
-    held_out: GapSize
-    channels: tuple[str, ...]
-    units: tuple[str, ...]
-    runs: Runs
+    where: tuple[Whereabouts, ...] = ()
+    effects: tuple[FoundEffect, ...] = ()
+    rivals: tuple[FoundEffect, ...] = ()
+    train: GapSize = NO_GAP
+    held_out: GapSize = NO_GAP
+    channels: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    runs: Runs = NO_RUNS
     findings: tuple[Finding, ...] = ()
     provenance: Provenance | None = None
     corrections: tuple[Correction, ...] = ()

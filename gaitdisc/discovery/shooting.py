@@ -144,7 +144,7 @@ class Shooting:
         white[failed] = np.inf
         change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
         slopes, prior = self.whitened(change), self.prior.among(free)
-        return Fitted(free, values, starts, states[0], residual, white, slopes, prior)
+        return Fitted(free, values, starts, states[0], residual, white=white, slopes=slopes, prior=prior)
 
     def fitted(
         self,

@@ -129,7 +129,7 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
     what = "spikes of one to three samples: " + "; ".join(said[:LISTED]) + more
     spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]
-    return Finding("warning", KIND, measured.source, what, spoils, name, tuple(spans) if len(said) == 1 else ())
+    return Finding("warning", KIND, measured.source, what, spoils, name, spans=tuple(spans) if len(said) == 1 else ())
 
 
 def _beside(measured: Measured, marks: NDArray[np.bool_], trial: int, channel: int, first: int) -> str:

@@ -216,7 +216,7 @@ class _Curve:
             yield Piece(text, dict(shape.constants), values)
 
 
-def _best_pairs(gram: Values, match: Values) -> list[tuple[int, int]]:
+def _best_pairs(gram: Values, match: Values) -> list[tuple[int, ...]]:
     """Pairs of unit columns, what they explain together the most first."""
     apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
     explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
@@ -225,7 +225,7 @@ def _best_pairs(gram: Values, match: Values) -> list[tuple[int, int]]:
     return list(zip(first[order].tolist(), second[order].tolist(), strict=True))
 
 
-def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
+def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
     """Pairs with a third column beside them, what they explain together the most first."""
     found = []
     for pair in pairs:
