@@ -199,7 +199,7 @@ class Outcome:
     others: tuple[ScoredModel, ...]  # the cheapest sets of all, whatever they cost
 
 
-def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
+def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
     """Search the plainest set of explanations that closes most of the gap; None where none closes enough.
 
     First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
@@ -207,15 +207,15 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
 
     also: sets that another search found, weighed beside those that are found here
     """
-    search = case.search
+    search, scale = case.search, case.scale
     search = replace(search, candidates=(*search.candidates, *unnamed_terms(search.base, search.places)))
-    as_read = near_runs(case, scale)
+    as_read = near_runs(case)
     if scale.agrees(as_read.model.fit) or not as_read.gap:
         return None
     beam = Beam(search, scale, as_read)
     beam.fit(also)
     best = beam.select_forward(as_read)
-    longer = on_longer_runs(case, scale, best) if best.model.explanations else None
+    longer = on_longer_runs(case, best) if best.model.explanations else None
     if longer:
         beam = Beam(search, scale, as_read_on(scale, as_read, longer))
         if not beam.as_read.gap:
@@ -232,13 +232,13 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     return Outcome(beam.as_read, now, closed, test, small=tuple(small), near=near, others=others[:LISTED])
 
 
-def near_runs(case: Case, scale: GapScale) -> CrossValidated:
+def near_runs(case: Case) -> CrossValidated:
     """Fit the simulation as read to runs that are halved until it stays near the data.
 
     Of runs on which it never does, the longest are taken that halving makes hardly better.
     """
     period = min(case.rhythm.period, case.rhythm.duration / 2) * case.rhythm.rate
-    samples, tried = case.longest, []
+    samples, scale, tried = case.longest, case.scale, []
     while True:
         shooting = case.learned_runs(samples)
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
@@ -253,9 +253,9 @@ def near_runs(case: Case, scale: GapScale) -> CrossValidated:
     return next(now for error, now in tried if error * WORTH_HALVING <= least)
 
 
-def on_longer_runs(case: Case, scale: GapScale, now: CrossValidated) -> CrossValidated | None:
+def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
     """Fit what was found to runs ever twice as long, while it stays near the data; None if none is longer."""
-    longest, guess, found = case.longest, case.guess, None
+    longest, guess, scale, found = case.longest, case.guess, case.scale, None
     samples = now.shooting.segments.span
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)

@@ -13,7 +13,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import wrong_starts
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
-from gaitdisc.discovery.gap_share import GapScale, cross_validated
+from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, proof_of, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.result import Estimate
@@ -45,17 +45,16 @@ class Verdict:
 
 def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
-    scale = case.scale
-    as_read, named, rivals = searched(case, as_read, scale)
+    as_read, named, rivals = searched(case, as_read)
     named = kept_on_longer_runs(case, as_read, named)
     exact = case.leaves_noise(named)
-    plain = None if exact else plainest(case, scale, named)
+    plain = None if exact else plainest(case, named)
     if plain:
-        return shape_that_leaves_noise(case, as_read, fitted_shape(as_read, case.search, scale), plain) or plain
+        return shape_that_leaves_noise(case, as_read, fitted_shape(case, as_read), plain) or plain
     names = len(named.model.parts)
     suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = names > 1 or suspect
-    shape = fitted_shape(as_read, case.search, scale) if wanted else None
+    shape = fitted_shape(case, as_read) if wanted else None
     autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect or not names else None
     if autocorrelated:
         return autocorrelated
@@ -81,7 +80,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
         return pushed or Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
     if not wanted and not case.leaves_noise(longer):
-        shape = fitted_shape(as_read, case.search, scale)
+        shape = fitted_shape(case, as_read)
     return shape_that_leaves_noise(case, as_read, shape, verdict) or verdict
 
 
@@ -132,12 +131,12 @@ def needed(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
     return now
 
 
-def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
+def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     """Return the verdict on the plainest explanations that close most of the gap; None where these close too little.
 
     named: the simulation with what the search selected, which leaves more than noise
     """
-    found = closing_most(case, scale, (named.model.parts,) if named.model.parts else ())
+    found = closing_most(case, (named.model.parts,) if named.model.parts else ())
     if found is None or found.closed < CRITERIA.half:
         return None
     found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
@@ -172,19 +171,19 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
     return max(better, key=lambda one: one[0])[1] if better else now
 
 
-def searched(case: Case, as_read: ScoredModel, scale: GapScale) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
+def searched(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
 
     returns as_read, named: the simulation as read and with what was selected, on the same runs
     returns rivals: what else stood for the first place, best first
     """
-    named, rivals = select_forward(case.search, as_read, MOST, scale)
+    named, rivals = select_forward(case.search, as_read, MOST, case.scale)
     if named.model.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
     longer = case.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = select_forward(case.search, longer, MOST, scale)
+    named, rivals = select_forward(case.search, longer, MOST, case.scale)
     return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
 
 

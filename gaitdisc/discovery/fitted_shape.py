@@ -11,8 +11,9 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate, unnamed
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
+from gaitdisc.discovery.gap_share import CrossValidated, cross_validated
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
@@ -59,7 +60,7 @@ def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search)
     return [unnamed(place, tuple(pieces), x) for pieces in shapes]
 
 
-def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredModel | None:
+def fitted_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     """Fit a shape at every place and return the one that closes most of the gap on runs left out of the fit.
 
     The slopes of the simulation as read say which shapes promise most; these are fitted, and the best ones thinned out
@@ -68,6 +69,7 @@ def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredMod
 
     returns: under the noise that it leaves; None where no shape can be fitted
     """
+    search, scale = case.search, case.scale
     plain = cross_validated(scale, now, ())
     if not np.isfinite(plain.gap):
         return None

@@ -89,7 +89,7 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     twice = len(set(named.labels)) < len(named.labels)
     if case.leaves_noise(named) and not twice:
         return verdict
-    shape = fitted_shape(as_read, case.search, case.scale)
+    shape = fitted_shape(case, as_read)
     if shape is None:
         return verdict
     proof = held_out_proof(case, as_read, shape)

@@ -52,7 +52,7 @@ def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     case, now = bumpy
-    shape = fitted_shape(now, case.search, case.scale)
+    shape = fitted_shape(case, now)
     assert shape is not None
     (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
