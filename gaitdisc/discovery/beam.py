@@ -188,8 +188,8 @@ class Beam:
 class Outcome:
     """A set of explanations, and what was weighed beside it."""
 
-    as_read: ScoredModel  # the simulation as read and with the set, on the same runs
-    now: ScoredModel  # the simulation as read and with the set, on the same runs
+    as_read: ScoredModel
+    now: ScoredModel  # with the set, on the same runs
     closed: float  # share of the gap that goes, on runs left out of the fit
     # of the errors left out of the fit, with and without the set; its p times the number of explanations that were open
     # (Bonferroni), for the same runs chose among these

@@ -25,9 +25,7 @@ class Prior:
     places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     # (number,), as in the file [each parameter's unit]
     value: Values = field(default_factory=lambda: np.zeros(0))
-    # (number,), as in the file [each parameter's unit]
     low: Values = field(default_factory=lambda: np.zeros(0))
-    # (number,), as in the file [each parameter's unit]
     high: Values = field(default_factory=lambda: np.zeros(0))
 
     @property

@@ -31,7 +31,7 @@ def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic):
 
 
 def _with(case, as_read, parts):
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
+    model = as_read.model.refitted(as_read.shooting, parts)
     return scored(as_read.shooting, model)
 
 
@@ -58,7 +58,7 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
     idle = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
     both = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
     wrong = replace(cubic, name="unnamed")
-    bad = fit_model(as_read.shooting, case.search.base, (Part(wrong, {"factor": 2.0}),), as_read.model.fit.starts, 0)
+    bad = as_read.model.refitted(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
     shape = ScoredModel(bad, as_read.shooting)
     for name, value in (
         ("searched", lambda *_: (as_read, both, [])),
@@ -153,7 +153,7 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
 def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic):
     remembering = next(one for one in case.search.candidates if one.label == "series_elasticity@load")
     parts = (Part(cubic, {"factor": -14.0}), Part(remembering, {"factor": 2.0, "tau": 5e13}))
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts, turns=0)
+    model = as_read.model.refitted(as_read.shooting, parts, turns=0)
     endless = scored(as_read.shooting, model)
     proof = held_out_proof(case, as_read, endless)
     found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
 
@@ -12,9 +12,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 @pytest.fixture(scope="module")
 def with_cubic(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    return ScoredModel(
-        fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts), as_read.shooting
-    )
+    return ScoredModel(as_read.model.refitted(as_read.shooting, (part,)), as_read.shooting)
 
 
 def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(case, as_read, with_cubic):
