@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -29,9 +28,10 @@ from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.search import TURNS, Search
+from gaitdisc.discovery.search import TURNS
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.effect_units import places_unit, unit_of_channel
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
@@ -74,8 +74,8 @@ def answer(
     held = proof if proof and now.model.parts else proof_of(case, as_read, now, now)
     of = f"trial {', '.join(case.measured.trials[one] for one in case.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
-    gained = bic_gain(case.search, now)
-    rivals = rivals_of(case.search, now, verdict.rivals, gained)
+    gained = bic_gain(now)
+    rivals = rivals_of(now, verdict.rivals, gained)
     stated = replace(verdict, found=replace(now, model=refitted(now)))
     parts, moved = stated.found.model.parts, corrections_of(stated.found.model, base)
     effects = effects_of(case, stated, 1 - held_out.unexplained, gained)
@@ -86,21 +86,21 @@ def answer(
     discovery = Discovery(
         verdict.word if agrees else "unexplained",
         "",
-        whereabouts(case, stated, train) if effects or not agrees else (),
-        effects,
-        (
+        where=whereabouts(case, stated, train) if effects or not agrees else (),
+        effects=effects,
+        rivals=(
             *(reported_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
             *(
                 FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
                 for one in verdict.small  # that close too little of the gap to be named
             ),
         ),
-        train,
-        held_out,
-        channels,
-        tuple(unit_of_channel(base, name) for name in channels),
-        drawn_runs(case, held.before, held.after),
-        (*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
+        train=train,
+        held_out=held_out,
+        channels=channels,
+        units=tuple(unit_of_channel(base, name) for name in channels),
+        runs=drawn_runs(case, held.before, held.after),
+        findings=(*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
         explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
@@ -180,12 +180,12 @@ def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     )
 
 
-def bic_gain(search: Search, now: ScoredModel) -> float:
+def bic_gain(now: ScoredModel) -> float:
     """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
-    return _fitted(search, now, ()).bic - now.bic if now.model.parts else 0.0
+    return _fitted(now, ()).bic - now.bic if now.model.parts else 0.0
 
 
-def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
+def rivals_of(now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
     """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
 
     now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
@@ -202,25 +202,24 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
         return tuple(Rival(one, one.gained, False) for one in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
-        best = _fitted(search, now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
+        best = _fitted(now, one.model.parts) if one.labels[-1] in own else _best(now, one)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 
-def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
+def _best(now: ScoredModel, other: ScoredModel) -> ScoredModel:
     """Return the best model with another's last explanation in it: alone, as it was, or beside the answer's but one."""
     part, parts = other.model.parts[-1], now.model.parts
     sets = [(part,), *([other.model.parts] if len(other.model.parts) > 1 else [])]
     if len(parts) > 1:
         sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
-    return min((_fitted(search, now, one) for one in sets), key=lambda one: one.bic)
+    return min((_fitted(now, one) for one in sets), key=lambda one: one.bic)
 
 
-def _fitted(search: Search, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
+def _fitted(now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
     """Return the simulation with explanations in it, fitted to an answer's runs under its noise."""
-    model = fit_model(now.shooting, search.base, parts, now.model.fit.starts, TURNS, like=now.model)
-    return ScoredModel(model, now.shooting)
+    return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
 
 
 def list_explanations(
@@ -269,7 +268,7 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
     )
 
 
-def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] | None:
+def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     """Return how strongly an effect acts along the runs that were fitted (run, sample) [the place's unit].
 
     returns: None of what is no term, and of one that comes late
@@ -278,11 +277,10 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] 
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None
     segments, drive, fit = now.shooting.segments, case.measured.drive, now.model.fit
-    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [
         Points(*one, fit.values, rate=drive.rate)
-        for one in zip(time, fit.states, segments.of(drive.inputs), strict=True)
+        for one in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
     ]
     return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.simulation import Simulation
+
+OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # fields of a fit that begin with the segment
 
 
 @dataclass(frozen=True)
@@ -21,18 +24,16 @@ class Prior:
     # (number,), where they stand among the parameters
     places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     # (number,), as in the file [each parameter's unit]
-    value: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    # (number,), as in the file [each parameter's unit]
-    low: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    # (number,), as in the file [each parameter's unit]
-    high: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    value: Values = field(default_factory=lambda: np.zeros(0))
+    low: Values = field(default_factory=lambda: np.zeros(0))
+    high: Values = field(default_factory=lambda: np.zeros(0))
 
     @property
-    def sd(self) -> NDArray[np.float64]:
+    def sd(self) -> Values:
         """Standard deviations (number,)."""
         return (self.high - self.low) / 4
 
-    def left(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def left(self, values: Values) -> Values:
         """Return how far numbers are from the file's, in standard deviations (number,): file minus number.
 
         values (parameter,): all parameters
@@ -45,7 +46,7 @@ class Prior:
         names = tuple(name for name in self.names if name in free)
         return Prior(names, self.places[kept], self.value[kept], self.low[kept], self.high[kept])
 
-    def within(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def within(self, values: Values) -> Values:
         """Return parameters with those that have bounds put inside them (parameter,).
 
         values (parameter,): all parameters
@@ -60,17 +61,17 @@ class Fitted:
     """A simulation fitted to segments."""
 
     free: tuple[str, ...]
-    values: NDArray[np.float64]  # (parameter,), every parameter of the simulation, fitted or not, in its unit
-    starts: NDArray[np.float64]  # (segment, state), start states
-    states: NDArray[np.float64]  # (segment, sample, state), the run
-    residual: NDArray[np.float64]  # (segment, sample, channel), measured minus run [the channel's unit]
-    white: NDArray[np.float64]  # (segment, sample times channel), the residual as independent numbers of unit variance
+    values: Values  # (parameter,), every parameter of the simulation, fitted or not, in its unit
+    starts: Values  # (segment, state), start states
+    states: Values  # (segment, sample, state), the run
+    residual: Values  # (segment, sample, channel), measured minus run [the channel's unit]
+    white: Values  # (segment, sample times channel), the residual as independent numbers of unit variance
     # (segment, sample times channel, state + free), what each start state and each constant would change in `white`;
     # zero where a run failed
-    slopes: NDArray[np.float64]
+    slopes: Values
     prior: Prior = field(default_factory=Prior)  # of those of the constants that have bounds; they stand last in `free`
     # (free, free), covariance of the constants where they were estimated otherwise than by the misfit
-    stated: NDArray[np.float64] | None = None
+    stated: Values | None = None
 
     @property
     def misfit(self) -> float:
@@ -80,15 +81,14 @@ class Fitted:
         return float((self.white**2).sum() + (self.prior.left(self.values) ** 2).sum())
 
     @property
-    def misfits(self) -> NDArray[np.float64]:
+    def misfits(self) -> Values:
         """The misfit of each segment (segment,); infinite where it failed."""
         squares = (self.white**2).sum(axis=1)
         return np.where(np.isfinite(squares), squares, np.inf)
 
     def among(self, some: NDArray[np.intp]) -> Fitted:
         """Return the fit of some of the segments, by their numbers."""
-        parts = (each[some] for each in (self.starts, self.states, self.residual, self.white, self.slopes))
-        return Fitted(self.free, self.values, *parts, prior=self.prior)
+        return replace(self, stated=None, **{name: getattr(self, name)[some] for name in OF_SEGMENTS})
 
     def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
         """Return another fit's segments where these are better, and its constants if all are.
@@ -99,45 +99,45 @@ class Fitted:
             return other
         if not better.any():
             return self
-        parts = (
-            np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
-            for mine, its in (
-                (self.starts, other.starts),
-                (self.states, other.states),
-                (self.residual, other.residual),
-                (self.white, other.white),
-                (self.slopes, other.slopes),
-            )
-        )
-        return Fitted(self.free, self.values, *parts, prior=self.prior)
+        pairs = {name: (getattr(self, name), getattr(other, name)) for name in OF_SEGMENTS}
+        parts = {
+            name: np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine) for name, (mine, its) in pairs.items()
+        }
+        return replace(self, stated=None, **parts)
 
     @property
-    def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def basis(self) -> Values:
+        """What the start states can explain of `white`: an orthonormal basis (segment, number, state)."""
+        return start_basis(self.slopes[..., : self.starts.shape[1]])
+
+    @property
+    def projected(self) -> tuple[Values, Values]:
         """What the start states cannot explain: of `white` (segment, number), and of the constants' slopes."""
-        n = self.starts.shape[1]
-        basis = start_basis(self.slopes[..., :n])
-        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
+        basis = self.basis
+        return without(basis, self.white[..., None])[..., 0], self._projected_slopes(basis)
+
+    def _projected_slopes(self, basis: Values) -> Values:
+        return without(basis, self.slopes[..., self.starts.shape[1] :])
 
     @property
-    def stacked(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def stacked(self) -> tuple[Values, Values]:
         """As `projected`, flat, with a row for each number of the prior (row,), (row, free)."""
         left, slopes = self.projected
         return np.concatenate([left.ravel(), self.prior.left(self.values)]), self._with_prior(slopes)
 
-    def _with_prior(self, slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _with_prior(self, slopes: Values) -> Values:
         rows = np.zeros((len(self.prior.names), len(self.free)))
         rows[:, len(self.free) - len(rows) :] = np.diag(1 / self.prior.sd)
         return np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
 
     @property
-    def covariance(self) -> NDArray[np.float64]:
+    def covariance(self) -> Values:
         """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
         if self.stated is not None:
             return self.stated
         if not self.free:
             return np.zeros((0, 0))
-        n = self.starts.shape[1]
-        flat = self._with_prior(without(start_basis(self.slopes[..., :n]), self.slopes[..., n:]))
+        flat = self._with_prior(self._projected_slopes(self.basis))
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)
@@ -164,7 +164,7 @@ def prior_of(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Pri
     return Prior(names, np.array(places, dtype=np.intp), *(np.array(each, float) for each in numbers))
 
 
-def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+def start_basis(slopes: Values) -> Values:
     """Return an orthonormal basis, segment by segment, of what the start states can explain.
 
     slopes (segment, number, state): slopes of the whitened residual
@@ -175,7 +175,7 @@ def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     return basis * ~weak[:, None, :]
 
 
-def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
+def without(basis: Values, columns: Values) -> Values:
     """Return columns less what a basis explains of them.
 
     basis (segment, number, state): orthonormal, from `start_basis`

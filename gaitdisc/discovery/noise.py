@@ -14,6 +14,7 @@ from scipy.linalg import solve_toeplitz
 
 from gaitdisc.compiled import compiled
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.derivatives import savgol_filter
 
 MOST_LAGS = 16
@@ -35,16 +36,16 @@ class Noise:
 
     # each ndarray, for each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the
     # next
-    predictors: tuple[tuple[NDArray[np.float64], ...], ...]
+    predictors: tuple[tuple[Values, ...], ...]
     # each ndarray, for each channel, the standard deviation of what each of these predictors leaves [the channel's
     # unit]
-    spread: tuple[NDArray[np.float64], ...]
+    spread: tuple[Values, ...]
     # for each channel, how much less than all the past leaves where white noise went through the record's filter; 1
     # where there is none
     filtered: tuple[float, ...] = ()
 
     @property
-    def size(self) -> NDArray[np.float64]:
+    def size(self) -> Values:
         """Standard deviation of the noise of each channel (channel,)."""
         return np.array([spread[0] for spread in self.spread])
 
@@ -62,7 +63,7 @@ class Noise:
             for all_of, by in zip(self.spread, filtered, strict=True)
         )
 
-    def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
+    def whitened(self, residual: Values, known: NDArray[np.bool_] | None = None) -> Values:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
         residual (segment, sample, channel, ...): each segment begins afresh: its first samples are predicted from the
@@ -83,7 +84,7 @@ class Noise:
         return out.reshape(residual.shape)
 
 
-def white_noise(size: NDArray[np.float64]) -> Noise:
+def white_noise(size: Values) -> Noise:
     """Return white noise.
 
     size (channel,): its standard deviation [the channel's unit]
@@ -92,11 +93,11 @@ def white_noise(size: NDArray[np.float64]) -> Noise:
 
 
 def noise_of(
-    residual: NDArray[np.float64],
+    residual: Values,
     used: float = 0.0,
     white_share: float = WHITE_SHARE,
     least: ArrayLike = 0.0,
-    autocorrelation: NDArray[np.float64] | None = None,
+    autocorrelation: Values | None = None,
 ) -> Noise:
     """Estimate the noise from residuals (Yule-Walker; the order by BIC).
 
@@ -139,7 +140,7 @@ def noise_of(
     return Noise(tuple(predictors), tuple(spread), tuple(filtered) if autocorrelation is not None else ())
 
 
-def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
+def _predicted(covariance: Values) -> tuple[list[Values], Values]:
     """Predictors of each order from a covariance (lag,), and what each leaves (order,)."""
     orders = [np.zeros(0)]
     for order in range(1, len(covariance)):
@@ -150,12 +151,7 @@ def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64
 
 @compiled(nogil=True)
 def whiten(
-    residual: NDArray[np.float64],
-    channel: int,
-    known: NDArray[np.bool_],
-    predictors: NDArray[np.float64],
-    spread: NDArray[np.float64],
-    out: NDArray[np.float64],
+    residual: Values, channel: int, known: NDArray[np.bool_], predictors: Values, spread: Values, out: Values
 ) -> None:
     """Write one channel's innovations, in units of their spread.
 
@@ -188,7 +184,7 @@ def whiten(
                 out[segment, sample, channel, column] /= spread[order]
 
 
-def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
+def sensor_noise(observed: Values) -> Values:
     """Estimate the standard deviation of each channel's white noise: what a local cubic over 7 samples leaves.
 
     Noise that a filter has made smooth is not seen: of such a record the estimate is too small.
@@ -213,7 +209,7 @@ def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
     return found
 
 
-def _rough(record: NDArray[np.float64]) -> float:
+def _rough(record: Values) -> float:
     """Median absolute deviation of a record from its local cubic; NaN for one that is too short."""
     if len(record) < FEWEST:
         return float("nan")

@@ -14,6 +14,7 @@ from gaitdisc.discovery.effect_words import (
     brief_text,
     estimate_text,
     outside_text,
+    shown_channel,
     shown_unit,
     spoken,
     with_unit,
@@ -236,19 +237,18 @@ def _shown(discovery: Discovery) -> str:
     sizes = discovery.held_out.channels
     if not sizes:
         return ""
-    units = dict(zip(discovery.channels, discovery.units, strict=True))
     channel = discovery.held_out.ranked[0]
-    unit, factor = shown_unit(units[channel])
+    unit, factor = shown_channel(discovery, channel)
     floor = factor * sizes[channel][2]
     of = f" of {channel}" if len(sizes) > 1 else ""
     noise = f"noise floor {amount(floor, floor / 10)}"
     if discovery.verdict in ("no_gap", "unexplained", "process_noise", "wrong_initial_condition"):
         before = with_unit(amount(factor * sizes[channel][0], floor / 10), unit)
         return f"Held-out error{of}: {before} ({noise})."
-    worse = [name for name in sizes if name != channel and _goes(sizes[name], units[name]).startswith("rises")]
-    others = "".join(f"; that of {name} {_goes(sizes[name], units[name])}" for name in worse)
+    worse = [name for name in sizes if name != channel and _goes(discovery, name).startswith("rises")]
+    others = "".join(f"; that of {name} {_goes(discovery, name)}" for name in worse)
     return (
-        f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{_few(discovery)}){others}."
+        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{_few(discovery)}){others}."
         f"{_unexplained(discovery.held_out)}"
     )
 
@@ -273,9 +273,9 @@ def _moved(discovery: Discovery) -> str:
     return f"Changed within their bounds: {', '.join(said)}."
 
 
-def _goes(size: tuple[float, float, float], channel_unit: str) -> str:
+def _goes(discovery: Discovery, channel: str) -> str:
     """Say whether an error falls, rises or does not change, to the digits that the noise leaves worth writing."""
-    unit, factor = shown_unit(channel_unit)
+    size, (unit, factor) = discovery.held_out.channels[channel], shown_channel(discovery, channel)
     step = factor * size[2] / 10
     before, after = (amount(factor * one, step) for one in size[:2])
     if before == after:

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 
+Values = NDArray[np.float64]
+
 
 def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     """View of an array that cannot be written through.

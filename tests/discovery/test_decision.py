@@ -29,7 +29,7 @@ def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic):
     starts = case.guess.starts(shooting.segments)
     damper = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
     read, both = (
-        scored(shooting, case.search.base, fit_model(shooting, case.search.base, parts, starts))
+        scored(shooting, fit_model(shooting, case.search.base, parts, starts))
         for parts in ((), (Part(cubic, {"factor": -14.0}), Part(damper, {"factor": 0.0})))
     )
     assert not case.spans_a_period(read)
@@ -39,8 +39,8 @@ def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic):
 
 
 def _with(case, as_read, parts):
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
-    return scored(as_read.shooting, case.search.base, model)
+    model = as_read.model.refitted(as_read.shooting, parts)
+    return scored(as_read.shooting, model)
 
 
 def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case, as_read, cubic):
@@ -79,7 +79,7 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
     idle = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
     both = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
     wrong = replace(cubic, name="unnamed")
-    bad = fit_model(as_read.shooting, case.search.base, (Part(wrong, {"factor": 2.0}),), as_read.model.fit.starts, 0)
+    bad = as_read.model.refitted(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
     shape = ScoredModel(bad, as_read.shooting)
     for name, value in (
         ("searched", lambda *_: (as_read, both, [])),
@@ -176,11 +176,9 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
     )
     part = Part(remembering, {"factor": -30.0, **constants})
     base, starts = case.search.base, as_read.model.fit.starts
-    endless = scored(as_read.shooting, base, fit_model(as_read.shooting, base, (part,), starts, turns=0))
+    endless = scored(as_read.shooting, fit_model(as_read.shooting, base, (part,), starts, turns=0))
     assert not case.search.shows(endless.model)
-    plain = scored(
-        as_read.shooting, base, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts)
-    )
+    plain = scored(as_read.shooting, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts))
     as_rival = prefer_relatives(case, as_read, Verdict("missing_physics", plain, (endless, plain)))
     assert [one.labels for one in as_rival.rivals] == [("linear_stiffness@load",)]
     proof = held_out_proof(case, as_read, endless)
@@ -192,8 +190,8 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
 def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic):
     remembering = next(one for one in case.search.candidates if one.label == "series_elasticity@load")
     parts = (Part(cubic, {"factor": -14.0}), Part(remembering, {"factor": 2.0, "tau": 5e13}))
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts, turns=0)
-    endless = scored(as_read.shooting, case.search.base, model)
+    model = as_read.model.refitted(as_read.shooting, parts, turns=0)
+    endless = scored(as_read.shooting, model)
     proof = held_out_proof(case, as_read, endless)
     found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert all(case.search.shows(one.model) for one in (found.found, *found.rivals))

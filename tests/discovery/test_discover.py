@@ -225,7 +225,7 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     assert (reached[:3] > 0.8).all()
     assert reached[3] < 0.65
     progress = []
-    found, _ = discover(mass(), measured, progress=progress.append)
+    found, _ = discover(mass(), measured, Request(progress=progress.append))
     assert [effect.name for effect in found.effects] == ["one_sided_spring"]
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
@@ -252,7 +252,7 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
 
 def test_every_step_is_told():
     said = []
-    discover(mass(), record(mass(), SEED), progress=said.append)
+    discover(mass(), record(mass(), SEED), Request(progress=said.append))
     assert says(said[0], "fitting the simulation")
     assert any("weighing" in one and "explanations" in one for one in said)
 

@@ -7,7 +7,7 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.own_states import followed, with_own_states
+from gaitdisc.discovery.first_states import followed, with_own_states
 from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.running import compile_simulation
 
