@@ -95,7 +95,7 @@ class Search:
 
     def scorer(self, shooting: Shooting, model: CandidateModel) -> Scorer:
         """Return what scores further explanations beside a model, to first order."""
-        return Scorer(shooting, model.simulation, model.machine, model.fit, self.places, self.rhythm)
+        return Scorer(shooting, model, self.places, self.rhythm)
 
     def open_beside(self, model: CandidateModel) -> tuple[Candidate, ...]:
         """Return the explanations that are not in a model."""
