@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.first_states import followed
-from gaitdisc.discovery.fitted import without
+from gaitdisc.discovery.fitted import start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
 from gaitdisc.discovery.places import Place
@@ -86,7 +86,7 @@ class Scorer:
 
     def left_without_each(self, candidates: tuple[Candidate, ...]) -> Values:
         """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order."""
-        basis = self.model.fit.basis
+        basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
         left, slopes = self.model.fit.projected
         others = _Others(self.shooting.segments.trial)
         prior = self.model.fit.prior
@@ -110,7 +110,7 @@ class Scorer:
 
         After the measured numbers come the rows of the prior, in which no candidate changes anything.
         """
-        basis = self.model.fit.basis
+        basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
         left, flat = self.model.fit.stacked
         size = np.linalg.norm(flat, axis=0)
         known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
