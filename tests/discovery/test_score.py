@@ -84,10 +84,10 @@ def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(case,
         others = replace(
             scorer,
             shooting=replace(as_read.shooting, segments=as_read.shooting.segments.among(some)),
-            fit=replace(model.fit, **parts),
+            model=replace(model, fit=replace(model.fit, **parts)),
         )
         best = others.scores(candidates)[0].gain
-        expected = (np.square(others.fit.projected[0]).sum() - best) / others.fit.white.size
+        expected = (np.square(others.model.fit.projected[0]).sum() - best) / others.model.fit.white.size
         assert left[trial] == pytest.approx(expected, rel=1e-9)
 
 
