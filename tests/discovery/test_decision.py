@@ -71,9 +71,7 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
 
 
 @pytest.mark.parametrize(("half", "word"), [(0.5, "missing_physics"), (1.1, "no_gap")])
-def test_of_more_names_than_are_named_two_take_half_of_the_error(
-    case, as_read, beside, monkeypatch, half, word
-):
+def test_of_more_names_than_are_named_two_take_half_of_the_error(case, as_read, beside, monkeypatch, half, word):
     three = beside("viscous_damping@load", "sensor_drift@x")
     monkeypatch.setattr("gaitdisc.discovery.decision.searched", lambda *_: (as_read, three, []))
     monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
