@@ -28,7 +28,7 @@ from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.search import TURNS
+from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
@@ -74,8 +74,8 @@ def answer(
     held = proof if proof and now.model.parts else proof_of(case, as_read, now, now)
     of = f"trial {', '.join(case.measured.trials[one] for one in case.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
-    gained = bic_gain(now)
-    rivals = rivals_of(now, verdict.rivals, gained)
+    gained = bic_gain(case.search, now)
+    rivals = rivals_of(case.search, now, verdict.rivals, gained)
     stated = replace(verdict, found=replace(now, model=refitted(now)))
     parts, moved = stated.found.model.parts, corrections_of(stated.found.model, base)
     effects = effects_of(case, stated, 1 - held_out.unexplained, gained)
@@ -180,12 +180,12 @@ def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     )
 
 
-def bic_gain(now: ScoredModel) -> float:
+def bic_gain(search: Search, now: ScoredModel) -> float:
     """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
-    return _fitted(now, ()).bic - now.bic if now.model.parts else 0.0
+    return search.with_others(now, ()).bic - now.bic if now.model.parts else 0.0
 
 
-def rivals_of(now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
+def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
     """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
 
     now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
@@ -202,24 +202,19 @@ def rivals_of(now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -
         return tuple(Rival(one, one.gained, False) for one in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
-        best = _fitted(now, one.model.parts) if one.labels[-1] in own else _best(now, one)
+        best = search.with_others(now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 
-def _best(now: ScoredModel, other: ScoredModel) -> ScoredModel:
+def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
     """Return the best model with another's last explanation in it: alone, as it was, or beside the answer's but one."""
     part, parts = other.model.parts[-1], now.model.parts
     sets = [(part,), *([other.model.parts] if len(other.model.parts) > 1 else [])]
     if len(parts) > 1:
         sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
-    return min((_fitted(now, one) for one in sets), key=lambda one: one.bic)
-
-
-def _fitted(now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
-    """Return the simulation with explanations in it, fitted to an answer's runs under its noise."""
-    return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
+    return min((search.with_others(now, one) for one in sets), key=lambda one: one.bic)
 
 
 def list_explanations(

@@ -27,15 +27,9 @@ SIGNAL_ERRORS = {
     "sensor_lag": ("seconds", 0.0, "{s}"),
 }
 
-# What an explanation can imitate, by which it is the dearer; what is neither is plain
+# Explanations that can imitate some others, and many others, and so have to close more of a gap than a plain one
 BENT = (
-    "input_gain",
-    "input_delay",
-    "input_lag",
-    "sensor_gain",
-    "sensor_offset",
-    "sensor_lag",
-    "sensor_drift",
+    *SIGNAL_ERRORS,
     "quadratic_stiffness",
     "linear_coupling",
     "one_sided_spring",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.simulation import Simulation
 
-OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # fields of a fit that begin with the segment
+OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # of a fit, one row for each segment
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Prior:
     names: tuple[str, ...] = ()
     # (number,), where they stand among the parameters
     places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
-    # (number,), as in the file [each parameter's unit]
+    # (number,) each, as in the file [each parameter's unit]
     value: Values = field(default_factory=lambda: np.zeros(0))
     low: Values = field(default_factory=lambda: np.zeros(0))
     high: Values = field(default_factory=lambda: np.zeros(0))
@@ -100,35 +100,25 @@ class Fitted:
         if not better.any():
             return self
         pairs = {name: (getattr(self, name), getattr(other, name)) for name in OF_SEGMENTS}
-        parts = {
-            name: np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine) for name, (mine, its) in pairs.items()
-        }
+        which = {name: better.reshape(-1, *[1] * (mine.ndim - 1)) for name, (mine, _) in pairs.items()}
+        parts = {name: np.where(which[name], its, mine) for name, (mine, its) in pairs.items()}
         return replace(self, stated=None, **parts)
-
-    @property
-    def basis(self) -> Values:
-        """What the start states can explain of `white`: an orthonormal basis (segment, number, state)."""
-        return start_basis(self.slopes[..., : self.starts.shape[1]])
 
     @property
     def projected(self) -> tuple[Values, Values]:
         """What the start states cannot explain: of `white` (segment, number), and of the constants' slopes."""
-        basis = self.basis
-        return without(basis, self.white[..., None])[..., 0], self._projected_slopes(basis)
-
-    def _projected_slopes(self, basis: Values) -> Values:
-        return without(basis, self.slopes[..., self.starts.shape[1] :])
+        n = self.starts.shape[1]
+        basis = start_basis(self.slopes[..., :n])
+        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
 
     @property
     def stacked(self) -> tuple[Values, Values]:
         """As `projected`, flat, with a row for each number of the prior (row,), (row, free)."""
         left, slopes = self.projected
-        return np.concatenate([left.ravel(), self.prior.left(self.values)]), self._with_prior(slopes)
-
-    def _with_prior(self, slopes: Values) -> Values:
         rows = np.zeros((len(self.prior.names), len(self.free)))
         rows[:, len(self.free) - len(rows) :] = np.diag(1 / self.prior.sd)
-        return np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
+        flat = np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
+        return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
 
     @property
     def covariance(self) -> Values:
@@ -137,7 +127,7 @@ class Fitted:
             return self.stated
         if not self.free:
             return np.zeros((0, 0))
-        flat = self._with_prior(self._projected_slopes(self.basis))
+        flat = self.stacked[1]
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)

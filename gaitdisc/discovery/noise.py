@@ -14,7 +14,6 @@ from scipy.linalg import solve_toeplitz
 
 from gaitdisc.compiled import compiled
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.derivatives import savgol_filter
 
 MOST_LAGS = 16
@@ -36,16 +35,16 @@ class Noise:
 
     # each ndarray, for each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the
     # next
-    predictors: tuple[tuple[Values, ...], ...]
+    predictors: tuple[tuple[NDArray[np.float64], ...], ...]
     # each ndarray, for each channel, the standard deviation of what each of these predictors leaves [the channel's
     # unit]
-    spread: tuple[Values, ...]
+    spread: tuple[NDArray[np.float64], ...]
     # for each channel, how much less than all the past leaves where white noise went through the record's filter; 1
     # where there is none
     filtered: tuple[float, ...] = ()
 
     @property
-    def size(self) -> Values:
+    def size(self) -> NDArray[np.float64]:
         """Standard deviation of the noise of each channel (channel,)."""
         return np.array([spread[0] for spread in self.spread])
 
@@ -63,7 +62,7 @@ class Noise:
             for all_of, by in zip(self.spread, filtered, strict=True)
         )
 
-    def whitened(self, residual: Values, known: NDArray[np.bool_] | None = None) -> Values:
+    def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
         residual (segment, sample, channel, ...): each segment begins afresh: its first samples are predicted from the
@@ -84,7 +83,7 @@ class Noise:
         return out.reshape(residual.shape)
 
 
-def white_noise(size: Values) -> Noise:
+def white_noise(size: NDArray[np.float64]) -> Noise:
     """Return white noise.
 
     size (channel,): its standard deviation [the channel's unit]
@@ -93,11 +92,11 @@ def white_noise(size: Values) -> Noise:
 
 
 def noise_of(
-    residual: Values,
+    residual: NDArray[np.float64],
     used: float = 0.0,
     white_share: float = WHITE_SHARE,
     least: ArrayLike = 0.0,
-    autocorrelation: Values | None = None,
+    autocorrelation: NDArray[np.float64] | None = None,
 ) -> Noise:
     """Estimate the noise from residuals (Yule-Walker; the order by BIC).
 
@@ -140,7 +139,7 @@ def noise_of(
     return Noise(tuple(predictors), tuple(spread), tuple(filtered) if autocorrelation is not None else ())
 
 
-def _predicted(covariance: Values) -> tuple[list[Values], Values]:
+def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
     """Predictors of each order from a covariance (lag,), and what each leaves (order,)."""
     orders = [np.zeros(0)]
     for order in range(1, len(covariance)):
@@ -151,7 +150,12 @@ def _predicted(covariance: Values) -> tuple[list[Values], Values]:
 
 @compiled(nogil=True)
 def whiten(
-    residual: Values, channel: int, known: NDArray[np.bool_], predictors: Values, spread: Values, out: Values
+    residual: NDArray[np.float64],
+    channel: int,
+    known: NDArray[np.bool_],
+    predictors: NDArray[np.float64],
+    spread: NDArray[np.float64],
+    out: NDArray[np.float64],
 ) -> None:
     """Write one channel's innovations, in units of their spread.
 
@@ -184,7 +188,7 @@ def whiten(
                 out[segment, sample, channel, column] /= spread[order]
 
 
-def sensor_noise(observed: Values) -> Values:
+def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
     """Estimate the standard deviation of each channel's white noise: what a local cubic over 7 samples leaves.
 
     Noise that a filter has made smooth is not seen: of such a record the estimate is too small.
@@ -209,7 +213,7 @@ def sensor_noise(observed: Values) -> Values:
     return found
 
 
-def _rough(record: Values) -> float:
+def _rough(record: NDArray[np.float64]) -> float:
     """Median absolute deviation of a record from its local cubic; NaN for one that is too short."""
     if len(record) < FEWEST:
         return float("nan")

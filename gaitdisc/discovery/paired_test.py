@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.recording.arrays import Values
 
 ALIKE_BELOW = 0.05  # of the greatest difference
 FEWEST_DIFFERING = 6  # pieces
@@ -30,7 +29,7 @@ class PairedTest:
         return self.fall > 0 and self.p < self.alpha
 
 
-def paired_test(before: Values, after: Values, floor: Values) -> PairedTest:
+def paired_test(before: NDArray[np.float64], after: NDArray[np.float64], floor: NDArray[np.float64]) -> PairedTest:
     """Test whether what one model errs by goes along with what another changes, each sample by its size.
 
     If the first model lacks nothing, its errors are noise, and their product with a change that was found on other data
@@ -68,7 +67,7 @@ def paired_test(before: Values, after: Values, floor: Values) -> PairedTest:
     return PairedTest(p, max(int(independent), 1), fall)
 
 
-def sum_error(change: Values, left: Values) -> float:
+def sum_error(change: NDArray[np.float64], left: NDArray[np.float64]) -> float:
     """Standard deviation that noise with the autocovariance of what is left gives to the sum of its products.
 
     change, left (run, sample, channel): what is multiplied with the noise, and what is left; NaN where not measured
@@ -77,20 +76,20 @@ def sum_error(change: Values, left: Values) -> float:
     return float(np.sqrt(max(float((covariance * _lagged_products(change)).sum()), 0.0)))
 
 
-def _autocovariance(left: Values, known: NDArray[np.intp]) -> Values:
+def _autocovariance(left: NDArray[np.float64], known: NDArray[np.intp]) -> NDArray[np.float64]:
     """Return the autocovariance of what is left (lag, channel), weighed down with the lag."""
     covariance = _lagged_products(left / np.sqrt(np.maximum(known, 1)))
     return covariance * _lag_weights(covariance, int(known.max()))
 
 
-def _lagged_products(record: Values) -> Values:
+def _lagged_products(record: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return products of samples a lag apart, summed over runs (lag, channel); lags below 0 come last."""
     samples = 2 * record.shape[1]
     power = np.abs(np.fft.rfft(record, samples, axis=1)) ** 2
     return np.fft.irfft(power.sum(axis=0), samples, axis=0)
 
 
-def _lag_weights(covariance: Values, known: int) -> Values:
+def _lag_weights(covariance: NDArray[np.float64], known: int) -> NDArray[np.float64]:
     """Return how much the autocovariance of each lag counts (lag, 1): the longer the memory, the further it goes."""
     lags = np.abs(np.fft.fftfreq(len(covariance), 1 / len(covariance)))
     memory = min(float(np.abs(covariance[1] / covariance[0]).max()), MOST_MEMORY)
@@ -98,7 +97,7 @@ def _lag_weights(covariance: Values, known: int) -> Values:
     return np.maximum(1 - lags / (min(last, len(lags) / 2 - 1) + 1), 0.0)[:, None]
 
 
-def errors_rise_p(before: Values, after: Values) -> float:
+def errors_rise_p(before: NDArray[np.float64], after: NDArray[np.float64]) -> float:
     """Chance of errors so much greater if each could as well have been the smaller one.
 
     Pieces on which the two hardly differ are left out but for a few: which these are does not depend on which of the

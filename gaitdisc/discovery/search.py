@@ -95,7 +95,7 @@ class Search:
 
     def scorer(self, shooting: Shooting, model: CandidateModel) -> Scorer:
         """Return what scores further explanations beside a model, to first order."""
-        return Scorer(shooting, model.simulation, model.machine, model.fit, self.places, self.rhythm)
+        return Scorer(shooting, model, self.places, self.rhythm)
 
     def open_beside(self, model: CandidateModel) -> tuple[Candidate, ...]:
         """Return the explanations that are not in a model."""
@@ -164,7 +164,10 @@ class Search:
 
     def without(self, now: ScoredModel, number: int) -> ScoredModel:
         """Return the model less one explanation."""
-        parts = now.model.parts[:number] + now.model.parts[number + 1 :]
+        return self.with_others(now, now.model.parts[:number] + now.model.parts[number + 1 :])
+
+    def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
+        """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
         return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
 
 

@@ -85,7 +85,7 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         for one in late
         for delay in delays(case.rhythm)[::STEP]
     ]
-    tried = [found.model.refitted(found.shooting, (part,), turns=TURNS) for part in begun]
+    tried = [search.with_others(found, (part,)).model for part in begun]
     tried = [one for one in tried if search.sensible(one) and is_certain(one) and not may_vanish(one, 0)]
     if not tried:
         return verdict

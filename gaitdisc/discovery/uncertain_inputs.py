@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED
-from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -104,8 +104,9 @@ def likeliest(case: Case, verdict: Verdict) -> Weighed:
         if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
     ]
     tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
-    models = [found.model.refitted(found.shooting, parts) for parts in tried]
-    models = [ScoredModel(one, found.shooting) for one in models if case.search.sensible(one)]
+    runs, starts, base = found.shooting, found.model.fit.starts, case.search.base
+    models = [fit_model(runs, base, parts, starts, like=found.model) for parts in tried]
+    models = [ScoredModel(one, runs) for one in models if case.search.sensible(one)]
     ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
     named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])

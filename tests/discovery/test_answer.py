@@ -138,26 +138,26 @@ def shape(case, as_read, cubic):
 
 def test_the_evidence_of_an_answer_is_its_own(case, shape):
     before = fit_model(shape.shooting, case.search.base, (), shape.model.fit.starts, 15)
-    assert bic_gain(shape) == pytest.approx(before.bic - shape.bic)
+    assert bic_gain(case.search, shape) == pytest.approx(before.bic - shape.bic)
 
 
 def test_an_answer_of_nothing_has_no_evidence(case, as_read):
-    assert bic_gain(as_read) == 0.0
+    assert bic_gain(case.search, as_read) == 0.0
 
 
 def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(case, shape, named):
-    gained = bic_gain(shape)
+    gained = bic_gain(case.search, shape)
     found = tuple(one for one in named[1] if one.labels != ("cubic_stiffness@load",))
     assert found
-    rivals = rivals_of(shape, found, gained)
+    rivals = rivals_of(case.search, shape, found, gained)
     assert rivals
     assert not any(one.tied for one in rivals)
     assert all(one.gained < gained - CRITERIA.tie for one in rivals)
 
 
 def test_a_rival_that_explains_as_much_is_tied(case, shape, named):
-    gained = bic_gain(shape)
-    first = rivals_of(shape, tuple(named[1]), gained)[0]
+    gained = bic_gain(case.search, shape)
+    first = rivals_of(case.search, shape, tuple(named[1]), gained)[0]
     assert first.scored.labels == ("cubic_stiffness@load",)
     assert first.tied
     assert first.gained == pytest.approx(gained, abs=0.5)
@@ -165,7 +165,7 @@ def test_a_rival_that_explains_as_much_is_tied(case, shape, named):
 
 def test_one_that_is_in_the_answer_is_no_rival(case, named):
     now, found = named
-    rivals = rivals_of(now, tuple(found), bic_gain(now))
+    rivals = rivals_of(case.search, now, tuple(found), bic_gain(case.search, now))
     assert "cubic_stiffness@load" not in [one.scored.labels[-1] for one in rivals]
 
 
@@ -176,13 +176,13 @@ def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(case, as_rea
     both = scored(as_read.shooting, model)
     offset = next(one for one in case.search.candidates if one.label == "sensor_offset@x")
     other = as_read.model.refitted(as_read.shooting, (Part(offset, {"offset": 0.0}),))
-    (rival,) = rivals_of(both, (replace(both, model=other),), 0.0)
+    (rival,) = rivals_of(case.search, both, (replace(both, model=other),), 0.0)
     assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
     assert rival.tied
 
 
 def test_where_nothing_is_named_rivals_keep_what_they_were_found_with(case, as_read, named):
-    rivals = rivals_of(as_read, tuple(named[1]), 0.0)
+    rivals = rivals_of(case.search, as_read, tuple(named[1]), 0.0)
     assert [one.gained for one in rivals] == [one.gained for one in named[1]][: len(rivals)]
     assert not any(one.tied for one in rivals)
 

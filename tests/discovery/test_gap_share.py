@@ -22,14 +22,13 @@ def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
     assert scale.least == pytest.approx((0.64 + 1.0) / 2)
 
 
-def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(case, as_read, cubic, scale):
+def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(as_read, cubic, labelled, scale):
     before = cross_validated(scale, as_read, ())
     begun = ScoredModel(before.model, as_read.shooting)
     after = cross_validated(scale, begun, (Part(cubic, {"factor": -10.0}),))
     assert after.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
     assert after.gap < 0.15 * before.gap
-    load = next(one for one in case.search.candidates if one.label == "constant_load@load")
-    wrong = cross_validated(scale, begun, (Part(load, {"factor": 0.0}),))
+    wrong = cross_validated(scale, begun, (Part(labelled["constant_load@load"], {"factor": 0.0}),))
     assert wrong.gap > 0.8 * before.gap
 
 

@@ -68,11 +68,16 @@ def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
     assert "unexplained" not in sentence(held_out=GapSize(0.5, 0.02, 0.01, 0.001, sizes, 14))
 
 
+def not_named(p, pieces, bic=900.0):
+    """Return what is said where held-out data do not bear out what was learned from."""
+    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=bic)
+    size = GapSize(1, 1, 1, p, {"theta": (0.054, 0.054, 0.0087)}, pieces)
+    return sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+
+
 @pytest.mark.parametrize(("bic", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])
 def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(bic, unproven):
-    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=bic)
-    size = GapSize(1, 1, 1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    said = not_named(0.4, 14, bic)
     assert says(said, "No effect is named") == unproven
     assert (says(said, "equation", "omega", "not")) == unproven
     assert ("agree within the noise" in said) != unproven
@@ -193,10 +198,7 @@ def test_few_pieces_are_counted_in_the_sentence():
 
 
 def test_what_is_not_borne_out_says_by_which_test():
-    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
-    size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
-    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert says(said, "not", "(p = 0.34", "9 independent samples")
+    assert says(not_named(0.34, 9), "not", "(p = 0.34", "9 independent samples")
 
 
 @pytest.mark.parametrize(
@@ -223,8 +225,6 @@ def test_what_clearly_moved_within_its_bounds_is_said():
 
 
 def test_where_names_explain_too_little_it_is_not_said_that_the_data_do_not_bear_them_out():
-    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
-    size = GapSize(1, 1, 1, 0.001, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    said = not_named(0.001, 14)
     assert says(said, "No effect", "equation", "omega", "most")
     assert "bear it out" not in said
