@@ -1,24 +1,34 @@
-"""Rules of a study that one key alone cannot break: words, pseudonyms, names and units that must fit together."""
+"""What a study sets: filters, strides, models; its channels and variables, whose names and units must fit together."""
 
 from __future__ import annotations
 
 import difflib
-import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import Annotated, Literal, NoReturn
 
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from gaitdisc.channel import hint_nearest, nearest_word, vocabulary
+from gaitdisc.channel import hint_nearest, vocabulary
 from gaitdisc.ingest.columns import split_unit
-from gaitdisc.units import known_units, parsed_unit
+from gaitdisc.units import known_units, offset_words, parsed_unit
 
-if TYPE_CHECKING:
-    from gaitdisc.ingest.study import Conditions, Models, Study
-
-_DATE = re.compile(r"(?<!\d)(?:\d{1,4}[-_./ ]\d{1,2}[-_./ ]\d{1,4}|\d{6}|\d{8}|(?:19|20)\d{2})(?!\d)")
+ANGLES = tuple(
+    f"{angle}_{side}"
+    for side in "rl"
+    for angle in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
+)
+OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
 MISSPELT = 0.85  # likeness to a known name above which another name is taken for a slip
+
+Positive = Annotated[float, Field(gt=0)]
+Word = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class StudyPart(BaseModel):
+    """A table of the study file: no other keys, no other types, never changed."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> NoReturn:
@@ -27,56 +37,110 @@ def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> 
     raise PydanticCustomError("gaitdisc", "{needed}; {found}. {remedy}", words)
 
 
-def check_conditions(conditions: Conditions, unknown: str) -> None:
-    """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition."""
-    words = conditions.words
-    if len(set(words)) < len(words) or unknown in words:
-        found = f"found {' and '.join(map(repr, words))}"
-        needed = "be two different words" if len(words) == 2 else "be different words"
-        name = "Name the two conditions." if len(words) == 2 else "Name each condition once."
-        refuse(("conditions",), f"{needed}, neither of them {unknown!r}", found, name)
-    if conditions.unnamed is not None and conditions.unnamed not in words:
-        found = f"found {conditions.unnamed!r}"
-        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Write one of them.")
+class Treadmill(StudyPart):
+    """The belt, where strides are found from markers."""
+
+    speed_m_per_s: Annotated[float, Field(ge=0)] = Field(description="belt speed [m/s]")
+    direction: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(
+        default="+x", description="direction of walking, in the laboratory's axes"
+    )
 
 
-def check_sessions(study: Study) -> None:
-    """Refuse sessions that are dates or stand twice, and trials of a session that the study does not list."""
-    for i, word in enumerate(study.sessions):
-        if _DATE.search(word):
-            remedy = 'Write words in the order of the dates, such as sessions = ["before", "after"].'
-            refuse(("sessions", i), "not be a date, because a date can identify a person", f"found {word!r}", remedy)
-        if study.sessions.index(word) != i:
-            refuse(("sessions", i), "list each session once", f"{word!r} occurs twice", "Remove one.")
-    for i, participant in enumerate(study.participants):
-        for j, trial in enumerate(participant.trials):
-            if trial.session is not None and trial.session not in study.sessions:
-                nearest = nearest_word(trial.session, study.sessions)
-                remedy = f"Did you mean {nearest!r}?" if nearest else f"Add it: sessions = [{trial.session!r}]."
-                listed = ", ".join(map(repr, study.sessions)) or "none"
-                place = ("participants", i, "trials", j, "session")
-                refuse(place, f"be a session that the study lists ({listed})", f"found {trial.session!r}", remedy)
+class Filters(StudyPart):
+    """Filters; the defaults are those of section 4.2.1."""
+
+    kinematics_hz: Positive = Field(default=6.0, description="low-pass of the joint angles [Hz]")
+    emg_highpass_hz: Positive = Field(default=40.0, description="high-pass of the EMG before it is rectified [Hz]")
+    emg_lowpass_hz: Positive = Field(default=10.0, description="low-pass of the rectified EMG [Hz]")
+    order: Literal[2, 4, 6, 8] = Field(
+        default=4, description="order of one pass of the Butterworth filters, which run forwards and backwards"
+    )
+    gap_s: Annotated[float, Field(ge=0)] = Field(default=0.1, description="longest gap that is filled [s]")
 
 
-def check_participants(study: Study, others: Sequence[str]) -> None:
-    """Refuse conditions that are neither the study's nor `others`, pseudonyms twice, names that no file can have."""
-    words = study.conditions.words
-    ids = Counter(each.id.lower() for each in study.participants)
-    for i, participant in enumerate(study.participants):
-        if ids[participant.id.lower()] > 1:
-            found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
-            place = ("participants", i, "id")
-            refuse(place, "be used for one person only", found, "List all trials under one pseudonym.")
-        for j, trial in enumerate(participant.trials):
-            if trial.condition not in (*words, *others):
-                nearest = nearest_word(trial.condition, (*words, *others))
-                remedy = f"Did you mean {nearest!r}?" if nearest else f"Use one of them, or {others[0]!r}."
-                place = ("participants", i, "trials", j, "condition")
-                refuse(place, " or ".join(map(repr, words)), f"found {trial.condition!r}", remedy)
-            for k, file in enumerate(trial.files):
-                if "\0" in file:
-                    place = ("participants", i, "trials", j, "files", k)
-                    refuse(place, "be a name without a NUL character", f"found {file!r}", "Correct the name.")
+class Kinematics(StudyPart):
+    """Where joint angles come from."""
+
+    angles: Literal["file", "markers"] | None = Field(
+        default=None,
+        description="file: as in the file; markers: computed; by default as in the file, if it has any",
+    )
+    marker_set: str = Field(
+        default="",
+        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; default: by labels",
+    )
+    hip: Literal["davis", "harrington"] | None = Field(
+        default=None, description="hip joint centre: davis or harrington; by default as in the marker set"
+    )
+    joints: Literal["free", "held", "planar"] | None = Field(
+        default=None, description="free, held or planar; by default as in the marker set"
+    )
+
+
+class StrideRules(StudyPart):
+    """How strides are cut."""
+
+    detector: Literal["auto", "force", "markers", "angles", "events"] = Field(
+        default="auto", description="detector of initial contact: auto, force, markers, angles or events"
+    )
+    side: Literal["r", "l"] = Field(default="r", description="the foot whose contacts begin the strides")
+    min_s: Positive = Field(default=0.4, description="shortest stride [s]")
+    max_s: Positive = Field(default=2.5, description="longest stride [s]")
+    ground: Literal["auto", "treadmill", "overground"] = Field(
+        default="auto", description="where people walk: auto (by the path of the pelvis), treadmill or overground"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> StrideRules:
+        if self.min_s >= self.max_s:
+            found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
+            refuse(("min_s",), "be shorter than max_s", found, "Exchange or widen them.")
+        return self
+
+
+class Models(StudyPart):
+    """What the models see and predict; the defaults are those of section 4.2.2."""
+
+    angles: tuple[Word, ...] = Field(default=ANGLES, min_length=1, description="joint angles among the inputs")
+    emg: tuple[Word, ...] = Field(default=(), description="EMG among the inputs")
+    outputs: tuple[Word, ...] = Field(
+        default=OUTPUTS, min_length=1, description="variables whose second derivative is predicted"
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of all random numbers")
+
+
+class HeldOut(StudyPart):
+    """The last part of each trial, which no model sees: 30 of 240 s in section 4.2.2."""
+
+    share: Annotated[float, Field(gt=0, lt=1)] | None = Field(
+        default=0.125, description="fraction of the trial, its last part"
+    )
+    seconds: Positive | None = Field(default=None, description="or its length [s]; write one of the two")
+
+    @model_validator(mode="after")
+    def _check(self) -> HeldOut:
+        both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
+        if both or (self.seconds is None and self.share is None):
+            refuse(("seconds",), "replace 'share'", "both are there" if both else "none is", "Write one.")
+        return self
+
+    def length_s(self, duration_s: float) -> float:
+        """Return the length of the held-out part of a trial that lasts `duration_s` [s]."""
+        return self.seconds if self.seconds is not None else (self.share or 0.0) * duration_s
+
+
+class Quality(StudyPart):
+    """What a trial must have to be used."""
+
+    min_strides: Annotated[int, Field(ge=1)] = Field(
+        default=10, description="fewest complete strides of a walk on a treadmill, or of one that models are fitted to"
+    )
+    min_cycles: Annotated[int, Field(ge=1)] = Field(
+        default=1, description="fewest cycles over ground, pooled over the trials of a person, session and condition"
+    )
+    late_change: Literal["refuse", "report"] = Field(
+        default="refuse", description="how to treat a trial whose gait changes late: refuse or report"
+    )
 
 
 def check_channels(channels: Mapping[str, str]) -> None:
@@ -88,7 +152,7 @@ def check_channels(channels: Mapping[str, str]) -> None:
         if not name:
             refuse(place, "be the name of a channel", f"found {said!r}", 'Write for example "emg_sol_r [V]".')
         if unit is not None and parsed_unit(unit) is None:
-            found = f"found {unit!r}" + hint_nearest(unit, known_units())
+            found = f"found {unit!r}" + (offset_words(unit) or hint_nearest(unit, known_units()))
             refuse(place, "be in the list of units", found, f"Use one of: {', '.join(known_units())}.")
         if unit is None:
             _check_spelling(place, name)
@@ -120,7 +184,7 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
 
 def _check_spelling(place: Sequence[str | int], name: str) -> None:
     """Refuse a name that is nearly one of the vocabulary; other names are the laboratory's own."""
-    known = [channel.name for channel in vocabulary().channels]
+    known = vocabulary().by_name
     if name in known or f"{name}_r" in known:
         return
     near = difflib.get_close_matches(name, known, n=1, cutoff=MISSPELT)
