@@ -17,7 +17,7 @@ from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.units import unit_factor
+from gaitdisc.units import offset_words, unit_factor
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -258,7 +258,7 @@ def _converted(
     if np.isnan(factor):
         raise UnitError(
             f"{name!r} must have a unit of the same kind as {to!r} in the simulation",
-            f"{file} has it in {channel.unit!r}",
+            f"{file} has it in {channel.unit!r}{offset_words(channel.unit, to or '')}",
             "Correct the unit in the simulation file or in the study.",
         )
     return recording[name] if factor == 1.0 else recording[name] * factor
