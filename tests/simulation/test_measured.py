@@ -29,14 +29,9 @@ def test_trials_of_different_lengths():
     np.testing.assert_allclose(measured.time(1), np.arange(80) / 100)
 
 
-def test_some_trials_and_some_samples():
+def test_some_trials():
     measured = _measured(_trial("a"), _trial("b", 80))
     assert measured.selected([0]).observed.shape == (1, 50, 1)
-    late = measured.between(40, 80)
-    assert late.trials == ("b",)
-    assert late.time(0)[0] == pytest.approx(0.4)
-    with pytest.raises(SamplingError, match=r"samples 40.*90.*80"):
-        measured.between(40, 90)
 
 
 def test_one_trial_is_told():
