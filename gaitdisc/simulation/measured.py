@@ -66,20 +66,6 @@ class Measured:
         names = tuple(self.trials[trial] for trial in which)
         return replace(self, drive=drive, observed=self.observed[which, :longest], trials=names)
 
-    def between(self, first: int, end: int) -> Measured:
-        """Samples first to end of every trial that has them all."""
-        which = np.flatnonzero(self.samples >= end)
-        if first < 0 or end <= first or not which.size:
-            raise SamplingError(
-                f"samples {first} to {end} of a trial are required",
-                f"the longest has {int(self.samples.max())}",
-                "Use fewer samples.",
-            )
-        time0 = self.drive.time0[which] + first / self.rate
-        drive = Drive(self.rate, time0, self.drive.inputs[which, first:end], np.full(len(which), end - first))
-        names = tuple(self.trials[trial] for trial in which)
-        return replace(self, drive=drive, observed=self.observed[which, first:end], trials=names)
-
 
 def measured_of_trials(
     trials: Sequence[TrialColumns],

@@ -41,14 +41,9 @@ def test_trials_that_are_too_short_are_left_out_with_a_finding():
         _measured(_trial("a", 19), _trial("b", 12))
 
 
-def test_some_trials_and_some_samples():
+def test_some_trials():
     measured = _measured(_trial("a"), _trial("b", 80))
     assert measured.selected([0]).observed.shape == (1, 50, 1)
-    late = measured.between(40, 80)
-    assert late.trials == ("b",)
-    assert late.time(0)[0] == pytest.approx(0.4)
-    with pytest.raises(SamplingError, match=r"samples 40.*90.*80"):
-        measured.between(40, 90)
 
 
 def test_one_trial_is_told():
