@@ -43,7 +43,7 @@ def discover_study(
 ) -> tuple[Discovery, Simulation]:
     """Find what the device does at a participant's joint: what the Nominal moment model lacks on the device walk.
 
-    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says that nothing is named.
+    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says so.
 
     returns augmented: the Nominal model with what was found in it
     """
@@ -64,10 +64,10 @@ def discover_study(
         both = device_walks(read, participant, joint)
     except NoMomentsError as lacking:
         progress("comparing the motion alone")
-        model, data = nominal_and_trials(read, participant, joint)
-        found, augmented = discovered(model, data, request, walks)
-        said = f"{lacking.needed.capitalize()}, but {lacking.found}; no effect can be named. From the motion alone: "
-        return replace(found, sentence=said + found.sentence), augmented
+        found, augmented = discovered(*nominal_and_trials(read, participant, joint), request, walks)
+        why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
+        how = "only the motion of both walks was compared, which gives no moment of the device"
+        return replace(found, sentence=f"{why}: {how}. {found.sentence}"), augmented
     model = tracked_joint(both.device, both.both_walks_model)
     data = tracked_trials(both.device, both.both_walks_model, model)
     found, augmented = discovered(model, data, replace(request, possible=both.weighed), walks)

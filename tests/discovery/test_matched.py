@@ -32,7 +32,8 @@ def with_inputs(measured, inputs):
 
 
 def short(measured):
-    return measured.between(0, 9)
+    drive = Drive.of(measured.drive.inputs[:, :9], measured.rate)
+    return replace(measured, drive=drive, observed=measured.observed[:, :9])
 
 
 def gap_in_push(measured):
