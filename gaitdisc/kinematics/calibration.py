@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
 from gaitdisc.kinematics.markers import check_right_handed, marker_labels, still_places, up_axis
-from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose, chord_centre, davis_hip, harrington_hip
+from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, SEGMENTS_OF, Pose, chord_centre, davis_hip, harrington_hip
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -47,7 +47,6 @@ class Calibration:
     # each (3,) [m], segment -> joint centre or landmark (`hip_r`, `knee_r`, `heel_r`, `asis_l`, ...) -> place in its
     # frame
     points: Mapping[str, Points]
-    static: Mapping[str, Pose]  # segment -> its one frame in the static trial
     findings: tuple[Finding, ...] = ()
     # each (3,) [m], marker -> where it lay in the static trial
     places: Points = field(default_factory=dict)
@@ -120,7 +119,6 @@ class _Builder:
             self.marker_set,
             body=MappingProxyType(body),
             points=MappingProxyType(points),
-            static=MappingProxyType(self.static),
             findings=tuple(self.findings),
             places=MappingProxyType(dict(self.places)),
             spoiled=self._spoiled(),
@@ -240,9 +238,8 @@ class _Builder:
         return followers
 
     def _points(self, segment: str) -> dict[str, NDArray[np.float64]]:
-        part, side = segment.split("_") if "_" in segment else (segment, "")
-        sides = side or "lr"
-        joints = {"pelvis": ("hip",), "thigh": ("hip", "knee"), "shank": ("knee", "ankle"), "foot": ("ankle",)}[part]
+        part, _, side = segment.partition("_")
+        sides, joints = side or "lr", [joint for joint, parts in SEGMENTS_OF.items() if part in parts]
         places = {f"{joint}_{s}": self.centres[f"{joint}_{s}"] for joint in joints for s in sides}
         places |= {f"{mark}_{s}": self._place(mark, s) for mark in MARKS[part] if self._has(mark) for s in sides}
         return {name: self.static[segment].to_segment(place[None])[0] for name, place in places.items()}

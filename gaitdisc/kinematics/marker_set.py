@@ -15,7 +15,7 @@ from typing import Any
 
 from gaitdisc.channel import folded_label, hint_nearest, list_names, schema_folder
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
-from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS
+from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS
 from gaitdisc.regular_file import check_regular
 from gaitdisc.toml_text import parsed_toml
 
@@ -35,7 +35,6 @@ NEEDED = ("asis", "sacrum", "knee_lateral", "ankle_lateral", "heel", "toe")
 METHODS = {"hip": ("harrington", "davis"), "knee": ("midpoint", "chord"), "ankle": ("midpoint", "chord")}
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
 JOINTS = ("free", "held", "planar")
-PARTS = ("pelvis", "thigh", "shank", "foot")
 PLACEHOLDER = re.compile(r"\{(S|s|side)\}")
 LARGEST_BYTES = 2**20
 TABLES = {  # of the file: what each of its keys holds

@@ -19,17 +19,17 @@ from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_mar
 from gaitdisc.kinematics.markers import WalkingFrame, check_right_handed, marker_labels, up_axis, walking_frame
 from gaitdisc.kinematics.pose import (
     JOINT_CHANNELS,
-    JOINTS,
     SEGMENTS,
     SEGMENTS_OF,
     Pose,
+    angle_signs,
     clinical_angles,
     fitted_pose,
     residual_m,
 )
 from gaitdisc.kinematics.segment_poses import (
+    FARTHEST_M,
     PlacedMarkers,
-    carried_joint,
     free_poses,
     joined_poses,
     named_places,
@@ -54,8 +54,6 @@ class Motion:
     angles: Recording  # joint, pelvis and foot progression angles [deg] (`hip_flexion_r`, ...), pelvis translations [m]
     # segment (`pelvis`, `thigh_l`, ...) -> origin and axes in the laboratory's frame, frame by frame
     poses: Mapping[str, Pose]
-    # each (frame, 3) [m], joint (`hip_l`, ...) -> place in the laboratory's frame
-    joint_centres: Mapping[str, NDArray[np.float64]]
     walking: WalkingFrame  # forward, up and right of the walker
     # each (frame,) [m], segment -> root mean square distance of its markers from where the static trial has them
     residual_m: Mapping[str, NDArray[np.float64]]
@@ -132,6 +130,13 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     joined = joined_poses(free, placed, calibration, walking.rotation)
     spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
+    joints = calibration.marker_set.joints
+    if not poses["pelvis"].known.any():
+        raise ShapeError(
+            f"a body with {joints} joints must lie within {FARTHEST_M * 1000:.0f} mm of the markers",
+            f"{file}: it does so in no frame (root mean square over all markers)",
+            'Check the static trial and the direction of walking, or use joints = "free".',
+        )
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
     bridged = {s: poses[s].known & ~np.isfinite(placed[s][1]).all(axis=(1, 2)) for s in SEGMENTS}
     findings = [
@@ -143,13 +148,12 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     for segment in SEGMENTS:
         findings += _gaps_and_shape(segment, ~poses[segment].known, bridged[segment], residuals[segment], markers)
     angles = angles_of_poses(markers, poses, bridged, walking)
-    if calibration.marker_set.joints == "planar":  # only what a planar body has
+    if joints == "planar":  # only what a planar body has
         flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
         angles = angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
     return Motion(
         angles,
         poses=MappingProxyType(poses),
-        joint_centres=MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
         walking=walking,
         residual_m=MappingProxyType(residuals),
         calibration=calibration,
@@ -218,13 +222,12 @@ def angles_of_poses(
     pelvis = clinical_angles(walking.rotation, turns["pelvis"])
     add(("pelvis_tilt", "pelvis_list", "pelvis_rotation"), "", pelvis, bridged["pelvis"])
     for side in "rl":
-        mirror = np.array([1, 1, 1] if side == "r" else [1, -1, -1])
-        for joint, (names, flexion) in JOINT_CHANNELS.items():
+        for joint, (names, _) in JOINT_CHANNELS.items():
             above, below = (part if part == "pelvis" else f"{part}_{side}" for part in SEGMENTS_OF[joint])
-            values = clinical_angles(turns[above], turns[below]) * mirror * [flexion, 1, 1]
+            values = clinical_angles(turns[above], turns[below]) * angle_signs(joint, side)
             add(names, side, values, bridged[above] | bridged[below])
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
-        add(("foot_progression_angle",), side, foot[:, 2:] * mirror[2], bridged[f"foot_{side}"])
+        add(("foot_progression_angle",), side, foot[:, 2:] * (1 if side == "r" else -1), bridged[f"foot_{side}"])
     # steps, each along its own frame's axes: in a turn the laboratory's origin is behind, then beside the walker
     known = poses["pelvis"].known
     path = np.stack([np.interp(base.time, base.time[known], axis[known]) for axis in poses["pelvis"].origin.T], axis=1)

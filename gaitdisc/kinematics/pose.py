@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording.arrays import read_only
 
+PARTS = ("pelvis", "thigh", "shank", "foot")
 SEGMENTS = ("pelvis", "thigh_l", "thigh_r", "shank_l", "shank_r", "foot_l", "foot_r")
-JOINTS = ("hip_l", "hip_r", "knee_l", "knee_r", "ankle_l", "ankle_r")
 SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
 JOINT_CHANNELS = {  # names, and the sign of flexion about the axis to the right
     "hip": (("hip_flexion", "hip_adduction", "hip_rotation"), 1),
@@ -105,7 +105,6 @@ class RigidFit:
     """Pose of a body and how well its markers keep their shape."""
 
     pose: Pose  # NaN in frames with fewer than three points, or points on a line
-    seen: NDArray[np.bool_]  # (frame, point), points that were there
     # (frame,) [m], root of the mean square distance between the points and those of the body, on a line too
     residual_m: NDArray[np.float64]
 
@@ -145,7 +144,7 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
     unknown = ~np.asarray(enough, bool)[which.ravel()]
     rotation[unknown], origin[unknown] = np.nan, np.nan
     residual[seen.sum(axis=1) < FEWEST_POINTS] = np.nan
-    return RigidFit(Pose(origin, rotation), seen, residual)
+    return RigidFit(Pose(origin, rotation), residual)
 
 
 def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -177,6 +176,12 @@ def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) 
     adduction = np.arctan2(turned[:, 2, 1], np.hypot(turned[:, 0, 1], turned[:, 1, 1]))
     rotation = np.arctan2(-turned[:, 2, 0], turned[:, 2, 2])
     return np.degrees(np.stack([flexion, adduction, rotation], axis=1)) + 0.0
+
+
+def angle_signs(joint: str, side: str) -> NDArray[np.float64]:
+    """Signs (3,) by which `clinical_angles` of a joint become those of its channels, on side `r` or `l`."""
+    _, flexion = JOINT_CHANNELS[joint]
+    return np.array([flexion, 1.0, 1.0] if side == "r" else [flexion, -1.0, -1.0])
 
 
 def rotation_of(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:

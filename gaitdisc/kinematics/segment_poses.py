@@ -13,7 +13,7 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration, Points
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
-from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, Pose, RigidFit, fitted_pose
+from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS, Pose, RigidFit, fitted_pose
 from gaitdisc.recording import Recording
 
 ROUNDS = 60
@@ -84,11 +84,8 @@ def held_together(
 
 def _chain(segment: str) -> tuple[str, ...]:
     """A segment and those that carry it, from the pelvis down."""
-    if segment == "pelvis":
-        return ("pelvis",)
-    part, side = segment.split("_")
-    parts = ("thigh", "shank", "foot")
-    return ("pelvis", *(f"{one}_{side}" for one in parts[: parts.index(part) + 1]))
+    part, _, side = segment.partition("_")
+    return ("pelvis", *(f"{one}_{side}" for one in PARTS[1 : PARTS.index(part) + 1]))
 
 
 def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:

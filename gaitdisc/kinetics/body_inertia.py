@@ -64,24 +64,6 @@ class Person:
         return self.mass_kg
 
 
-@dataclass(frozen=True, eq=False)
-class FootPoints:
-    """Where heel and toes lie in the foot's frame, its origin being the centre of the ankle.
-
-    >>> FootPoints(np.array([-0.05, -0.06, 0.0]), np.array([0.13, -0.06, 0.0])).toe_length_m
-    0.14317821063276354
-    """
-
-    heel: NDArray[np.float64]  # (3,) [m], back of the heel
-    # (3,) [m], over the head of the second metatarsal, or midway between those of the first and the fifth
-    toe: NDArray[np.float64]
-
-    @property
-    def toe_length_m(self) -> float:
-        """From the centre of the ankle to the heads of the metatarsals [m], the length of Dumas' foot."""
-        return float(np.linalg.norm(self.toe))
-
-
 @dataclass(frozen=True)
 class TableRow:
     """One segment of a table, for one sex."""
@@ -94,7 +76,6 @@ class TableRow:
     # inertia has a negative number
     gyration: tuple[float, ...]
     count: int  # how many of it a body has
-    source: str
 
 
 @cache
@@ -120,17 +101,26 @@ def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
             tuple(float(row[key]) for key in ("x", "y", "z") if row[key]),
             tuple(float(row[key]) for key in ("xx", "yy", "zz", "xy", "xz", "yz") if row[key]),
             int(row["whole"]),
-            row["source"],
         )
         for row in rows
     }
 
 
 def leg_inertia(
-    person: Person, side: str, lengths_m: Mapping[str, float], foot: FootPoints, table: str = "dumas2007"
+    person: Person,
+    side: str,
+    lengths_m: Mapping[str, float],
+    heel: NDArray[np.float64],
+    toe: NDArray[np.float64],
+    table: str = "dumas2007",
 ) -> dict[str, RigidBody]:
-    """Inertia of foot, shank and thigh of side `r` or `l`; the left leg is the right one's mirror image."""
-    lengths = {**lengths_m, "foot": foot.toe_length_m}
+    """Inertia of foot, shank and thigh of side `r` or `l`; the left leg is the right one's mirror image.
+
+    heel (3,) [m]: back of the heel, from the centre of the ankle in the foot's frame
+    toe (3,) [m]: over the head of the second metatarsal, or midway between the first and the fifth; Dumas' foot ends
+        there
+    """
+    lengths = {**lengths_m, "foot": float(np.linalg.norm(toe))}
     for segment in LEG:
         low, high = (0.05, 0.35) if segment == "foot" else (0.1, 0.8)
         if not low <= lengths[segment] <= high:
@@ -146,7 +136,7 @@ def leg_inertia(
     ]
     if table == "deleva1996":
         for found, sex in zip(bodies, sexes, strict=True):
-            found["foot"] = _foot_from_heel(inertia_table(table, sex)["foot"], person, sex, foot)
+            found["foot"] = _foot_from_heel(inertia_table(table, sex)["foot"], person, sex, heel, toe)
     return {segment: _mean([found[segment] for found in bodies]) for segment in LEG}
 
 
@@ -188,7 +178,9 @@ def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBod
     return RigidBody(mass, mirror @ np.array(row.centre) / 100 * length_m, mirror @ tensor @ mirror)
 
 
-def _foot_from_heel(row: TableRow, person: Person, sex: str, foot: FootPoints) -> RigidBody:
+def _foot_from_heel(
+    row: TableRow, person: Person, sex: str, heel: NDArray[np.float64], toe: NDArray[np.float64]
+) -> RigidBody:
     """De Leva's foot: along the line from heel to toes, whose tips are known by the stature."""
     if person.stature_m is None:
         raise UnitError(
@@ -197,12 +189,12 @@ def _foot_from_heel(row: TableRow, person: Person, sex: str, foot: FootPoints) -
             "State it, or use the table dumas2007.",
         )
     length = _FOOT_OF_STATURE[sex] * person.stature_m
-    ahead = (foot.toe - foot.heel) / np.linalg.norm(foot.toe - foot.heel)
+    ahead = (toe - heel) / np.linalg.norm(toe - heel)
     plain = _body(row, person.kg, length, "r")
     across = np.cross(ahead, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
     axes = np.column_stack([ahead, np.cross(across, ahead), across])
-    return RigidBody(plain.mass_kg, foot.heel + axes @ plain.centre, axes @ plain.tensor @ axes.T)
+    return RigidBody(plain.mass_kg, heel + axes @ plain.centre, axes @ plain.tensor @ axes.T)
 
 
 def _mean(bodies: list[RigidBody]) -> RigidBody:

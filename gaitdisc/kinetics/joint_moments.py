@@ -5,18 +5,17 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
-from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose
-from gaitdisc.kinetics.body_inertia import LEG, TABLES, FootPoints, Person, leg_inertia, segment_lengths
+from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose, angle_signs
+from gaitdisc.kinetics.body_inertia import LEG, TABLES, Person, leg_inertia, segment_lengths
 from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenches, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
-from gaitdisc.kinetics.platform import LEAST_LOAD_N, Platform, Wrench
+from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.arrays import runs
 
@@ -100,27 +99,6 @@ FRAMES = ("joint", "distal")
 ALONG_BONE = [2, 0, 1]  # the segment's own axes that take the places of those of the joint
 
 
-class JointPart(NamedTuple):
-    """One of the three parts of a joint moment: its projection on an axis, towards a positive angle."""
-
-    joint: str
-    angle: str  # angle that a positive part drives, without its side: `knee_angle`
-    axis: int  # 0 nearer segment's z, 1 floating, 2 farther segment's y
-    right: int  # sign of the positive angle about the axis, right leg
-    left: int  # the same of the left leg
-
-    def sign(self, side: str) -> int:
-        """Sign of the positive angle about the axis."""
-        return self.right if side == "r" else self.left
-
-
-PARTS = tuple(
-    JointPart(joint, angle, axis, *((flexion, flexion) if axis == 0 else (1, -1)))
-    for joint, (angles, flexion) in JOINT_CHANNELS.items()
-    for axis, angle in enumerate(angles)
-)
-
-
 def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
     """Unit axes of a joint in the laboratory's frame, (frame, axis, 3); NaN where the first and third lie on one line.
 
@@ -143,9 +121,10 @@ def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
     return np.stack([flexion, floating, rotation], axis=1)
 
 
-def along(vector: NDArray[np.float64], axes: NDArray[np.float64], part: JointPart, side: str) -> NDArray[np.float64]:
-    """Part (frame,) of a vector (frame, 3) towards the positive angle about axes (frame, axis, 3) of `joint_axes`."""
-    return part.sign(side) * np.einsum("fx,fx->f", vector, axes[:, part.axis])
+def along(vector: NDArray[np.float64], axes: NDArray[np.float64], joint: str, side: str) -> NDArray[np.float64]:
+    """Parts (frame, 3) of a vector (frame, 3) towards a joint's positive angles about axes of `joint_axes`."""
+    parts = [np.einsum("fx,fx->f", vector, axes[:, axis]) for axis in range(3)]
+    return np.stack(parts, axis=1) * angle_signs(joint, side)
 
 
 @dataclass(frozen=True)
@@ -162,8 +141,6 @@ class KineticsSettings:
     # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     marker_cutoff_hz: float = 6.0
     force_cutoff_hz: float = 20.0
-    # [N], force at which a foot counts as off a platform, and below which there is no centre of pressure
-    least_load_n: float = LEAST_LOAD_N
     inertia: str = "dumas2007"  # table of segment inertia: `dumas2007` or `deleva1996`
     # `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
     # Plug-in Gait gives them
@@ -187,7 +164,6 @@ class KineticsSettings:
 class Leg:
     """One leg in motion with its inertia."""
 
-    side: str
     moving: Mapping[str, SegmentMotion]
     bodies: Mapping[str, RigidBody]
 
@@ -201,15 +177,16 @@ def legs(
     found, moving = {}, {}
     for side, own in whole.items():
         path = feet[side]
-        wanted = [name for name in own.values() if name not in moving]  # the pelvis is filtered once
-        moving |= segment_motions(dict(poses), path.time, settings.marker_cutoff_hz, wanted)
+        wanted = {name: poses[name] for name in own.values() if name not in moving}  # the pelvis is filtered once
+        moving |= segment_motions(wanted, path.time, settings.marker_cutoff_hz)
         lengths = segment_lengths(poses, side)
-        bodies = leg_inertia(person, side, lengths, _foot_points(path, poses[f"foot_{side}"]), settings.inertia)
-        found[side] = Leg(side, {short: moving[name] for short, name in own.items()}, bodies)
+        heel, toe = _foot_points(path, poses[f"foot_{side}"])
+        bodies = leg_inertia(person, side, lengths, heel, toe, settings.inertia)
+        found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)
     return found
 
 
-def _foot_points(path: FootPath, foot: Pose) -> FootPoints:
+def _foot_points(path: FootPath, foot: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Heel and toes in the foot's frame, the median over the frames."""
     places = [foot.to_segment(part) for part in (path.heel, path.toe)]
     seen = np.isfinite(places).all(axis=(0, 2))
@@ -219,7 +196,7 @@ def _foot_points(path: FootPath, foot: Pose) -> FootPoints:
             "no frame has all three",
             "Fill the gaps in the markers of this foot, or name others.",
         )
-    return FootPoints(*(np.median(place[seen], axis=0) for place in places))
+    return np.median(places[0][seen], axis=0), np.median(places[1][seen], axis=0)
 
 
 def joint_moments(
@@ -253,9 +230,9 @@ def joint_moments(
             axes = joint_axes(nearer.pose, farther.pose)
             if settings.frame == "distal":
                 axes = np.swapaxes(farther.pose.rotation, 1, 2)[:, ALONG_BONE]
-            for part in (one for one in PARTS if one.joint == joint):
-                columns.append(along(moment, axes, part, side))
-                channels.append(Channel(f"{part.angle}_{side}_moment", "moment", "N m/kg", side))
+            columns += [*along(moment, axes, joint, side).T]
+            angles, _ = JOINT_CHANNELS[joint]
+            channels += [Channel(f"{angle}_{side}_moment", "moment", "N m/kg", side) for angle in angles]
             turning = farther.angular_velocity - nearer.angular_velocity
             columns.append(np.einsum("fx,fx->f", moment, turning))
             channels.append(Channel(f"{joint}_power_{side}", "power", "W/kg", side))

@@ -6,7 +6,7 @@ momentum of all segments beyond it, less their weight, less what the ground give
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,25 +73,19 @@ def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
     return SegmentMotion(pose, differentiated(pose.origin, rate_hz, 2), _axial(rate), _axial(second))
 
 
-def segment_motions(
-    poses: dict[str, Pose], time: NDArray[np.float64], cutoff_hz: float, names: Sequence[str]
-) -> dict[str, SegmentMotion]:
+def segment_motions(poses: Mapping[str, Pose], time: NDArray[np.float64], cutoff_hz: float) -> dict[str, SegmentMotion]:
     """SegmentMotion of several segments on even times, filtered alike."""
     found = {}
     rate_hz = (len(time) - 1) / float(time[-1] - time[0]) if len(time) > 1 else np.nan
-    for name in names:
-        if name not in poses:
-            continue
-        if len(poses[name]) != len(time):
+    for name, pose in poses.items():
+        if len(pose) != len(time):
             raise ShapeError(
                 "there must be one pose for each time",
-                f"{name} has {len(poses[name])} frames, and there are {len(time)} times",
+                f"{name} has {len(pose)} frames, and there are {len(time)} times",
                 "Use the poses and times of the same recording.",
             )
-        pose = poses[name]
-        if np.isfinite(cutoff_hz):
-            pose = smoothed_pose(pose, time, cutoff_hz)
-        found[name] = segment_motion(pose, rate_hz)
+        smooth = smoothed_pose(pose, time, cutoff_hz) if np.isfinite(cutoff_hz) else pose
+        found[name] = segment_motion(smooth, rate_hz)
     return found
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.kinetics.platform import LEAST_LOAD_N, Platform, Wrench
+from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import read_only, runs
 from gaitdisc.signals.derivatives import differentiated
@@ -116,9 +116,7 @@ class PlateStep:
         return Finding(self.doubt or "note", "plate step", file, what, "joint moments of this step", spans=spans)
 
 
-def plate_steps(
-    found: Sequence[Platform], feet: Mapping[str, FootPath], least_load_n: float = LEAST_LOAD_N
-) -> list[PlateStep]:
+def plate_steps(found: Sequence[Platform], feet: Mapping[str, FootPath]) -> list[PlateStep]:
     """Loadings of all platforms with the foot that made them, in order of time.
 
     The foot is the one whose line from heel to toes the centre of pressure follows. A step is left out where the
@@ -126,16 +124,15 @@ def plate_steps(
     heel or the toes bear load beyond the platform's edge, or the centre of pressure comes within 2 cm of it.
 
     feet: `r`, `l`; a platform that names its foot is only held against them
-    least_load_n: force at which a loading ends [N]
     """
     steps = []
     for platform in found:
-        for start, end in platform.loadings(least_load_n):
+        for start, end in platform.loadings():
             span = float(platform.time[start]), float(platform.time[end - 1])
             cut = bool(start == 0 or end == len(platform.time))
             wrench = Wrench(platform.wrench.force[start:end], platform.wrench.moment[start:end])
             loaded = replace(platform, time=platform.time[start:end], wrench=wrench)
-            side, reason, doubt = _foot(loaded, span, feet, least_load_n)
+            side, reason, doubt = _foot(loaded, span, feet)
             steps.append(PlateStep(platform.name, side, *span, reason, not cut, doubt))
     return sorted(steps, key=lambda step: step.start)
 
@@ -186,18 +183,16 @@ def weighed_steps(
     return [weighed(step) for step in steps]
 
 
-def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:
-    """Say on which platforms no loading above `least_load_n` [N] is."""
-    empty = [platform for platform in found if not len(platform.loadings(least_load_n))]
+def empty_findings(found: Sequence[Platform], file: str) -> list[Finding]:
+    """Say on which platforms no loading is."""
+    empty = [platform for platform in found if not len(platform.loadings())]
     said = [f"nobody stepped on {one.name}: its force never exceeds {one.load_n.max():.0f} N" for one in empty]
     return [Finding("note", "empty plate", file, what, "nothing; no step on it is counted") for what in said]
 
 
-def _foot(
-    platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
-) -> tuple[str, str, str]:
+def _foot(platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath]) -> tuple[str, str, str]:
     """Side of the loading foot, which a platform may name, why the step cannot be used, and whether that is a doubt."""
-    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
+    beside = {side: _distance(platform, span, foot) for side, foot in feet.items()}
     known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
     side = min(known, key=lambda key: known[key], default="")
     if platform.side:
@@ -215,15 +210,15 @@ def _foot(
         return "", "the markers of both feet are missing then", ""
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm from the nearest foot ({side})", "warning"
-    return side, _edge(feet[side], platform, span, least_load_n), ""
+    return side, _edge(feet[side], platform, span), ""
 
 
 def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:
     return (foot.time >= span[0]) & (foot.time <= span[1])
 
 
-def _distance(platform: Platform, span: tuple[float, float], foot: FootPath, least_load_n: float) -> float:
-    pressure = platform.pressure_centre(least_load_n)
+def _distance(platform: Platform, span: tuple[float, float], foot: FootPath) -> float:
+    pressure = platform.pressure_centre()
     load = np.interp(foot.time, platform.time, platform.load_n)
     place = np.stack([np.interp(foot.time, platform.time, axis) for axis in pressure.T], axis=1)
     frames = _frames(foot, span)
@@ -245,7 +240,7 @@ def _stands_s(foot: FootPath, platform: Platform, span: tuple[float, float]) -> 
     return longest * step
 
 
-def _edge(foot: FootPath, platform: Platform, span: tuple[float, float], least_load_n: float) -> str:
+def _edge(foot: FootPath, platform: Platform, span: tuple[float, float]) -> str:
     """Say which part of a foot bears load beside the platform, or must, as the centre of pressure is near its edge."""
     if platform.surface is None:
         return ""
@@ -255,6 +250,6 @@ def _edge(foot: FootPath, platform: Platform, span: tuple[float, float], least_l
         outside = outside[np.isfinite(outside)]
         if len(outside) and np.median(outside) > BEYOND_EDGE_M:
             return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
-    pressure = platform.pressure_centre(least_load_n)[platform.load_n > CLEAR_LOAD * platform.load_n.max()]
+    pressure = platform.pressure_centre()[platform.load_n > CLEAR_LOAD * platform.load_n.max()]
     nearest = -float(np.nanmax(platform.surface.outside(pressure)))
     return f"its centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

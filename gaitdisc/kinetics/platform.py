@@ -16,7 +16,7 @@ from gaitdisc.recording.arrays import read_only
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import loaded
 
-LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
+LEAST_LOAD_N = 20.0  # below it a foot counts as off a platform, and a centre of pressure is noise divided by noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,10 +62,8 @@ class Wrench:
         """Moment (sample, 3) [N m] about another point (sample, 3) or (3,) [m] of the laboratory's frame."""
         return self.moment - np.cross(point, self.force)
 
-    def pressure_centre(
-        self, point: NDArray[np.float64], up: NDArray[np.float64], least_load_n: float = LEAST_LOAD_N
-    ) -> NDArray[np.float64]:
-        """Where a force meets a surface of unit normal `up`, (sample, 3) [m]; NaN below `least_load_n` [N] along it.
+    def pressure_centre(self, point: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where a force meets a surface of unit normal `up`, (sample, 3) [m]; NaN below 20 N along it.
 
         >>> step = Wrench.at(np.array([0.2, 0.1, 0.0]), np.array([[30.0, 0.0, 700.0], [0.0, 0.0, 19.0]]))
         >>> step.pressure_centre(np.zeros(3), np.array([0.0, 0.0, 1.0])).round(9)
@@ -73,7 +71,7 @@ class Wrench:
                [nan, nan, nan]])
         """
         normal = self.force @ up
-        pressed = normal > least_load_n
+        pressed = normal > LEAST_LOAD_N
         centre = np.full(self.force.shape, np.nan)
         centre[pressed] = point + np.cross(up, self.about(point)[pressed]) / normal[pressed, None]
         return centre
@@ -107,13 +105,13 @@ class Platform:
         """Force against gravity, (sample,) [N]."""
         return self.wrench.force @ self.up
 
-    def pressure_centre(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.float64]:
-        """Where the force meets the surface, (sample, 3) [m]; NaN where its normal part is below `least_load_n` [N]."""
-        return self.wrench.pressure_centre(self.point, self.up, least_load_n)
+    def pressure_centre(self) -> NDArray[np.float64]:
+        """Where the force meets the surface, (sample, 3) [m]; NaN where its normal part is below 20 N."""
+        return self.wrench.pressure_centre(self.point, self.up)
 
-    def loadings(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.intp]:
-        """First and last sample (loading, 2) of each loading, from 2.5 `least_load_n` [N] down to it."""
-        return loaded(self.load_n, self.rate_hz, least_load_n / 0.4)
+    def loadings(self) -> NDArray[np.intp]:
+        """First and last sample (loading, 2) of each loading, from 50 N down to 20 N."""
+        return loaded(self.load_n, self.rate_hz, LEAST_LOAD_N / 0.4)
 
     def smoothed(self, cutoff_hz: float, spans: Sequence[tuple[float, float]]) -> Wrench:
         """Wrench within spans without what is faster than the cut-off, zero elsewhere.

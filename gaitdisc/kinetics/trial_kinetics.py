@@ -117,8 +117,6 @@ class TrialKinetics:
     moments: Recording  # moments [N m/kg] and powers [W/kg] on the frames of the markers
     steps: tuple[PlateStep, ...]  # on all platforms, with the reasons of those that are left out
     balance: ForceBalance
-    loads: Mapping[str, FootLoad]
-    found: Mapping[str, Leg]
     findings: tuple[Finding, ...]
 
 
@@ -142,7 +140,7 @@ def trial_kinetics(
     markers = trial.stream("markers")
     time, file = markers.time, markers.source.file or trial.name
     found = platforms(trial)
-    steps, airborne, up = plate_steps(found, feet, settings.least_load_n), swings(trial, feet), found[0].up
+    steps, airborne, up = plate_steps(found, feet), swings(trial, feet), found[0].up
     if "pelvis" in poses:
         weight = Weight(person.weighed_n or person.kg * GRAVITY, time, poses["pelvis"].origin @ up)
         steps = weighed_steps(steps, found, airborne, weight)
@@ -161,9 +159,9 @@ def trial_kinetics(
     if len(both) == 2:
         alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, airborne)
         balance = force_balance(both, alike, up, person, _acceleration(markers, trunk, settings.marker_cutoff_hz))
-    findings = (*empty_findings(found, file, settings.least_load_n), *left_out, balance.finding(file))
+    findings = (*empty_findings(found, file), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)
-    return TrialKinetics(moments, tuple(steps), balance, loads, both, findings)
+    return TrialKinetics(moments, tuple(steps), balance, findings)
 
 
 def _acceleration(markers: Recording, names: Sequence[str], cutoff_hz: float) -> NDArray[np.float64] | None:

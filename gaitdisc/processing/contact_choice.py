@@ -36,12 +36,9 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 class ContactChoice:
     """Initial contacts of both feet, and what was seen on the way."""
 
-    contacts: Mapping[str, Contacts]
+    contacts: Mapping[str, Contacts]  # those from markers and angles moved by what a plate or an event shows
     # which detector was taken and why, how far others differ [ms], and those that could not be used
     findings: tuple[Finding, ...]
-    # by how much a plate, or an event of the file, places contacts later than markers or angles do, the median of the
-    # steps that both see [s]; None where nothing else sees a step. `contacts` are moved by it
-    offset_s: float | None = None
 
     @property
     def detector(self) -> str:
@@ -84,7 +81,7 @@ def chosen_contacts(
         by = "the median of the steps that " + ("a plate recorded" if reference == "force" else "the events contain")
         spoils = "phase, compared with a plate, by 3 to 5 % of the stride; durations are unaffected"
         findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
-    return ContactChoice(taken, tuple(findings), offset_s)
+    return ContactChoice(taken, tuple(findings))
 
 
 def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mapping[str, Mapping[str, Contacts]]) -> str:
@@ -162,7 +159,8 @@ def seen_contacts(
     if any(event.label == "initial contact" for event in trial.events):
         attempts["events"] = partial(event_contacts, trial)
     if "markers" in trial.streams:
-        attempts["markers"] = partial(_markers, trial.stream("markers"), direction)
+        markers = trial.stream("markers")
+        attempts["markers"] = lambda: marker_contacts(markers, *walking_markers(markers, direction))
     if "kinematics" in trial.streams:
         attempts["angles"] = partial(angle_contacts, trial.stream("kinematics"))
     found: dict[str, dict[str, Contacts]] = {}
@@ -212,14 +210,8 @@ def _force(trial: Trial, direction: str, body_weight_n: float | None) -> dict[st
     if "markers" not in trial.streams:
         return force_contacts(forces)  # refuses, and says what is needed
     markers = trial.stream("markers")
-    heels, pelvis = named_markers(markers)
-    way = trial_direction(markers, heels, pelvis, direction)
+    heels, pelvis, way = walking_markers(markers, direction)
     return plate_contacts(forces, markers, heels, way, body_weight_n, pelvis)
-
-
-def _markers(markers: Recording, direction: str) -> dict[str, Contacts]:
-    heels, pelvis = named_markers(markers)
-    return marker_contacts(markers, heels, pelvis, trial_direction(markers, heels, pelvis, direction))
 
 
 def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
@@ -236,15 +228,15 @@ def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
     return heels, pelvis
 
 
-def trial_direction(markers: Recording, heels: Mapping[str, str], pelvis: list[str], direction: str = "") -> Direction:
-    """Direction of walking: the given one, `+x` to `-z` in the laboratory's axes, else from the trial's markers."""
-    if not direction:
-        return walking_direction(markers, heels, pelvis)
-    sign = -1.0 if direction[0] == "-" else 1.0
-    forward = [sign * part for part in AXES[direction[-1]]]
-    # laboratories let z point up, OpenSim y; walking along one of them leaves the other
-    up = walking_direction(markers, heels, pelvis).up
-    return given_direction(forward, up.tolist())
+def walking_markers(markers: Recording, direction: str = "") -> tuple[dict[str, str], list[str], Direction]:
+    """Heels, pelvis and direction of walking: `+x` to `-z` in the laboratory's axes, found from them where empty."""
+    heels, pelvis = named_markers(markers)
+    way = walking_direction(markers, heels, pelvis)
+    if direction:
+        sign = -1.0 if direction[0] == "-" else 1.0
+        # laboratories let z point up, OpenSim y; walking along one of them leaves the other
+        way = given_direction([sign * part for part in AXES[direction[-1]]], way.up.tolist())
+    return heels, pelvis, way
 
 
 def _stride_count(contacts: Mapping[str, Contacts]) -> int:

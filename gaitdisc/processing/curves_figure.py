@@ -145,15 +145,19 @@ def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
 
 
 def _alt(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
-    ranges = []
-    for (channel, walk), rows in numbers.groupby(["channel", "walk"], sort=False):
-        if walk == "exo" and len(ranges) < 6:
-            unit = unit_text(str(rows["unit"].iloc[0]))
-            ranges.append(f"{label(str(channel))} {rows['mean'].min():.3g} to {rows['mean'].max():.3g} {unit}")
     return (
         f"Mean walking curves of {participant}, {counted(numbers['channel'].nunique(), 'channel')}, {run.nominal} "
-        f"and {run.exo}. With the device: {'; '.join(ranges)}."
+        f"and {run.exo}. With the device: {ranges_of(numbers[numbers['walk'] == 'exo'])}."
     )
+
+
+def ranges_of(numbers: pd.DataFrame) -> str:
+    """From where to where the mean curves of the first six channels go, in words."""
+    ranges = []
+    for channel, rows in list(numbers.groupby("channel", sort=False))[:6]:
+        unit = unit_text(str(rows["unit"].iloc[0]))
+        ranges.append(f"{label(str(channel))} {rows['mean'].min():.3g} to {rows['mean'].max():.3g} {unit}")
+    return "; ".join(ranges)
 
 
 def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> None:

@@ -137,53 +137,57 @@ class ClinicalVariable:
         return self.signs["lr".index(side)]
 
 
-def _angle(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
-    return ClinicalVariable(name, words, KINEMATICS, f"{stem}_{{side}}", signs=(1.0, 1.0), unit="deg", up=up, down=down)
+CHANNELS = {  # kind -> channel of a variable's stem, and unit
+    KINEMATICS: ("{}_{{side}}", "deg"),
+    MOMENTS: ("{}_{{side}}_moment", "N m/kg"),
+    POWERS: ("{}_power_{{side}}", "W/kg"),
+    FORCES: ("ground_force_{{side}}_{}", "%"),
+}
+# of the left and of the right leg; channels of the pelvis are the same for both
+PELVIS_SIGNS = {"pelvis_tilt": (-1.0, -1.0), "pelvis_obliquity": (1.0, -1.0), "pelvis_rotation": (-1.0, 1.0)}
 
 
-def _pelvis(name: str, words: str, signs: tuple[float, float], up: str, down: str) -> ClinicalVariable:
-    stem = {"pelvis_obliquity": "pelvis_list"}.get(name, name)
-    return ClinicalVariable(name, words, kind=KINEMATICS, stem=stem, signs=signs, unit="deg", up=up, down=down)
-
-
-def _moment(name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
-    return ClinicalVariable(name, words, MOMENTS, f"{stem}_{{side}}_moment", (1.0, 1.0), "N m/kg", up=up, down=down)
-
-
-def _power(joint: str) -> ClinicalVariable:
-    stem, up, down = f"{joint}_power_{{side}}", "generated", "absorbed"
-    return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), unit="W/kg", up=up, down=down)
-
-
-def _force(name: str, words: str, axis: str, up: str, down: str) -> ClinicalVariable:
-    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up=up, down=down)
+def _variable(kind: str, name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
+    channel, unit = CHANNELS[kind]
+    channel = stem if name in PELVIS_SIGNS else channel.format(stem)
+    return ClinicalVariable(name, words, kind, channel, PELVIS_SIGNS.get(name, (1.0, 1.0)), unit, up=up, down=down)
 
 
 # in the order of a sheet, three in a row
-VARIABLES = (
-    _pelvis("pelvis_tilt", "pelvic tilt", (-1.0, -1.0), "forwards", "backwards"),
-    _pelvis("pelvis_obliquity", "pelvic obliquity", (1.0, -1.0), "own side up", "own side down"),
-    _pelvis("pelvis_rotation", "pelvic rotation", (-1.0, 1.0), "own side forwards", "own side backwards"),
-    _angle("hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension"),
-    _angle("hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction"),
-    _angle("hip_rotation", "hip rotation", "hip_rotation", "internal", "external"),
-    _angle("knee_flexion", "knee flexion", "knee_angle", "flexion", "extension"),
-    _angle("ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion"),
-    _angle("foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out"),
-    _angle("knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)"),
-    _angle("knee_rotation", "knee rotation", "knee_rotation", "internal", "external"),
-    _angle("ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion"),
-    _angle("ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external"),
-    _moment("hip_moment", "hip moment", "hip_flexion", "flexion", "extension"),
-    _moment("knee_moment", "knee moment", "knee_angle", "flexion", "extension"),
-    _moment("ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion"),
-    _power("hip"),
-    _power("knee"),
-    _power("ankle"),
-    _moment("hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
-    _moment("knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
-    _moment("ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
-    _force("vertical_force", "vertical force, of body weight", "vy", "upwards", ""),
-    _force("fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards"),
+VARIABLES = tuple(
+    _variable(*row)
+    for row in (
+        (KINEMATICS, "pelvis_tilt", "pelvic tilt", "pelvis_tilt", "forwards", "backwards"),
+        (KINEMATICS, "pelvis_obliquity", "pelvic obliquity", "pelvis_list", "own side up", "own side down"),
+        (
+            KINEMATICS,
+            "pelvis_rotation",
+            "pelvic rotation",
+            "pelvis_rotation",
+            "own side forwards",
+            "own side backwards",
+        ),
+        (KINEMATICS, "hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension"),
+        (KINEMATICS, "hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction"),
+        (KINEMATICS, "hip_rotation", "hip rotation", "hip_rotation", "internal", "external"),
+        (KINEMATICS, "knee_flexion", "knee flexion", "knee_angle", "flexion", "extension"),
+        (KINEMATICS, "ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion"),
+        (KINEMATICS, "foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out"),
+        (KINEMATICS, "knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)"),
+        (KINEMATICS, "knee_rotation", "knee rotation", "knee_rotation", "internal", "external"),
+        (KINEMATICS, "ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion"),
+        (KINEMATICS, "ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external"),
+        (MOMENTS, "hip_moment", "hip moment", "hip_flexion", "flexion", "extension"),
+        (MOMENTS, "knee_moment", "knee moment", "knee_angle", "flexion", "extension"),
+        (MOMENTS, "ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion"),
+        (POWERS, "hip_power", "hip power", "hip", "generated", "absorbed"),
+        (POWERS, "knee_power", "knee power", "knee", "generated", "absorbed"),
+        (POWERS, "ankle_power", "ankle power", "ankle", "generated", "absorbed"),
+        (MOMENTS, "hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
+        (MOMENTS, "knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
+        (MOMENTS, "ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
+        (FORCES, "vertical_force", "vertical force, of body weight", "vy", "upwards", ""),
+        (FORCES, "fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards"),
+    )
 )
 BY_NAME = {one.name: one for one in VARIABLES}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -44,17 +43,15 @@ def computed_trial(
     calibration: Calibration,
     person: Person | None,
     settings: KineticsSettings | None = None,
-    forward: Sequence[float] | None = None,
 ) -> ComputedTrial:
     """Trial with joint angles from its markers and, where platforms allow it, moments and powers.
 
     What a model in the file itself held under these streams gives way. A trial without forces, or without a step of
     one foot alone on a platform, has angles only and says why in its findings.
 
-    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
     returns: streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers
     """
-    moved = motion(trial.stream("markers"), calibration, forward)
+    moved = motion(trial.stream("markers"), calibration)
     own = [key for key in ("kinematics", "moments") if key in trial.streams]
     streams = {key: recording for key, recording in trial.streams.items() if key not in own}
     named = {"subject": trial.subject, "condition": trial.condition}

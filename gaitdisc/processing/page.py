@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.processing.curves_figure import label_curve, sides_together
+from gaitdisc.processing.curves_figure import label_curve, ranges_of, sides_together
 from gaitdisc.processing.kept_parts import figure_again, hash_cycles, keep_part, read_part
 from gaitdisc.processing.leg_curves import FEET
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
@@ -31,7 +31,7 @@ from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sh
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.saved.study_run import StudyRun
-from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless, unit_text
+from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -209,7 +209,8 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
     key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
     legend(drawn, key)
-    return Figure(name, _caption(pooled), _alt(pooled, shown), shown, drawn)
+    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {ranges_of(shown)}."
+    return Figure(name, _caption(pooled), alt, shown, drawn)
 
 
 def draw_cycles(
@@ -236,11 +237,3 @@ def _caption(pooled: PooledCycles) -> str:
         f"initial contact of the channel's own foot; dotted: mean foot off.{moments}"
         + "".join(f" Filters: {words}." for words in filters)
     )
-
-
-def _alt(pooled: PooledCycles, numbers: pd.DataFrame) -> str:
-    ranges = []
-    for channel, rows in list(numbers.groupby("channel", sort=False))[:6]:
-        unit = unit_text(str(rows["unit"].iloc[0]))
-        ranges.append(f"{label(str(channel))} {rows['mean'].min():.3g} to {rows['mean'].max():.3g} {unit}")
-    return f"Mean cycles of {pooled.subject}, {pooled.where}: {'; '.join(ranges)}."

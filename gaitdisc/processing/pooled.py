@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -61,11 +59,10 @@ class _Seen:
     number: int
     steps: StepEvents
     over_ground: bool
-    name: str
     plates: PlateLoadings
     feet: HeelPaths | None
     legs: Recording | None
-    states: ShelvedRecordings
+    states: tuple[Shelved, ...]
     findings: tuple[Finding, ...]
     files: dict[str, str]
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
@@ -87,9 +84,9 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
         standing = standing_of(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
-        with shelf() as shelved:
+        with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
             for one in (own for own in sets if own.session == session):
-                seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, shelved, prints)
+                seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, Path(folder), prints)
             later = _later([trial for trials in seen.values() for trial in trials])
             found += [
                 _pooled(standing, one, seen[one.condition], lost[one.condition], later)
@@ -100,7 +97,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
 
 
 def _seen_trials(
-    standing: Standing, one: TrialSet, read: Read, shelved: Shelf, prints: dict[str, tuple[str, int]]
+    standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, tuple[str, int]]
 ) -> tuple[list[_Seen], list[Refusal]]:
     participant = standing.participant
     seen, lost = [], []
@@ -116,13 +113,13 @@ def _seen_trials(
             if twin != (name, number):
                 needed = "a recording must be counted once, for one session and condition"
                 raise StrideError(needed, f"its samples are identical to those of {twin[0]}", "Remove one of the two.")
-            seen.append(_seen(standing, planned, number, trial, shelved))
+            seen.append(_seen(standing, planned, number, trial, folder))
         except GaitdiscError as error:
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
 
 
-def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, shelved: Shelf) -> _Seen:
+def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, folder: Path) -> _Seen:
     """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
     computed = standing.computed(planned, walking_part(read))
@@ -142,8 +139,8 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, s
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     plates = plate_loadings(trial, rise_of(weight_n))
     feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
-    kept = shelved.put(states)
-    return _Seen(planned, number, steps, outside, trial.name, plates, feet, legs, kept, findings, files, plate_steps)
+    kept = tuple(put_away(one, folder) for one in states)
+    return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, plate_steps)
 
 
 def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
@@ -308,15 +305,15 @@ def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object
 def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], NDArray[np.float64]]:
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
-    for trial in seen:
-        for channel in trial.states.channels:
+    for state in (state for trial in seen for state in trial.states):
+        for channel in state.kept.channels:
             by_name.setdefault(channel.name, channel)
     names = list(by_name)
     kept = [[cycle for cycle in own if not cycle.reason] for own in cycles]
     whole = np.full((sum(map(len, kept)), len(PERCENT), len(names)), np.nan)
     row = 0
     for trial, own in zip(seen, kept, strict=True):
-        for state in trial.states.recordings():
+        for state in (one.recording() for one in trial.states):
             same = [c for c in state.channels if c.unit == by_name[c.name].unit]  # the first unit counts
             columns = [names.index(channel.name) for channel in same]
             chosen = state.selected([channel.name for channel in same])
@@ -331,53 +328,26 @@ def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple
 
 
 @dataclass(frozen=True, eq=False)
-class ShelvedRecordings:
-    """Recordings of a trial, on disk or, where that has no room, in memory."""
+class Shelved:
+    """A recording that is needed later, on disk or, where that has no room, in memory."""
 
-    kept: tuple[Recording, ...]  # with their samples, or with one sample each where these are on disk
-    files: tuple[Path, ...] = ()  # where the samples lie; empty where they are in memory
+    kept: Recording  # with its samples, or with one sample where these are on disk
+    file: Path | None = None  # where the samples lie
 
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Channels of all of them."""
-        return tuple(channel for recording in self.kept for channel in recording.channels)
-
-    def recordings(self) -> Iterator[Recording]:
-        """Return the recordings with their samples, one after the other."""
-        if not self.files:
-            yield from self.kept
-            return
-        for recording, file in zip(self.kept, self.files, strict=True):
-            with np.load(file, allow_pickle=False) as held:
-                yield replace(recording, **{name: held[name] for name in ("time", "values", "suspect")})
+    def recording(self) -> Recording:
+        """Return the recording with its samples."""
+        if self.file is None:
+            return self.kept
+        with np.load(self.file, allow_pickle=False) as held:
+            return replace(self.kept, **{name: held[name] for name in ("time", "values", "suspect")})
 
 
-@dataclass(frozen=True)
-class Shelf:
-    """A folder for samples that are needed later."""
-
-    folder: Path
-    _numbers: Iterator[int] = field(default_factory=itertools.count, init=False, repr=False, compare=False)
-
-    def put(self, recordings: Sequence[Recording]) -> ShelvedRecordings:
-        """Put recordings away."""
-        files = []
-        try:
-            for one in recordings:
-                file = self.folder / f"{next(self._numbers)}.npz"
-                np.savez(file, time=one.time, values=one.values, suspect=np.asarray(one.suspect))
-                files.append(file)
-        except OSError:  # no room on disk
-            return ShelvedRecordings(tuple(recordings))
-        empty = (
-            replace(one, time=one.time[:1].copy(), values=one.values[:1].copy(), suspect=np.array(one.suspect)[:1])
-            for one in recordings
-        )
-        return ShelvedRecordings(tuple(empty), tuple(files))
-
-
-@contextmanager
-def shelf() -> Iterator[Shelf]:
-    """Shelf that is cleared at the end."""
-    with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
-        yield Shelf(Path(folder))
+def put_away(one: Recording, folder: Path) -> Shelved:
+    """Put the samples of a recording into a file of a folder."""
+    samples = {"time": one.time, "values": one.values, "suspect": np.asarray(one.suspect)}
+    try:
+        with tempfile.NamedTemporaryFile(suffix=".npz", dir=folder, delete=False) as file:
+            np.savez(file, **samples)
+    except OSError:  # no room on disk
+        return Shelved(one)
+    return Shelved(replace(one, **{name: each[:1].copy() for name, each in samples.items()}), Path(file.name))

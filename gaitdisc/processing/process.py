@@ -297,7 +297,3 @@ class StudyWalks:
             if self.study.kinematics and self.study.kinematics.angles == "file":
                 why = 'the study selects those of the file, angles = "file" in [kinematics]'
         return ReadWalk(ready, standing.body_weight_n(planned), why)
-
-    def walk(self, planned: PlannedTrial) -> Walk:
-        """Filtered walk, cut into strides, under the settings of the study."""
-        return self.read_walk(planned).processed(self.study)

@@ -94,7 +94,7 @@ def public_trial(
 
 
 def _walk(own: StudyWalks, planned: PlannedTrial, public: PublicWords) -> Walk:
-    walk = own.walk(planned)
+    walk = own.read_walk(planned).processed(own.study)
     left_away = gait_samples(walk.trajectory, own.study.models.outputs)[1].finding()
     return replace(walk, findings=tuple(map(public.finding, (*walk.findings, left_away))))
 

@@ -19,7 +19,7 @@ from gaitdisc.processing.contact_choice import (
     named_markers,
     nothing_found,
     seen_contacts,
-    trial_direction,
+    walking_markers,
 )
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
@@ -204,10 +204,8 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
     """Heels, pelvis and direction (`+x` to `-z`, inferred where empty); None where markers do not give them."""
     if "markers" not in trial.streams:
         return None
-    markers = trial.stream("markers")
     try:
-        heels, pelvis = named_markers(markers)
-        return heels, pelvis, trial_direction(markers, heels, pelvis, direction)
+        return walking_markers(trial.stream("markers"), direction)
     except (ChannelError, StrideError):
         return None
 

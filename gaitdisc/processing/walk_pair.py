@@ -11,14 +11,14 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.errors import GaitdiscError, SamplingError, StrideError
+from gaitdisc.ingest.study import Filters
 from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
 from gaitdisc.processing.pooled_cycles import WalkSummary
-from gaitdisc.processing.process import is_raw, knees_and_hips, quality_findings, stride_findings, walk_summary
+from gaitdisc.processing.process import envelope_of, knees_and_hips, quality_findings, stride_findings, walk_summary
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
-from gaitdisc.signals.emg import ENVELOPE_HZ, enveloped
 from gaitdisc.signals.gaps import without_spikes
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.stride_quality import without_outlying
@@ -174,7 +174,7 @@ def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
     if not recording.channels:
         return None
     if key == "emg":
-        return enveloped(recording) if is_raw(recording) else lowpassed(recording, ENVELOPE_HZ)
+        return envelope_of(recording, Filters())
     return lowpassed(without_spikes(recording), FORCE_HZ if key == "forces" else cutoff_hz)
 
 

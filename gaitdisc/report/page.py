@@ -102,6 +102,6 @@ def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ..
             delayed(work)(*arguments) for arguments in each
         )
     except BrokenProcessPool:  # killed, mostly for its memory: one after the other takes the least
-        note_outputs()
-        return [draw(*arguments) for arguments in each]
-    return list(drawn)
+        drawn = None
+    note_outputs()  # this command may write again what its processes wrote
+    return [draw(*arguments) for arguments in each] if drawn is None else list(drawn)

@@ -228,7 +228,7 @@ def body(name: str, wrong_m: float = 0.0):
     true = {joint: place for joint, place in right.points["pelvis"].items() if joint.startswith("hip")}
     points = dict(right.points)
     points["pelvis"] = {k: place + wrong_m * (k in true) for k, place in right.points["pelvis"].items()}
-    return type(right)(right.marker_set, right.body, points, right.static), true
+    return type(right)(right.marker_set, right.body, points), true
 
 
 @pytest.mark.parametrize("name", BODIES)

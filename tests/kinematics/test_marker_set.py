@@ -7,12 +7,7 @@ import pytest
 from manufactured_body import MEASURES, PLUG_IN_GAIT, known_angles, markers_of, renamed, static_of
 
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
-from gaitdisc.kinematics.marker_set import (
-    marker_set,
-    read_marker_set,
-    recognised_marker_set,
-    shipped_marker_sets,
-)
+from gaitdisc.kinematics.marker_set import marker_set, read_marker_set, recognised_marker_set, shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.motion import moved_body
 

@@ -33,6 +33,7 @@ from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.markers import WalkingFrame
 from gaitdisc.kinematics.motion import angles_of_poses, chosen_marker_set, motion, moved_body
 from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinematics.segment_poses import carried_joint
 from gaitdisc.recording import Recording
 
 PIG_ENDS = ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")
@@ -100,8 +101,9 @@ def test_poses_are_those_of_the_body():
         np.testing.assert_allclose(found.poses[segment].rotation, here.axes @ rotation, atol=1e-9, err_msg=segment)
         expected = origin @ here.axes.T + here.origin
         np.testing.assert_allclose(found.poses[segment].origin, expected, atol=1e-9, err_msg=segment)
-    np.testing.assert_allclose(found.joint_centres["knee_l"], found.poses["shank_l"].origin, atol=1e-9)
-    np.testing.assert_allclose(found.joint_centres["ankle_r"], found.poses["foot_r"].origin, atol=1e-9)
+    for joint, segment in (("knee_l", "shank_l"), ("ankle_r", "foot_r")):
+        centre = carried_joint(joint, found.poses, found.calibration)
+        np.testing.assert_allclose(centre, found.poses[segment].origin, atol=1e-9)
     assert max(residual.max() for residual in found.residual_m.values()) < 1e-9
 
 
@@ -221,6 +223,11 @@ ANGLES = moved_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL
 def test_without_the_markers_of_one_set_in_both_trials_a_body_is_not_followed(markers, static, given_set, words):
     with pytest.raises(ChannelError, match=words):
         moved_body(markers, static, given_set, MEASURES)
+
+
+def test_a_plane_in_which_nobody_walks_is_refused():
+    with pytest.raises(ShapeError, match=r"planar joints.*40 mm.*no frame"):
+        moved_body(WALK, static_of(PLUG_IN_GAIT), "plug_in_gait", MEASURES, (0, 0, 1), "planar")
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
-from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.body_inertia import FootPoints, Person, inertia_table, leg_inertia, segment_lengths
-from gaitdisc.kinetics.joint_moments import PARTS, FootLoad, KineticsSettings, along, joint_axes, joint_moments, legs
+from gaitdisc.kinematics.pose import JOINT_CHANNELS, Pose
+from gaitdisc.kinetics.body_inertia import Person, inertia_table, leg_inertia, segment_lengths
+from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, along, joint_axes, joint_moments, legs
 from gaitdisc.kinetics.newton_euler import GRAVITY, joint_wrenches, segment_motion
 from gaitdisc.kinetics.plate_steps import FootPath
 from gaitdisc.kinetics.platform import Wrench
@@ -133,7 +133,7 @@ def test_settings_that_cannot_be_are_refused():
 
 
 LENGTHS = {"shank": 0.42, "thigh": 0.41}
-FOOT = FootPoints(np.array([-0.05, -0.06, 0.0]), np.array([0.13, -0.06, 0.0]))
+FOOT = np.array([-0.05, -0.06, 0.0]), np.array([0.13, -0.06, 0.0])
 
 
 # Sums of the columns that the papers print, rounding included
@@ -150,7 +150,7 @@ def test_the_segments_of_a_table_make_a_whole_body(table, sex, total):
 @pytest.mark.parametrize("sex", ["f", "m", ""])
 def test_a_leg_is_a_body_of_positive_inertia_and_the_other_its_mirror(table, sex):
     person = Person(70.0, sex, 1.74)
-    right, left = (leg_inertia(person, side, LENGTHS, FOOT, table) for side in "rl")
+    right, left = (leg_inertia(person, side, LENGTHS, *FOOT, table) for side in "rl")
     mirror = np.diag([1.0, 1.0, -1.0])
     for segment, body in right.items():
         one, two, three = np.linalg.eigvalsh(body.tensor)
@@ -161,22 +161,22 @@ def test_a_leg_is_a_body_of_positive_inertia_and_the_other_its_mirror(table, sex
 
 
 def test_numbers_of_the_tables():
-    thigh = leg_inertia(Person(70.0, "m"), "r", LENGTHS, FOOT)["thigh"]
+    thigh = leg_inertia(Person(70.0, "m"), "r", LENGTHS, *FOOT)["thigh"]
     assert thigh.mass_kg == pytest.approx(0.123 * 70)
     assert thigh.centre == pytest.approx(0.41 * np.array([-0.041, -0.429, 0.033]))
     assert np.sqrt(np.diag(thigh.tensor) / thigh.mass_kg) == pytest.approx(0.41 * np.array([0.29, 0.15, 0.30]))
-    shank = leg_inertia(Person(50.0, "f", 1.6), "l", LENGTHS, FOOT, "deleva1996")["shank"]
+    shank = leg_inertia(Person(50.0, "f", 1.6), "l", LENGTHS, *FOOT, "deleva1996")["shank"]
     assert (shank.mass_kg, shank.centre[1]) == pytest.approx((0.0481 * 50, -0.4352 * 0.42))
 
 
 def test_de_levas_foot_lies_between_heel_and_toe_tip():
-    foot = leg_inertia(Person(70.0, "m", 1.741), "r", LENGTHS, FOOT, "deleva1996")["foot"]
+    foot = leg_inertia(Person(70.0, "m", 1.741), "r", LENGTHS, *FOOT, "deleva1996")["foot"]
     assert foot.centre == pytest.approx([-0.05 + 0.4415 * 0.2581, -0.06, 0.0])
     assert np.sqrt(np.diag(foot.tensor) / foot.mass_kg) == pytest.approx(0.2581 * np.array([0.124, 0.245, 0.257]))
 
 
 def test_an_unknown_sex_takes_the_mean():
-    masses = [leg_inertia(Person(60.0, sex), "r", LENGTHS, FOOT)["thigh"].mass_kg for sex in ("f", "m", "")]
+    masses = [leg_inertia(Person(60.0, sex), "r", LENGTHS, *FOOT)["thigh"].mass_kg for sex in ("f", "m", "")]
     assert masses[2] == pytest.approx((masses[0] + masses[1]) / 2)
 
 
@@ -196,11 +196,11 @@ def test_what_fits_no_leg_is_refused():
     with pytest.raises(SchemaError, match=r"'f'.*'m'.*it is.*'w'"):
         Person(60.0, "w")
     with pytest.raises(UnitError, match=r"thigh.*0.1.*0.8 m.*thigh_r.*410 m"):
-        leg_inertia(Person(60.0), "r", {"shank": 0.4, "thigh": 410.0}, FOOT)
+        leg_inertia(Person(60.0), "r", {"shank": 0.4, "thigh": 410.0}, *FOOT)
     with pytest.raises(UnitError, match=r"the person's stature.*no"):
-        leg_inertia(Person(60.0, "f"), "r", LENGTHS, FOOT, "deleva1996")
+        leg_inertia(Person(60.0, "f"), "r", LENGTHS, *FOOT, "deleva1996")
     with pytest.raises(SchemaError, match="dumas2007, deleva1996;"):
-        leg_inertia(Person(60.0), "r", LENGTHS, FOOT, "winter")
+        leg_inertia(Person(60.0), "r", LENGTHS, *FOOT, "winter")
 
 
 def test_lengths_are_those_between_joint_centres():
@@ -216,7 +216,6 @@ def test_lengths_are_those_between_joint_centres():
 
 
 TURNING = np.arange(200) / 100
-HIP = [part for part in PARTS if part.joint == "hip"]
 
 
 def pose(rotation):
@@ -240,7 +239,7 @@ def test_the_parts_of_a_moment_times_the_rates_of_the_angles_are_the_power(side,
     moment = np.random.default_rng(5).normal(size=(len(TURNING), 3))
     power = np.einsum("fx,fx->f", moment, turning)
     axes = joint_axes(near, far)
-    by_parts = sum(along(moment, axes, part, side) * rate for part, rate in zip(HIP, rates, strict=True))
+    by_parts = (along(moment, axes, "hip", side) * np.stack(rates, axis=1)).sum(axis=1)
     assert by_parts[3:-3] == pytest.approx(power[3:-3], abs=1e-4)
     assert np.abs(power[3:-3]).max() > 1
 
@@ -254,8 +253,11 @@ def test_positive_is_the_movement_that_the_moment_makes():
     cases |= {"knee_angle": (down, [-1, 0, 0]), "ankle_angle": (front, [0, 1, 0]), "ankle_inversion": (down, None)}
     for side, inwards in (("r", [0, 0, -1]), ("l", [0, 0, 1])):
         for name, (end, goes) in cases.items():
-            part = next(one for one in PARTS if one.angle == name)
-            moment = next(m for m in np.vstack([np.eye(3), -np.eye(3)]) if along(m[None], axes, part, side)[0] > 0.5)
+            joint = name.split("_")[0]
+            at = JOINT_CHANNELS[joint][0].index(name)
+            moment = next(
+                m for m in np.vstack([np.eye(3), -np.eye(3)]) if along(m[None], axes, joint, side)[0, at] > 0.5
+            )
             assert np.cross(moment, end) == pytest.approx(np.array(goes or inwards)), (side, name)
 
 

@@ -128,7 +128,7 @@ def test_smoothing_keeps_slow_turns_and_takes_tremor_away():
 def test_a_body_that_falls_accelerates_by_g():
     origin = np.outer(-0.5 * 9.81 * FAST**2, [0.0, 1.0, 0.0])
     poses = {"foot_r": Pose(origin, np.tile(np.eye(3), (400, 1, 1)))}
-    moving = segment_motions(poses, FAST, np.inf, ["foot_r", "foot_l"])
+    moving = segment_motions(poses, FAST, np.inf)
     assert list(moving) == ["foot_r"]
     assert moving["foot_r"].acceleration[2:-2, 1] == pytest.approx(-9.81, rel=1e-6)
 
@@ -147,7 +147,7 @@ def test_a_long_gap_stays_unknown():
 
 def test_frames_that_do_not_fit_are_refused():
     with pytest.raises(ShapeError, match=r"foot_r.*400 frames.*399 times"):
-        segment_motions({"foot_r": turning()}, FAST[:-1], np.inf, ["foot_r"])
+        segment_motions({"foot_r": turning()}, FAST[:-1], np.inf)
     with pytest.raises(SamplingError, match="5 samples"):
         segment_motion(Pose(np.zeros((3, 3)), np.tile(np.eye(3), (3, 1, 1))), 100.0)
 

@@ -150,7 +150,9 @@ def test_a_body_that_moves_as_one_is_balanced():
 def test_a_wrong_mass_shows_as_a_mean():
     found, loads = bobbing(Person(64.0, "f"))
     wrong = Person(80.0, "f")
-    poses = {f"{k}_{leg.side}" if k != "pelvis" else k: m.pose for leg in found.values() for k, m in leg.moving.items()}
+    poses = {
+        f"{k}_{side}" if k != "pelvis" else k: m.pose for side, leg in found.items() for k, m in leg.moving.items()
+    }
     paths = {}
     for side in "rl":
         ankle = poses[f"foot_{side}"].origin

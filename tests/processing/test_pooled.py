@@ -12,7 +12,7 @@ from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, StrideRules, Study, Treadmill
-from gaitdisc.processing.pooled import pooled_cycles, pooled_instead, shelf
+from gaitdisc.processing.pooled import pooled_cycles, pooled_instead, put_away
 from gaitdisc.recording import Event, Recording, Source, Trial
 
 
@@ -295,39 +295,37 @@ EMG = Recording(
 )
 
 
-def test_what_was_put_away_comes_back_to_the_last_bit_and_is_not_in_memory():
-    with shelf() as shelved:
-        first, second = shelved.put([EMG, EMG]), shelved.put([EMG])
-        assert sum(one.values.nbytes for one in first.kept) < 100
-        assert first.channels == EMG.channels * 2
-        for (found,) in (list(first.recordings())[1:], second.recordings()):
-            for name in ("time", "values", "suspect"):
-                np.testing.assert_array_equal(getattr(found, name), getattr(EMG, name))
-            assert (found.subject, found.condition, found.source) == ("P01", "walking", EMG.source)
-        folder = shelved.folder
-    assert not folder.exists()
+def test_what_was_put_away_comes_back_to_the_last_bit_and_is_not_in_memory(tmp_path):
+    first, second = put_away(EMG, tmp_path), put_away(EMG.with_values(2 * EMG.values), tmp_path)
+    assert first.kept.values.nbytes < 50 and first.kept.channels == EMG.channels
+    for name in ("time", "values", "suspect"):
+        np.testing.assert_array_equal(getattr(first.recording(), name), getattr(EMG, name))
+    found = first.recording()
+    assert (found.subject, found.condition, found.source) == ("P01", "walking", EMG.source)
+    assert first.file is not None
+    first.file.unlink()  # a count of the folder would give its place, and that of the second, away
+    put_away(EMG, tmp_path)
+    np.testing.assert_array_equal(second.recording().values, 2 * EMG.values)
 
 
-def test_what_lies_in_the_folder_is_not_counted_at_each_new_one():
-    with shelf() as shelved:
-        first, second = shelved.put([EMG]), shelved.put([EMG.with_values(2 * EMG.values)])
-        first.files[0].unlink()  # a count of the folder would give its place, and that of the second, away
-        shelved.put([EMG])
-        np.testing.assert_array_equal(next(second.recordings()).values, 2 * EMG.values)
-
-
-def test_a_full_disk_leaves_them_in_memory(monkeypatch):
+def test_a_full_disk_leaves_them_in_memory(monkeypatch, tmp_path):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full)
-    with shelf() as shelved:
-        (found,) = shelved.put([EMG]).recordings()
-    assert found is EMG
+    assert put_away(EMG, tmp_path).recording() is EMG
 
 
-def test_the_shelf_is_cleared_after_an_error():
-    with pytest.raises(ZeroDivisionError), shelf() as shelved:
-        shelved.put([EMG])
-        _ = 1 / 0
-    assert not shelved.folder.exists()
+def test_the_folder_is_cleared_after_an_error(pieces, monkeypatch, tmp_path):
+    def read(planned):
+        if planned.files == ("1.c3d",):
+            waiting.extend(tmp_path.glob("*/*.npz"))
+            raise ZeroDivisionError
+        return pieces[0]
+
+    waiting = []
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    study, person = _study(_planned(2), **OVERGROUND)
+    with pytest.raises(ZeroDivisionError):
+        pooled_cycles(study, person, read)
+    assert waiting and not [*tmp_path.iterdir()]

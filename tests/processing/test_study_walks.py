@@ -52,7 +52,7 @@ def walks(trials, kinematics: Kinematics | None = FREE, planned=(WALK, STATIC), 
 
 def test_models_see_the_angles_that_the_markers_show(known, trials):
     own = walks(trials)
-    found = own.walk(WALK)
+    found = own.read_walk(WALK).processed(own.study)
     given = processed(Trial("P01 natural", {"kinematics": known.stream("kinematics")}), own.study)
     np.testing.assert_allclose(found.state.values, given.state.selected(ANGLES).values, atol=1e-6)
     assert found.strides["r"].detector == "markers"
@@ -82,8 +82,9 @@ def test_markers_without_a_static_trial_are_refused_in_words(trials, change, wor
         static = without(trials["static"].stream("markers"), "RLFC", "RMFC")
         own["static"] = replace(trials["static"], streams={"markers": static})
     kinematics = Kinematics(marker_set="rajagopal", angles="file" if change == "file asked for" else None)
+    read = walks(own, kinematics, planned)
     with pytest.raises(ChannelError, match=words):
-        walks(own, kinematics, planned).walk(WALK)
+        read.read_walk(WALK).processed(read.study)
 
 
 def test_hips_come_from_a_trial_of_circled_legs_unless_the_study_names_others(trials):

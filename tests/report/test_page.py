@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pandas as pd
+import pytest
 from chapter3.pages import statements_table
 from texts import says
 
@@ -69,17 +70,19 @@ def test_few_are_drawn_here_and_many_elsewhere_in_order(monkeypatch):
     assert [word for word, _ in many] == ["a", "b", "c"] and os.getpid() not in {at for _, at in many}
 
 
-def _written(folder, number, here):
+def _written(folder, number, breaks, here):
     write_whole(folder / f"{number}.txt", "drawn")
-    if os.getpid() != here:
+    if breaks and os.getpid() != here:
         os._exit(1)
 
 
-def test_what_was_drawn_before_the_processes_broke_is_drawn_again(monkeypatch, tmp_path):
+@pytest.mark.parametrize("breaks", [True, False])
+def test_what_other_processes_wrote_may_be_written_again(monkeypatch, tmp_path, breaks):
     monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
+    each = [(tmp_path, number, breaks, os.getpid()) for number in range(8)]
     with guarded("gaitdisc test"):
         claim_folder(tmp_path)
-        drawn_side_by_side(_written, [(tmp_path, number, os.getpid()) for number in range(4)], 2)
+        assert [drawn_side_by_side(_written, each, most) for most in (2, 8)] == [[None] * 8] * 2
     assert {path.read_text() for path in tmp_path.glob("*.txt")} == {"drawn"}
 
 
