@@ -103,11 +103,6 @@ def test_what_is_wrong_is_named_and_the_exit_code_says_so(called):
         assert says(called("doctor", ends=1).stderr, "wrong", "C3D")
 
 
-@pytest.mark.parametrize(("command", "option"), [("run", "--jobs"), ("ablate", "--out"), ("demo", "--quiet")])
-def test_a_shared_option_is_explained_in_the_help(called, command, option):
-    assert option in called(command, "--help").stdout
-
-
 def test_each_exit_code_says_something_else():
     done, wrong_usage = 0, 2
     assert len({done, wrong_usage, REFUSED, SOME_REFUSED, STOPPED}) == 5

@@ -42,12 +42,12 @@ def run_folder(tmp_path_factory):
 
 
 @pytest.fixture
-def without_figures(monkeypatch):
+def without_figures(monkeypatch, unpainted):
     """The page of everybody has its words alone: its figures take seconds a person."""
     monkeypatch.setattr("gaitdisc.processing.page.cycles_figures", lambda *_: [])
 
 
-def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path):
+def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path, unpainted):
     save_reference(made_controls(6), tmp_path)
     one = called("report", run_folder.parent, "--person", "P07", "--reference", tmp_path, ends=0)
     assert "P07_s1.html" in one.stdout and "P07_s2.html" in one.stdout
