@@ -106,7 +106,7 @@ ANSWERS = [
 
 
 def test_answers_are_counted_over_seeds_and_a_curve_says_how_far_it_is_off():
-    table = naming_table(ANSWERS, "names")
+    table = naming_table(ANSWERS)
     assert table.columns == ("case", "hidden", "noise", "SINDy", "Gaussian process")
     assert says(table.rows[0][3], "named 1/2", "wrong name 1/2", "1.02")
     assert says(table.rows[0][4], "curve", "7 % off")

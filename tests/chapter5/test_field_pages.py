@@ -58,7 +58,7 @@ def test_the_mean_spectrum_stands_beside_the_slope():
     k = np.arange(1, 16)
     numbers = pd.DataFrame({f"e_{n}": [2.0 * n ** (-5 / 3), 4.0 * n ** (-5 / 3)] for n in k})
     numbers = numbers.assign(snapshot=[0, 10], dissipation=[0.09, 0.11], re_lambda=25.0, kmax_eta=1.3, turnover=3.4)
-    figure = flow_figure(numbers, 0.1, "flow")
+    figure = flow_figure(numbers, 0.1)
     spectrum, slope = figure.drawn.axes[0].lines[:2]
     np.testing.assert_allclose(spectrum.get_ydata(), 3.0 * k ** (-5 / 3))
     np.testing.assert_allclose(slope.get_ydata(), spectrum.get_ydata())
