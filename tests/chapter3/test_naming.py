@@ -12,7 +12,6 @@ from texts import says
 
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.errors import ShapeError
-from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation_file import bundled
 
 
@@ -41,9 +40,8 @@ def test_the_table_has_a_row_an_answer():
 
 
 @pytest.fixture(scope="module")
-def hidden():
-    system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
-    return HiddenEffect("van der Pol", "−0.01 x³", system, ("y", "cubic_stiffness"), 0.01, duration_s=20.0)
+def hidden(van_der_pol):
+    return HiddenEffect("van der Pol", "−0.01 x³", van_der_pol, ("y", "cubic_stiffness"), 0.01, duration_s=20.0)
 
 
 def test_the_name_the_number_and_the_forecast(hidden):

@@ -9,11 +9,8 @@ import numpy as np
 import pytest
 from chapter3 import pages
 from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy, cell_of
-from chapter3.record import Conditions, recorded, system_of
+from chapter3.record import Conditions, recorded
 from texts import says
-
-from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.simulation_file import bundled
 
 
 def test_the_pulse_of_the_text_cannot_run():
@@ -60,11 +57,10 @@ def test_every_method_removes_most_of_the_bias_without_noise(tmp_path):
     )
 
 
-def test_the_system_is_drawn_with_the_rate_that_it_lacks():
-    system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
-    cells = {"text": (cell_of(recorded(system, Conditions(duration_s=5.0)), "sindy", "dynamics"),)}
+def test_the_system_is_drawn_with_the_rate_that_it_lacks(van_der_pol):
+    cells = {"text": (cell_of(recorded(van_der_pol, Conditions(duration_s=5.0)), "sindy", "dynamics"),)}
     figures = {"system": "Fig. 3.2", "dynamics": "Fig. 3.3", "noise": "Fig. 3.5"}
-    stated, variant = pages.blocks_of(cells, figures, (), {"text": system})
+    stated, variant = pages.blocks_of(cells, figures, (), {"text": van_der_pol})
     assert [figure.name for figure in variant.figures] == ["system-1", "dynamics-1", "noise-1"]
     numbers = variant.figures[0].numbers
     assert np.allclose(numbers["missing rate"], -0.01 * numbers["x truth"] ** 3)
