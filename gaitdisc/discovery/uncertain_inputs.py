@@ -261,7 +261,7 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without a name that errors of inputs of unknown size, or a gain of one, explain as well."""
     found, search = verdict.found, case.search
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
-    if not erring or verdict.word not in NAMED:
+    if not erring or not any(one.candidate.verdict in NAMED for one in found.model.parts):
         return case, verdict
     base = found
     while base.model.parts:
