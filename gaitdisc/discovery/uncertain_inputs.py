@@ -31,6 +31,7 @@ from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, sensor_covariance
+from gaitdisc.discovery.random_effects import random_effects
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
@@ -43,10 +44,10 @@ TURNS = 6
 NUDGE = 0.1  # standard errors
 ENOUGH = 0.1  # off the squares, a tenth of what one number of noise leaves
 HALVED = (1.0, 0.5, 0.25, 0.1)  # of a step that leaves more
-NAMED = ("missing_physics", "sensor_error", "wrong_parameter")
 SHARES = (0.0, 0.02, 0.05, 0.1, 0.15, 0.25, 0.4)  # of an input and of its spread, by which it may err unsaid
 PERIODS = (1.0, 4.0, 16.0)  # in which such an error is forgotten
-KNOTS, RUNS = 60, 12  # at most, of which a run and a likelihood of such errors are made
+KNOTS_EACH, KNOTS = 4, (8, 60)  # in a period, and in a run: between these such an error is linear
+RUNS = 12  # at most, of which such errors are weighed
 Array = NDArray[np.float64]
 
 
@@ -78,25 +79,35 @@ class Weighed:
 
 def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt."""
-    found, erring = verdict.found, [repr(one.name) for one in wandering(case.search.base)]
+    erring = [repr(one.name) for one in wandering(case.search.base)]
     if not erring or verdict.starts:
         return case, verdict
     best = likeliest(case, verdict)
     if verdict.process_noise and best.level > CRITERIA.mere_noise:
         return case, verdict
     now, proof = beyond_errors(case, best)
-    named, kept = (Counter(part.candidate.label for part in one.model.parts) for one in (best.now, now))
+    verdict = replace(verdict, proof=proof or verdict.proof)
+    return without_names(case, verdict, best.now, now, "stated errors", f"the stated errors of {listed(erring)}")
+
+
+def without_names(
+    case: Case, verdict: Verdict, named: ScoredModel, now: ScoredModel, kind: str, errors: str
+) -> tuple[Case, Verdict]:
+    """Return the verdict on what is still named; a finding says what errors of inputs explain as well.
+
+    named, now: with the names before and after
+    """
+    before, after = (Counter(part.candidate.label for part in one.model.parts) for one in (named, now))
     dropped = ["process noise"] * bool(verdict.process_noise)
-    dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (named - kept).elements()]
+    dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (before - after).elements()]
     if dropped:
-        what = f"the stated errors of {listed(erring)} explain {listed(dropped)} as well"
-        finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
-        measured = replace(case.measured, findings=(*case.measured.findings, finding))
-        case = replace(case, measured=measured)
-    same = now.labels == verdict.found.labels
-    verdict = replace(verdict, found=now, proof=proof or verdict.proof, read=verdict.read and same, process_noise=None)
-    verdict = replace(verdict, word=now.word if now.model.parts else "no_gap")
-    return case, verdict if same else replace(verdict, rivals=(found, *verdict.rivals))
+        what = f"{errors} explain {listed(dropped)} as well"
+        finding = Finding("note", kind, case.measured.source, what, "the name; it is among the rivals")
+        case = replace(case, measured=replace(case.measured, findings=(*case.measured.findings, finding)))
+    same, word = now.labels == verdict.found.labels, now.word if now.model.parts else "no_gap"
+    rivals = verdict.rivals if same else (verdict.found, *verdict.rivals)
+    read = verdict.read and same
+    return case, replace(verdict, word=word, found=now, rivals=rivals, read=read, process_noise=None)
 
 
 def likeliest(case: Case, verdict: Verdict) -> Weighed:
@@ -232,7 +243,8 @@ def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: 
     late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
     moved = moved_by_inputs(now, shooting, fit, [one.name for one in wandering(base)], np.eye(segments.length))
     total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
-    for flat, one in zip(moved, wandering(base), strict=True):
+    for seen, one in zip(moved, wandering(base), strict=True):
+        flat = seen.reshape(len(segments), -1, segments.length)
         memory = np.exp(-late / one.seconds)
         # averaged, as else what reads low errs less and its factor is too large (by 17-21 % where it errs by 25 %)
         along = one.gain * (segments.of(case.measured.drive.inputs)[..., one.column] @ memory) / memory.sum(axis=0)
@@ -242,7 +254,7 @@ def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: 
 
 
 def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Array) -> list[Array]:
-    """Return what errors of each of some inputs change in what is seen (run, number, knot), to first order.
+    """Return what errors of each of some inputs change in what is seen (run, sample, channel, knot), to first order.
 
     hats (sample, knot): the error that each knot stands for
     """
@@ -252,8 +264,7 @@ def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: li
     push, moved = np.broadcast_to(hats, (len(fit.starts), *hats.shape)), []
     for number in range(len(places)):
         seen = seen_change(shooting, now.model.machine, fit, line.of_push(number, push))
-        seen = seen + shooting.filtered(direct[:, :, :, number, None] * hats[:, None, :], 1)
-        moved.append(seen.reshape(len(fit.starts), -1, hats.shape[1]))
+        moved.append(seen + shooting.filtered(direct[:, :, :, number, None] * hats[:, None, :], 1))
     return moved
 
 
@@ -261,28 +272,24 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without a name that errors of inputs of unknown size, or a gain of one, explain as well."""
     found, search = verdict.found, case.search
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
-    if not erring or not any(one.candidate.verdict in NAMED for one in found.model.parts):
+    if not erring or all(one.candidate.verdict == "input_error" for one in found.model.parts):
         return case, verdict
     base = found
     while base.model.parts:
         base = search.without(base, 0)
     gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
     models = [search.with_part(base, Part(one, {"gain": 1.0})) for one in gains]
-    ordered = [base, *(ScoredModel(one, base.shooting) for one in models if search.sensible(one))]
+    others = [base, *(ScoredModel(one, base.shooting) for one in models if search.sensible(one))]
     size = case.noise_floor(found.noise.size)
-    named, plain, *rest = (criterion_with_errors(case, one, erring, size) for one in (found, *ordered))
-    best = min(rest, default=np.inf)
-    if min(plain, best) - named > CRITERIA.margin:
+    named, plain, *rest = (criterion_with_errors(case, one, erring, size) for one in (found, *others))
+    if min(plain, *rest) - named > CRITERIA.margin:
         return case, verdict
-    now = ordered[1 + rest.index(best)] if plain - best > CRITERIA.margin else base
+    gained = rest and plain - min(rest) > CRITERIA.margin
+    now = others[1 + int(np.argmin(rest))] if gained else base
     proof = proof_of(case, base, now, now)
     now = now if proof.bears_out else base
-    names = listed([f"{spoken(one.candidate.name)} at {one.candidate.place}" for one in found.model.parts])
-    what = f"unstated errors of {listed([repr(one) for one in erring])} explain {names} as well"
-    finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
-    case = replace(case, measured=replace(case.measured, findings=(*case.measured.findings, finding)))
-    word, rivals = now.word if now.model.parts else "no_gap", (found, *verdict.rivals)
-    return case, replace(verdict, word=word, found=now, rivals=rivals, proof=proof, read=False)
+    errors = f"unstated errors of {listed([repr(one) for one in erring])}"
+    return without_names(case, replace(verdict, proof=proof), found, now, "unstated errors", errors)
 
 
 def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str], size: Array) -> float:
@@ -290,38 +297,20 @@ def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str], size:
 
     size (channel,): of the sensors' noise
     """
-    fit, names, rate = now.model.fit, [one.name for one in case.search.base.inputs], case.measured.rate
+    fit, names, period = now.model.fit, [one.name for one in case.search.base.inputs], case.rhythm.samples
     some = np.unique(np.linspace(0, len(now.shooting.segments) - 1, RUNS).astype(int))
     segments = now.shooting.segments.among(some)
     shooting = replace(now.shooting, segments=segments, prior=fit.prior).with_noise(white_noise(size))
     fit = shooting.at(now.model.machine, fit.free, fit.values, fit.starts[some])
-    periods = segments.length / rate / case.rhythm.period
-    at = np.linspace(0, segments.length - 1, int(np.clip(4 * periods, 8, KNOTS)))
+    at = np.linspace(0, segments.length - 1, int(np.clip(KNOTS_EACH * segments.length / period, *KNOTS)))
     hats = np.array([np.interp(np.arange(segments.length), at, one) for one in np.eye(len(at))]).T
-    shape = (*shooting.known.shape, len(at))
-    moved = [one.reshape(shape) for one in moved_by_inputs(now, shooting, fit, erring, hats)]
-    n, knots = fit.starts.shape[1], len(erring) * len(at)
-    rows = [fit.white[..., None], fit.slopes[..., n:], *(shooting.whitened(one) for one in moved)]
-    left = without(start_basis(fit.slopes[..., :n]), np.concatenate(rows, axis=2))
-    products = np.swapaxes(left, 1, 2) @ left
-    own = len(fit.prior.names)
-    prior = np.zeros((own, products.shape[1] - knots))
-    prior[:, 0], prior[:, prior.shape[1] - own :] = fit.prior.left(fit.values), np.diag(1 / fit.prior.sd)
-    count, best = int(shooting.known.sum()) - fit.starts.size, np.inf
-    late = np.abs(np.subtract.outer(at, at)) / rate / case.rhythm.period
     driven = segments.of(case.measured.drive.inputs)[:, at.round().astype(int)]
-    for memory in PERIODS:
-        covariance = np.zeros((len(some), knots, knots))
-        for number, name in enumerate(erring):
-            block, along = slice(number * len(at), (number + 1) * len(at)), driven[..., names.index(name)]
-            covariance[:, block, block] = along[:, :, None] * along[:, None] + along.var() * np.exp(-late / memory)
-        for share in SHARES:
-            total = np.eye(knots) + share**2 * covariance @ products[:, -knots:, -knots:]
-            solved = share**2 * np.linalg.solve(total, covariance @ products[:, -knots:, :-knots])
-            normal = products[:, :-knots, :-knots] - products[:, :-knots, -knots:] @ solved
-            normal = normal.sum(axis=0) + prior.T @ prior
-            squares = normal[0, 0] - normal[0, 1:] @ np.linalg.lstsq(normal[1:, 1:], normal[1:, 0], rcond=1e-12)[0]
-            level = max(float(squares) / count, 1.0)
-            volume = float(np.linalg.slogdet(total)[1].sum())
-            best = min(best, volume + count * np.log(level) + float(squares) / level)
-    return best + now.model.size * float(np.log(count))
+    moved = [shooting.whitened(one) for one in moved_by_inputs(now, shooting, fit, erring, hats)]
+    pairs = [(one, driven[..., names.index(name)]) for one, name in zip(moved, erring, strict=True)]
+    numbers, best = int(shooting.known.sum()) - fit.starts.size, np.inf
+    for periods in PERIODS:
+        wander = np.linalg.cholesky(np.exp(-np.abs(np.subtract.outer(at, at)) / (periods * period)))
+        gains, wanders = zip(*((one @ each[..., None], each.std() * one @ wander) for one, each in pairs), strict=True)
+        beside = random_effects(fit, np.concatenate([*gains, *wanders], axis=2))
+        best = min(best, *(beside.likelihood(share**2, numbers, least=1.0)[0] for share in SHARES))
+    return best + now.model.size * float(np.log(numbers))

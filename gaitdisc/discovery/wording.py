@@ -88,7 +88,7 @@ def _given(discovery: Discovery) -> str:
 
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
-    stated = next((one.what for one in discovery.findings if one.kind == "stated errors"), "")
+    stated = next((one.what for one in discovery.findings if one.kind.endswith("stated errors")), "")
     if stated and discovery.verdict == "no_gap":
         return f"No effect is named: {stated}."
     first = discovery.rivals[0] if discovery.rivals else None
