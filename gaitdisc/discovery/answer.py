@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -29,7 +29,7 @@ from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.search import TURNS, Search
+from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.effect_units import places_unit, unit_of_channel
@@ -129,9 +129,14 @@ def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tu
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    found = found_effects(case, verdict.found, closed, gained)
+    parts = verdict.found.model.parts
+    pairs = [(_effect(case, verdict.found, number), part) for number, part in enumerate(parts)]
+    found = [
+        replace(one, term=part.term, held_out=closed, bic=gained, states=part.candidate.states_at(part.written))
+        for one, part in pairs
+    ]
     if verdict.read:
-        (part,) = verdict.found.model.parts
+        (part,) = parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
         found = [replace(found[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
     return tuple(found)
@@ -144,45 +149,21 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     return base
 
 
-def found_effects(case: Case, now: ScoredModel, closed: float, gained: float) -> list[FoundEffect]:
-    """List the explanations with their numbers and intervals."""
-    found = []
-    for number, part in enumerate(now.model.parts):
-        candidate = part.candidate
-        estimates = estimates_of(now.model, number, case.search.base)
-        place = (candidate.kind, candidate.place, candidate.name)
-        found.append(
-            FoundEffect(
-                *place,
-                part.term,
-                estimates,
-                closed,
-                gained,
-                bounds=file_bounds(case.search.base, candidate),
-                states=candidate.states_at(part.written),
-            )
-        )
-    return found
-
-
 def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
-    candidate, model = rival.scored.model.parts[part].candidate, rival.scored.model
-    return FoundEffect(
-        candidate.kind,
-        candidate.place,
-        candidate.name,
-        "",
-        estimates_of(model, part % len(model.parts), case.search.base),
-        bic=rival.gained,
-        tied=rival.tied,
-        bounds=file_bounds(case.search.base, candidate),
-    )
+    number = part % len(rival.scored.model.parts)
+    return replace(_effect(case, rival.scored, number), bic=rival.gained, tied=rival.tied)
+
+
+def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
+    """Return one of a model's explanations with its numbers."""
+    one, estimates = now.model.parts[number].candidate, estimates_of(now.model, number, case.search.base)
+    return FoundEffect(one.kind, one.place, one.name, "", estimates, bounds=file_bounds(case.search.base, one))
 
 
 def bic_gain(search: Search, now: ScoredModel) -> float:
     """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
-    return _fitted(search, now, ()).bic - now.bic if now.model.parts else 0.0
+    return search.with_others(now, ()).bic - now.bic if now.model.parts else 0.0
 
 
 def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
@@ -202,7 +183,7 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
         return tuple(Rival(one, one.gained, False) for one in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
-        best = _fitted(search, now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
+        best = search.with_others(now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
@@ -214,13 +195,7 @@ def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
     sets = [(part,), *([other.model.parts] if len(other.model.parts) > 1 else [])]
     if len(parts) > 1:
         sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
-    return min((_fitted(search, now, one) for one in sets), key=lambda one: one.bic)
-
-
-def _fitted(search: Search, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
-    """Return the simulation with explanations in it, fitted to an answer's runs under its noise."""
-    model = fit_model(now.shooting, search.base, parts, now.model.fit.starts, TURNS, like=now.model)
-    return ScoredModel(model, now.shooting)
+    return min((search.with_others(now, one) for one in sets), key=lambda one: one.bic)
 
 
 def list_explanations(

@@ -15,10 +15,9 @@ class Criteria:
     # Likelihood
     margin: float = 10.0  # fall of the criterion for one explanation more: very strong evidence
     tie: float = 6.0  # fall of the criterion that distinguishes two explanations: strong evidence
-    support: float = (
-        50.0  # of the criterion or the misfit: up to which a rival is weighed on longer runs, and from which
-    )
-    # on other trials are held out, where those that are say nothing
+    # of the criterion or the misfit: up to which a rival is weighed on longer runs, and from which on other trials are
+    # held out, where those that are say nothing
+    support: float = 50.0
     certain: float = 2.5  # standard errors of a number from where it says nothing (p = .006)
     start: float = 5.0  # standard errors of a start from the file's
     widest: float = 2.0  # times the range of a motion, up to which its half width shows

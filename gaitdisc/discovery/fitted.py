@@ -1,13 +1,18 @@
-"""A simulation fitted to segments, what start states explain of its residual, and the prior of a file's numbers."""
+"""A simulation fitted to segments, what starts and random effects explain of its residual, and the file's prior.
+
+Source: Patterson and Thompson 1971, Biometrika 58, 545 (restricted likelihood).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.simulation.simulation import Simulation
+
+OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # of a fit, one row for each segment
 
 
 @dataclass(frozen=True)
@@ -20,11 +25,9 @@ class Prior:
     names: tuple[str, ...] = ()
     # (number,), where they stand among the parameters
     places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
-    # (number,), as in the file [each parameter's unit]
+    # (number,) each, as in the file [each parameter's unit]
     value: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    # (number,), as in the file [each parameter's unit]
     low: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    # (number,), as in the file [each parameter's unit]
     high: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
 
     @property
@@ -53,6 +56,30 @@ class Prior:
         inside = values.copy()
         inside[self.places] = np.clip(values[self.places], self.low, self.high)
         return inside
+
+
+@dataclass(frozen=True)
+class RandomEffects:
+    """A residual and the slopes of constants, along the principal axes of independent random effects."""
+
+    products: NDArray[np.float64]  # (1 + free, 1 + free), of the residual and the slopes, those of the prior among them
+    along: NDArray[np.float64]  # (segment, effect, 1 + free), their products with each principal effect
+    strength: NDArray[np.float64]  # (segment, effect), sum of squares that a principal effect of unit size adds
+
+    def likelihood(self, variance: float, numbers: int, least: float = 0.0) -> tuple[float, float]:
+        """Return minus twice the log likelihood, up to a constant, and the residual's variance that is likeliest.
+
+        variance: of each effect, over the residual's
+        numbers: independent ones in the residual
+        least: that the residual's variance is known to have
+        """
+        weights = variance / (1 + variance * self.strength)
+        normal = self.products - np.einsum("seb,se,sec->bc", self.along, weights, self.along)
+        constants = np.linalg.lstsq(normal[1:, 1:], normal[1:, 0], rcond=1e-12)[0]
+        squares = float(normal[0, 0] - normal[0, 1:] @ constants)
+        level = max(squares / numbers, least)
+        volume = np.log1p(variance * self.strength).sum()
+        return float(volume + numbers * np.log(level) + squares / level), level
 
 
 @dataclass(frozen=True)
@@ -87,8 +114,7 @@ class Fitted:
 
     def among(self, some: NDArray[np.intp]) -> Fitted:
         """Return the fit of some of the segments, by their numbers."""
-        parts = (each[some] for each in (self.starts, self.states, self.residual, self.white, self.slopes))
-        return Fitted(self.free, self.values, *parts, prior=self.prior)
+        return replace(self, stated=None, **{name: getattr(self, name)[some] for name in OF_SEGMENTS})
 
     def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
         """Return another fit's segments where these are better, and its constants if all are.
@@ -99,17 +125,12 @@ class Fitted:
             return other
         if not better.any():
             return self
-        parts = (
-            np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
-            for mine, its in (
-                (self.starts, other.starts),
-                (self.states, other.states),
-                (self.residual, other.residual),
-                (self.white, other.white),
-                (self.slopes, other.slopes),
-            )
-        )
-        return Fitted(self.free, self.values, *parts, prior=self.prior)
+
+        def chosen(mine: NDArray[np.float64], its: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
+
+        parts = {name: chosen(getattr(self, name), getattr(other, name)) for name in OF_SEGMENTS}
+        return replace(self, stated=None, **parts)
 
     @property
     def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -122,12 +143,21 @@ class Fitted:
     def stacked(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """As `projected`, flat, with a row for each number of the prior (row,), (row, free)."""
         left, slopes = self.projected
-        return np.concatenate([left.ravel(), self.prior.left(self.values)]), self._with_prior(slopes)
-
-    def _with_prior(self, slopes: NDArray[np.float64]) -> NDArray[np.float64]:
         rows = np.zeros((len(self.prior.names), len(self.free)))
         rows[:, len(self.free) - len(rows) :] = np.diag(1 / self.prior.sd)
-        return np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
+        flat = np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
+        return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
+
+    def beside(self, effects: NDArray[np.float64]) -> RandomEffects:
+        """Return the residual beside random effects.
+
+        effects (segment, number, effect): what each changes of `white`
+        """
+        (left, slopes), flat = self.projected, np.column_stack(self.stacked)
+        effects = without(start_basis(self.slopes[..., : self.starts.shape[1]]), effects)
+        strength, axes = np.linalg.eigh(np.swapaxes(effects, 1, 2) @ effects)
+        along = np.swapaxes(effects @ axes, 1, 2) @ np.concatenate([left[..., None], slopes], axis=2)
+        return RandomEffects(flat.T @ flat, along, np.maximum(strength, 0.0))
 
     @property
     def covariance(self) -> NDArray[np.float64]:
@@ -136,8 +166,7 @@ class Fitted:
             return self.stated
         if not self.free:
             return np.zeros((0, 0))
-        n = self.starts.shape[1]
-        flat = self._with_prior(without(start_basis(self.slopes[..., :n]), self.slopes[..., n:]))
+        flat = self.stacked[1]
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)

@@ -184,8 +184,8 @@ def _lengths(periods: float) -> list[float]:
 class Proof:
     """Held-out runs of two models, and whether the second is better by more than chance."""
 
-    before: Trial  # the same runs without and with what is to be borne out
-    after: Trial  # the same runs without and with what is to be borne out
+    before: Trial  # the same runs without
+    after: Trial  # and with what is to be borne out
     test: PairedTest
 
     @property

@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.fitted import start_basis, without
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.linearised import linearise, seen_change
-from gaitdisc.discovery.noise import noise_of, sensor_noise, white_noise
+from gaitdisc.discovery.noise import Noise, noise_of, sensor_noise, white_noise
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.random_effects import random_effects
 from gaitdisc.discovery.shooting import Shooting
 
 SHARES = np.logspace(-3, 3, 19)  # of the process noise's variance in what is seen, against the sensor's
@@ -26,6 +25,7 @@ MOST_SEGMENTS = 24
 MOST_NUMBERS = 400
 LEAST_NOISE = 0.01  # of a channel's residual, which its sensor's noise is at least: what rounding leaves is none
 ROUNDED = 1e-3  # of the variance is taken as white: what is left of a record above its filter's cut-off
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
 
     returns: pushes are independent from sample to sample; the sensors' noise beside them is white
     """
-    fit, most = model.fit, max(MOST_NUMBERS // model.fit.residual.shape[2], 8)
-    length = min(fit.residual.shape[1], most)
+    fit = model.fit
+    length = min(fit.residual.shape[1], max(MOST_NUMBERS // fit.residual.shape[2], 8))
     some = np.unique(np.linspace(0, len(shooting.segments) - 1, MOST_SEGMENTS).astype(int))
     known = shooting.known[some, :length]
     plain = np.where(known, fit.residual[some, :length], 0.0)
@@ -65,8 +65,9 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
     scale = 2 * float(count @ np.log(size)) + 2 * float(np.log(np.diagonal(factor, axis1=1, axis2=2)).sum())
     constant = scale + _volume(now.slopes) + float(np.log(count.sum()))
     # white noise by the same restricted likelihood; the filter correlates it in a known way
-    unmoved = random_effects(now, np.zeros((*now.white.shape, 0))).likelihood(0.0, numbers)[0] + constant
-    rival = min(_autoregressive(fit.residual, columns[..., 1:] * size[:, None], some, known), unmoved)
+    unmoved = now.beside(np.zeros((*now.white.shape, 0))).likelihood(0.0, numbers)[0] + constant
+    noise = noise_of(fit.residual, now.starts.shape[1] / fit.residual.shape[2], white_share=0.0)
+    rival = min(_autoregressive(noise, plain, columns[..., 1:] * size[:, None], now, known), unmoved)
     line, found = linearise(few, model.simulation, places, now), []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
@@ -78,14 +79,14 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
         if unit == 0:  # pushes there change nothing of what is measured
             found.append(ProcessNoise(place, np.inf, rival, 0.0, int(count.sum())))
             continue
-        pushed = random_effects(now, np.linalg.solve(factor, pushes))
+        pushed = now.beside(np.asarray(np.linalg.solve(factor, pushes), np.float64))
         best, level, share = min((*pushed.likelihood(share / unit, numbers), share) for share in SHARES)
         best += constant + float(np.log(count.sum()))
         found.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
     return sorted(found, key=lambda one: one.bic)
 
 
-def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Array:
     """Covariance of noise that was white before the filter (segment, number, number), of unit size.
 
     What was not measured is taken for independent of all else.
@@ -104,31 +105,20 @@ def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[n
     return np.where(both, out.reshape(length * channels, -1), np.eye(length * channels))
 
 
-def _volume(starts: NDArray[np.float64]) -> float:
+def _volume(starts: Array) -> float:
     """Log determinant of the information on start states, all segments together."""
     return float(2 * np.log(np.maximum(np.linalg.svd(starts, compute_uv=False), 1e-12)).sum())
 
 
-def _autoregressive(
-    residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], known: NDArray[np.bool_]
-) -> float:
+def _autoregressive(noise: Noise, plain: Array, slopes: Array, now: Fitted, known: NDArray[np.bool_]) -> float:
     """Return the criterion of the model with autoregressive noise of each sensor, over the same numbers."""
-    noise = noise_of(residual, slopes.shape[-1] / residual.shape[2], white_share=0.0)
-    plain = np.where(known, residual[some, : known.shape[1]], 0.0)
-    white = noise.whitened(plain, known).reshape(len(some), -1)
-    starts = noise.whitened(slopes, known).reshape(*white.shape, -1)
-    left = without(start_basis(starts), white[..., None])
+    white, starts = noise.whitened(plain, known).reshape(now.white.shape), noise.whitened(slopes, known)
+    now = replace(now, white=white, slopes=starts.reshape(*white.shape, -1))
+    sample = np.arange(known.shape[1])[:, None]
+    past = sample - 1 - np.maximum.accumulate(np.where(known, -1, sample), axis=1)  # samples without a gap before each
     scale = 2 * sum(
-        np.log(spread[np.minimum(_known_before(known[..., channel]), len(spread) - 1)])[known[..., channel]].sum()
+        np.log(spread[np.minimum(past[..., channel], len(spread) - 1)])[known[..., channel]].sum()
         for channel, spread in enumerate(noise.spread)
     )
     numbers = sum(noise.lags) + len(noise.lags)
-    return float((left**2).sum() + scale + _volume(starts) + numbers * np.log(known.sum()))
-
-
-def _known_before(known: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """How many samples without a gap stand before each (segment, sample)."""
-    out = np.zeros(known.shape, np.intp)
-    for sample in range(1, known.shape[1]):
-        out[:, sample] = (out[:, sample - 1] + 1) * known[:, sample - 1]
-    return out
+    return float((now.projected[0] ** 2).sum() + scale + _volume(now.slopes) + numbers * np.log(known.sum()))

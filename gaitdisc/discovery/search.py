@@ -126,7 +126,9 @@ class Search:
                 if kind == "quantiles of x":
                     yield part.values[slot], self._visited(model, part.candidate.role)
                 elif kind == "half widths of x":
-                    least = self._step(model, part.candidate.role) if part.candidate.states else 0.0
+                    along = self._along(model, part.candidate.role).reshape(model.fit.states.shape[:2])
+                    step = float(np.sqrt(np.nanmean(np.diff(along, axis=1) ** 2)))  # yielding within is dry friction
+                    least = step if part.candidate.states else 0.0
                     yield part.values[slot], (least, self._widest(model, part.candidate.role))
                 elif kind == "delays":
                     yield part.values[slot], (1 / self.rhythm.rate, self.rhythm.period)
@@ -146,11 +148,6 @@ class Search:
         low, high = np.quantile(self._along(model, role), VISITED)
         return float(low), float(high)
 
-    def _step(self, model: CandidateModel, role: str) -> float:
-        """Return how far a run goes from sample to sample: a spring that yields within is dry friction."""
-        along = self._along(model, role).reshape(model.fit.states.shape[:2])
-        return float(np.sqrt(np.nanmean(np.diff(along, axis=1) ** 2)))
-
     def _along(self, model: CandidateModel, role: str) -> NDArray[np.float64]:
         """Return what stands for x in an explanation, along the runs."""
         known = len(self.base.states)
@@ -165,9 +162,12 @@ class Search:
 
     def without(self, now: ScoredModel, number: int) -> ScoredModel:
         """Return the model less one explanation."""
-        parts = now.model.parts[:number] + now.model.parts[number + 1 :]
-        fewer = fit_model(now.shooting, self.base, parts, now.model.fit.starts, TURNS, like=now.model)
-        return ScoredModel(fewer, now.shooting)
+        return self.with_others(now, now.model.parts[:number] + now.model.parts[number + 1 :])
+
+    def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
+        """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
+        model = fit_model(now.shooting, self.base, parts, now.model.fit.starts, TURNS, like=now.model)
+        return ScoredModel(model, now.shooting)
 
 
 def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:

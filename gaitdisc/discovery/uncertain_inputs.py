@@ -4,8 +4,7 @@ To first order the errors enter where the input stands. The covariance is each m
 uses an input has no excuse by its errors. Numbers are estimated anew by what is left so (weighted orthogonal
 distances): else an input's errors pull its factors towards 0, and whatever goes along with it takes over.
 Where none is stated, models are compared by restricted likelihood with errors of the likeliest size and memory.
-Source: Fuller 1987, Measurement Error Models; Boggs and Rogers 1990, Contemporary Mathematics 112, 183; Patterson and
-Thompson 1971, Biometrika 58, 545 (restricted likelihood).
+Source: Fuller 1987, Measurement Error Models; Boggs and Rogers 1990, Contemporary Mathematics 112, 183.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -31,7 +30,6 @@ from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, sensor_covariance
-from gaitdisc.discovery.random_effects import random_effects
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
@@ -79,7 +77,7 @@ class Weighed:
 
 def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt."""
-    erring = [repr(one.name) for one in wandering(case.search.base)]
+    erring = [repr(one.name) for _, one in wandering(case.search.base)]
     if not erring or verdict.starts:
         return case, verdict
     best = likeliest(case, verdict)
@@ -93,10 +91,7 @@ def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
 def without_names(
     case: Case, verdict: Verdict, named: ScoredModel, now: ScoredModel, kind: str, errors: str
 ) -> tuple[Case, Verdict]:
-    """Return the verdict on what is still named; a finding says what errors of inputs explain as well.
-
-    named, now: with the names before and after
-    """
+    """Return the verdict on a model that names less than another; a finding says what errors of inputs explain."""
     before, after = (Counter(part.candidate.label for part in one.model.parts) for one in (named, now))
     dropped = ["process noise"] * bool(verdict.process_noise)
     dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (before - after).elements()]
@@ -106,13 +101,16 @@ def without_names(
         case = replace(case, measured=replace(case.measured, findings=(*case.measured.findings, finding)))
     same, word = now.labels == verdict.found.labels, now.word if now.model.parts else "no_gap"
     rivals = verdict.rivals if same else (verdict.found, *verdict.rivals)
-    read = verdict.read and same
-    return case, replace(verdict, word=word, found=now, rivals=rivals, read=read, process_noise=None)
+    return case, replace(verdict, word=word, found=now, rivals=rivals, read=verdict.read and same, process_noise=None)
 
 
 def likeliest(case: Case, verdict: Verdict) -> Weighed:
     """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
-    found = cut_short(case, verdict.found)
+    found, samples = verdict.found, max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES)
+    if found.shooting.segments.span > samples:  # a covariance can be made of runs so long
+        shooting = case.learned_runs(samples).with_noise(found.noise)
+        model = case.fitted_over(shooting, found)
+        found = ScoredModel(model, shooting.with_past(model.fit.states), found.gained)
     tried = [one.model.parts for one in verdict.rivals[:RIVALS]]
     tried += [
         (Part(one, part.values),)  # what a shape reads as
@@ -121,9 +119,8 @@ def likeliest(case: Case, verdict: Verdict) -> Weighed:
         if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
     ]
     tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
-    runs, starts, base = found.shooting, found.model.fit.starts, case.search.base
-    models = [fit_model(runs, base, parts, starts, like=found.model) for parts in tried]
-    models = [ScoredModel(one, runs) for one in models if case.search.sensible(one)]
+    models = [case.search.with_others(found, parts) for parts in tried]
+    models = [one for one in models if case.search.sensible(one.model)]
     ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
     named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
@@ -134,10 +131,7 @@ def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
 
     All together also take half of what the simulation as read leaves of unseen data beyond the stated errors.
     """
-    bare, proof = now.now, None
-    while bare.model.parts:
-        bare = case.search.without(bare, 0)
-    base = weighed(case, bare)
+    base, proof = weighed(case, case.search.with_others(now.now, ())), None
     while now.now.model.parts:
         parts = range(len(now.now.model.parts))
         fewer = [weighed(case, case.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
@@ -167,16 +161,6 @@ def tested(case: Case, before: Weighed, now: Weighed) -> PairedTest:
     worth = gained > CRITERIA.margin and now.plain < before.plain and is_certain(now.now.model)
     p, fall = errors_rise_p(*squares) if worth else 1.0, float((squares[1] - squares[0]).sum())
     return PairedTest(p, len(squares[0]), fall, case.alpha)
-
-
-def cut_short(case: Case, now: ScoredModel) -> ScoredModel:
-    """Return a model fitted to runs of which a covariance can be made."""
-    samples = max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES)
-    if now.shooting.segments.span <= samples:
-        return now
-    shooting = case.learned_runs(samples).with_noise(now.noise)
-    model = case.fitted_over(shooting, now)
-    return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
 def weighed(case: Case, now: ScoredModel) -> Weighed:
@@ -239,16 +223,17 @@ def whitener(case: Case, now: ScoredModel, shooting: Shooting, starts: Array, si
 
 def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Array:
     """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
-    base, segments = case.search.base, shooting.segments
+    erring, segments = wandering(case.search.base), shooting.segments
     late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
-    moved = moved_by_inputs(now, shooting, fit, [one.name for one in wandering(base)], np.eye(segments.length))
+    moved = moved_by_inputs(now, shooting, fit, [one.name for _, one in erring], np.eye(segments.length))
     total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
-    for seen, one in zip(moved, wandering(base), strict=True):
+    for seen, (column, one) in zip(moved, erring, strict=True):
         flat = seen.reshape(len(segments), -1, segments.length)
-        memory = np.exp(-late / one.seconds)
+        memory = np.exp(-late / (one.wander or np.inf))
         # averaged, as else what reads low errs less and its factor is too large (by 17-21 % where it errs by 25 %)
-        along = one.gain * (segments.of(case.measured.drive.inputs)[..., one.column] @ memory) / memory.sum(axis=0)
-        own = (one.sd**2 + along[:, :, None] * along[:, None]) * memory
+        driven = segments.of(case.measured.drive.inputs)[..., column]
+        along = (one.gain or 0.0) * (driven @ memory) / memory.sum(axis=0)
+        own = ((one.sd or 0.0) ** 2 + along[:, :, None] * along[:, None]) * memory
         total += flat @ own @ np.swapaxes(flat, 1, 2)
     return total
 
@@ -269,27 +254,45 @@ def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: li
 
 
 def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
-    """Return a verdict without a name that errors of inputs of unknown size, or a gain of one, explain as well."""
+    """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders."""
     found, search = verdict.found, case.search
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
-    if not erring or all(one.candidate.verdict == "input_error" for one in found.model.parts):
+    if not erring or not names_in(found):
         return case, verdict
-    base = found
-    while base.model.parts:
-        base = search.without(base, 0)
-    gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
-    models = [search.with_part(base, Part(one, {"gain": 1.0})) for one in gains]
-    others = [base, *(ScoredModel(one, base.shooting) for one in models if search.sensible(one))]
     size = case.noise_floor(found.noise.size)
-    named, plain, *rest = (criterion_with_errors(case, one, erring, size) for one in (found, *others))
-    if min(plain, *rest) - named > CRITERIA.margin:
+    (best, now), bare = beside_errors(case, found, erring, size), found
+    while names := names_in(bare):
+        fewer = [search.without(bare, number) for number in names]
+        tried = [(*beside_errors(case, one, erring, size), one) for one in fewer]
+        least, gained, less = min(tried, key=lambda one: one[0])
+        if least - best > CRITERIA.margin:
+            break
+        best, now, bare = min(least, best), gained, less
+    if bare is found:
         return case, verdict
-    gained = rest and plain - min(rest) > CRITERIA.margin
-    now = others[1 + int(np.argmin(rest))] if gained else base
-    proof = proof_of(case, base, now, now)
-    now = now if proof.bears_out else base
+    bare = search.with_others(bare, ())
+    proof = proof_of(case, bare, now, now)
     errors = f"unstated errors of {listed([repr(one) for one in erring])}"
+    now = now if proof.bears_out else bare
     return without_names(case, replace(verdict, proof=proof), found, now, "unstated errors", errors)
+
+
+def names_in(now: ScoredModel) -> list[int]:
+    """Return which of a model's explanations are no errors of inputs."""
+    return [number for number, part in enumerate(now.model.parts) if part.candidate.verdict != "input_error"]
+
+
+def beside_errors(case: Case, now: ScoredModel, erring: list[str], size: Array) -> tuple[float, ScoredModel]:
+    """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident.
+
+    size (channel,): of the sensors' noise
+    """
+    search, present = case.search, now.model.explanations
+    gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
+    parts = (*now.model.parts, *(Part(one, {"gain": 1.0}) for one in gains if one.identity not in present))
+    plain, gained = criterion_with_errors(case, now, erring, size), search.with_others(now, parts)
+    beside = criterion_with_errors(case, gained, erring, size) if search.sensible(gained.model) else np.inf
+    return min(plain, beside), gained if plain - beside > CRITERIA.margin else now
 
 
 def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str], size: Array) -> float:
@@ -311,6 +314,6 @@ def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str], size:
     for periods in PERIODS:
         wander = np.linalg.cholesky(np.exp(-np.abs(np.subtract.outer(at, at)) / (periods * period)))
         gains, wanders = zip(*((one @ each[..., None], each.std() * one @ wander) for one, each in pairs), strict=True)
-        beside = random_effects(fit, np.concatenate([*gains, *wanders], axis=2))
+        beside = fit.beside(np.concatenate([*gains, *wanders], axis=2))
         best = min(best, *(beside.likelihood(share**2, numbers, least=1.0)[0] for share in SHARES))
     return best + now.model.size * float(np.log(numbers))

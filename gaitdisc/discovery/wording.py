@@ -236,8 +236,11 @@ def _shown(discovery: Discovery) -> str:
         return f"Held-out error{of}: {before} ({noise})."
     worse = [name for name in sizes if name != channel and _goes(sizes[name], units[name]).startswith("rises")]
     others = "".join(f"; that of {name} {_goes(sizes[name], units[name])}" for name in worse)
+    size = discovery.held_out
+    few = 0 < size.pieces < FEW and size.after <= size.before
+    tested = f", p = {_chance(size.p)} over {size.pieces} independent samples" if few else ""
     return (
-        f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{_few(discovery)}){others}."
+        f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{tested}){others}."
         f"{_unexplained(discovery.held_out)}"
     )
 
@@ -270,16 +273,6 @@ def _goes(size: tuple[float, float, float], channel_unit: str) -> str:
     if before == after:
         return f"does not change: {with_unit(after, unit)}"
     return f"{'falls' if size[1] < size[0] else 'rises'} from {before} to {with_unit(after, unit)}"
-
-
-def _few(discovery: Discovery) -> str:
-    """Say on how many independent samples it rests, where these are few."""
-    size = discovery.held_out
-    return (
-        f", p = {_chance(size.p)} over {size.pieces} independent samples"
-        if 0 < size.pieces < FEW and size.after <= size.before
-        else ""
-    )
 
 
 def _chance(p: float) -> str:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hidden_in_a_mass import RATE, mass, record, with_load
+from hidden_in_a_mass import MASS, RATE, mass, record, with_load
 
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover, fit_given
@@ -113,6 +113,22 @@ def test_what_unstated_errors_or_a_gain_explain_as_well_is_not_named(hidden, wan
     said = [one.what for one in weighed.measured.findings if one.kind == "unstated errors"]
     assert len(said) == (left != (named,)) and all("unstated errors of 'push' explain" in one for one in said)
     assert (after.rivals[:1] == (verdict.found,)) == bool(said)
+
+
+def test_gains_of_two_inputs_together_explain_what_neither_does_alone():
+    measured, two = record(mass(), SEED), MASS.replace('v = "(push', 'v = "(push + pull')
+    total = measured.drive.inputs
+    pull = np.roll(total, 1, axis=0)
+    measured = _driven(measured, np.concatenate([(total - pull) / 1.2, pull / 0.85], axis=2))
+    case = set_up_case(
+        simulation_of(two.replace("[parameters.m]", '[inputs.pull]\nunit = "N"\n[parameters.m]')), measured
+    )
+    verdict = fit_given(case, case.as_read(), ("input_gain@push", "cubic_stiffness@load"))
+    weighed, after = weigh_unstated_errors(case, verdict)
+    assert (after.word, after.found.labels) == ("input_error", ("input_gain@push", "input_gain@pull"))
+    assert [part.values["gain"] for part in after.found.model.parts] == pytest.approx([1.2, 0.85], rel=0.02)
+    (said,) = (one.what for one in weighed.measured.findings if one.kind == "unstated errors")
+    assert said == "unstated errors of 'push' and 'pull' explain cubic stiffness at load as well"
 
 
 def test_an_error_that_is_stated_is_not_doubted():
