@@ -84,24 +84,21 @@ def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     if verdict.process_noise and best.level > CRITERIA.mere_noise:
         return case, verdict
     now, proof = beyond_errors(case, best)
-    verdict = replace(verdict, proof=proof or verdict.proof)
-    return without_names(case, verdict, best.now, now, "stated errors", f"the stated errors of {listed(erring)}")
+    verdict, dropped = without_names(replace(verdict, proof=proof or verdict.proof), best.now, now)
+    what = f"the stated errors of {listed(erring)} explain {dropped} as well"
+    finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
+    return case.noting(finding) if dropped else case, verdict
 
 
-def without_names(
-    case: Case, verdict: Verdict, named: ScoredModel, now: ScoredModel, kind: str, errors: str
-) -> tuple[Case, Verdict]:
-    """Return the verdict on a model that names less than another; a finding says what errors of inputs explain."""
+def without_names(verdict: Verdict, named: ScoredModel, now: ScoredModel) -> tuple[Verdict, str]:
+    """Return the verdict on a model that names less than another, and what it does not name, in words."""
     before, after = (Counter(part.candidate.label for part in one.model.parts) for one in (named, now))
     dropped = ["process noise"] * bool(verdict.process_noise)
     dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (before - after).elements()]
-    if dropped:
-        what = f"{errors} explain {listed(dropped)} as well"
-        finding = Finding("note", kind, case.measured.source, what, "the name; it is among the rivals")
-        case = replace(case, measured=replace(case.measured, findings=(*case.measured.findings, finding)))
     same, word = now.labels == verdict.found.labels, now.word if now.model.parts else "no_gap"
-    rivals = verdict.rivals if same else (verdict.found, *verdict.rivals)
-    return case, replace(verdict, word=word, found=now, rivals=rivals, read=verdict.read and same, process_noise=None)
+    rivals, read = verdict.rivals if same else (verdict.found, *verdict.rivals), verdict.read and same
+    verdict = replace(verdict, word=word, found=now, rivals=rivals, read=read, process_noise=None)
+    return verdict, listed(dropped) if dropped else ""
 
 
 def likeliest(case: Case, verdict: Verdict) -> Weighed:
@@ -259,11 +256,10 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
     if not erring or not names_in(found):
         return case, verdict
-    size = case.noise_floor(found.noise.size)
-    (best, now), bare = beside_errors(case, found, erring, size), found
+    (best, now), bare = beside_errors(case, found, erring), found
     while names := names_in(bare):
         fewer = [search.without(bare, number) for number in names]
-        tried = [(*beside_errors(case, one, erring, size), one) for one in fewer]
+        tried = [(*beside_errors(case, one, erring), one) for one in fewer]
         least, gained, less = min(tried, key=lambda one: one[0])
         if least - best > CRITERIA.margin:
             break
@@ -272,9 +268,10 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
         return case, verdict
     bare = search.with_others(bare, ())
     proof = proof_of(case, bare, now, now)
-    errors = f"unstated errors of {listed([repr(one) for one in erring])}"
-    now = now if proof.bears_out else bare
-    return without_names(case, replace(verdict, proof=proof), found, now, "unstated errors", errors)
+    verdict, dropped = without_names(replace(verdict, proof=proof), found, now if proof.bears_out else bare)
+    what = f"unstated errors of {listed([repr(one) for one in erring])} explain {dropped} as well"
+    finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
+    return case.noting(finding), verdict
 
 
 def names_in(now: ScoredModel) -> list[int]:
@@ -282,28 +279,23 @@ def names_in(now: ScoredModel) -> list[int]:
     return [number for number, part in enumerate(now.model.parts) if part.candidate.verdict != "input_error"]
 
 
-def beside_errors(case: Case, now: ScoredModel, erring: list[str], size: Array) -> tuple[float, ScoredModel]:
-    """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident.
-
-    size (channel,): of the sensors' noise
-    """
+def beside_errors(case: Case, now: ScoredModel, erring: list[str]) -> tuple[float, ScoredModel]:
+    """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident."""
     search, present = case.search, now.model.explanations
     gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
     parts = (*now.model.parts, *(Part(one, {"gain": 1.0}) for one in gains if one.identity not in present))
-    plain, gained = criterion_with_errors(case, now, erring, size), search.with_others(now, parts)
-    beside = criterion_with_errors(case, gained, erring, size) if search.sensible(gained.model) else np.inf
+    plain, gained = criterion_with_errors(case, now, erring), search.with_others(now, parts)
+    beside = criterion_with_errors(case, gained, erring) if search.sensible(gained.model) else np.inf
     return min(plain, beside), gained if plain - beside > CRITERIA.margin else now
 
 
-def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str], size: Array) -> float:
-    """Return the information criterion of a model whose inputs err, by the size and memory that are likeliest.
-
-    size (channel,): of the sensors' noise
-    """
+def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> float:
+    """Return the information criterion of a model whose inputs err, by the size and memory that are likeliest."""
     fit, names, period = now.model.fit, [one.name for one in case.search.base.inputs], case.rhythm.samples
     some = np.unique(np.linspace(0, len(now.shooting.segments) - 1, RUNS).astype(int))
     segments = now.shooting.segments.among(some)
-    shooting = replace(now.shooting, segments=segments, prior=fit.prior).with_noise(white_noise(size))
+    noise = white_noise(case.noise_floor(now.noise.size))
+    shooting = replace(now.shooting, segments=segments, prior=fit.prior).with_noise(noise)
     fit = shooting.at(now.model.machine, fit.free, fit.values, fit.starts[some])
     at = np.linspace(0, segments.length - 1, int(np.clip(KNOTS_EACH * segments.length / period, *KNOTS)))
     hats = np.array([np.interp(np.arange(segments.length), at, one) for one in np.eye(len(at))]).T

@@ -10,7 +10,8 @@ from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed, strongest
+from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed
+from gaitdisc.discovery.forward_selection import pruned
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
@@ -49,7 +50,7 @@ def test_of_three_names_the_one_that_is_missed_least_goes(case, as_read, cubic):
         for label in ("viscous_damping@load", "sensor_drift@x")
     ]
     parts = (Part(cubic, {"factor": -14.0}), *(Part(one, dict.fromkeys(one.slots, 0.0)) for one in others))
-    kept = strongest(case.search, _with(case, as_read, parts))
+    kept = pruned(case.search, _with(case, as_read, parts), float("inf"), 2)
     assert len(kept.model.parts) == 2
     assert "cubic_stiffness@load" in kept.labels
 
