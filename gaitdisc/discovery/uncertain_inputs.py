@@ -45,7 +45,7 @@ HALVED = (1.0, 0.5, 0.25, 0.1)  # of a step that leaves more
 SHARES = (0.0, 0.02, 0.05, 0.1, 0.15, 0.25, 0.4)  # of an input and of its spread, by which it may err unsaid
 PERIODS = (1.0, 4.0, 16.0)  # in which such an error is forgotten
 KNOTS_EACH, KNOTS = 4, (8, 60)  # in a period, and in a run: between these such an error is linear
-RUNS = 12  # at most, of which such errors are weighed
+RUNS = 24  # at most, over which such errors are weighed
 Array = NDArray[np.float64]
 
 
@@ -103,11 +103,8 @@ def without_names(verdict: Verdict, named: ScoredModel, now: ScoredModel) -> tup
 
 def likeliest(case: Case, verdict: Verdict) -> Weighed:
     """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
-    found, samples = verdict.found, max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES)
-    if found.shooting.segments.span > samples:  # a covariance can be made of runs so long
-        shooting = case.learned_runs(samples).with_noise(found.noise)
-        model = case.fitted_over(shooting, found)
-        found = ScoredModel(model, shooting.with_past(model.fit.states), found.gained)
+    # as many numbers as a covariance can be made of
+    found = cut_short(case, verdict.found, max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES))
     tried = [one.model.parts for one in verdict.rivals[:RIVALS]]
     tried += [
         (Part(one, part.values),)  # what a shape reads as
@@ -121,6 +118,15 @@ def likeliest(case: Case, verdict: Verdict) -> Weighed:
     ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
     named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
+
+
+def cut_short(case: Case, now: ScoredModel, samples: int) -> ScoredModel:
+    """Return a model fitted to runs of no more samples."""
+    if now.shooting.segments.span <= samples:
+        return now
+    shooting = case.learned_runs(samples).with_noise(now.noise)
+    model = case.fitted_over(shooting, now)
+    return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
 def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
@@ -251,12 +257,16 @@ def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: li
 
 
 def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
-    """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders."""
+    """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders.
+
+    Over runs of a period, in which what such errors change does not add up beyond the first order.
+    """
     found, search = verdict.found, case.search
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
     if not erring or not names_in(found):
         return case, verdict
-    (best, now), bare = beside_errors(case, found, erring), found
+    bare = cut_short(case, found, round(case.rhythm.samples))
+    best, now = beside_errors(case, bare, erring)
     while names := names_in(bare):
         fewer = [search.without(bare, number) for number in names]
         tried = [(*beside_errors(case, one, erring), one) for one in fewer]
@@ -264,9 +274,10 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
         if least - best > CRITERIA.margin:
             break
         best, now, bare = min(least, best), gained, less
-    if bare is found:
+    if len(bare.model.parts) == len(found.model.parts):
         return case, verdict
-    bare = search.with_others(bare, ())
+    now = case.lengthened(now)
+    bare = search.with_others(now, ())
     proof = proof_of(case, bare, now, now)
     verdict, dropped = without_names(replace(verdict, proof=proof), found, now if proof.bears_out else bare)
     what = f"unstated errors of {listed([repr(one) for one in erring])} explain {dropped} as well"
