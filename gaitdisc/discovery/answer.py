@@ -130,11 +130,7 @@ def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tu
             for name, start in verdict.starts.items()
         )
     parts = verdict.found.model.parts
-    pairs = [(_effect(case, verdict.found, number), part) for number, part in enumerate(parts)]
-    found = [
-        replace(one, term=part.term, held_out=closed, bic=gained, states=part.candidate.states_at(part.written))
-        for one, part in pairs
-    ]
+    found = [replace(_effect(case, verdict.found, n), held_out=closed, bic=gained) for n in range(len(parts))]
     if verdict.read:
         (part,) = parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
@@ -152,13 +148,15 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
 def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
     number = part % len(rival.scored.model.parts)
-    return replace(_effect(case, rival.scored, number), bic=rival.gained, tied=rival.tied)
+    return replace(_effect(case, rival.scored, number), term="", states={}, bic=rival.gained, tied=rival.tied)
 
 
 def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
     """Return one of a model's explanations with its numbers."""
-    one, estimates = now.model.parts[number].candidate, estimates_of(now.model, number, case.search.base)
-    return FoundEffect(one.kind, one.place, one.name, "", estimates, bounds=file_bounds(case.search.base, one))
+    part, base = now.model.parts[number], case.search.base
+    one, estimates = part.candidate, estimates_of(now.model, number, base)
+    bounds, states = file_bounds(base, one), one.states_at(part.written)
+    return FoundEffect(one.kind, one.place, one.name, part.term, estimates, bounds=bounds, states=states)
 
 
 def bic_gain(search: Search, now: ScoredModel) -> float:

@@ -125,11 +125,9 @@ class Fitted:
             return other
         if not better.any():
             return self
-
-        def chosen(mine: NDArray[np.float64], its: NDArray[np.float64]) -> NDArray[np.float64]:
-            return np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
-
-        parts = {name: chosen(getattr(self, name), getattr(other, name)) for name in OF_SEGMENTS}
+        pairs = {name: (getattr(self, name), getattr(other, name)) for name in OF_SEGMENTS}
+        which = {name: better.reshape(-1, *[1] * (mine.ndim - 1)) for name, (mine, _) in pairs.items()}
+        parts = {name: np.where(which[name], its, mine) for name, (mine, its) in pairs.items()}
         return replace(self, stated=None, **parts)
 
     @property

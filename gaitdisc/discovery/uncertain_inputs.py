@@ -257,15 +257,12 @@ def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: li
 
 
 def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
-    """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders.
-
-    Over runs of a period, in which what such errors change does not add up beyond the first order.
-    """
+    """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders."""
     found, search = verdict.found, case.search
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
     if not erring or not names_in(found):
         return case, verdict
-    bare = cut_short(case, found, round(case.rhythm.samples))
+    bare = cut_short(case, found, round(case.rhythm.samples))  # along long runs such errors are not linear
     best, now = beside_errors(case, bare, erring)
     while names := names_in(bare):
         fewer = [search.without(bare, number) for number in names]
