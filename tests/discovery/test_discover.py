@@ -131,16 +131,18 @@ def test_a_spring_beside_hysteresis_is_named_with_it():
     assert [state.name for state in augmented.states] == ["x", "v", "hysteresis_load"]
 
 
-def test_a_load_and_an_offset_that_a_linear_spring_cannot_tell_apart_are_both_given():
-    discovery, _ = _found(with_load("1.2"))
+@pytest.mark.parametrize(
+    ("truth", "both"),
+    [
+        (with_load("1.2"), {("sensor_offset", "x"), ("constant_load", "load")}),
+        (mass().with_observation("x", "1.3*x"), {("sensor_gain", "x"), ("input_gain", "push")}),
+    ],
+    ids=["offset and load", "gains of sensor and input"],
+)
+def test_what_a_linear_system_cannot_tell_apart_is_given_both(truth, both):
+    discovery, _ = _found(truth)
     tied = {(one.name, one.place) for one in discovery.rivals if one.tied}
-    assert {_named(discovery)[1][0], *tied} >= {("sensor_offset", "x"), ("constant_load", "load")}
-
-
-def test_a_sensor_and_an_input_that_a_linear_system_cannot_tell_apart_are_both_given():
-    discovery, _ = _found(mass().with_observation("x", "1.3*x"))
-    tied = {(one.name, one.place) for one in discovery.rivals if one.tied}
-    assert {_named(discovery)[1][0], *tied} >= {("sensor_gain", "x"), ("input_gain", "push")}
+    assert {_named(discovery)[1][0], *tied} >= both
 
 
 @pytest.mark.parametrize("cutoff_hz", [0.0, 6.0], ids=["white", "coloured"])
