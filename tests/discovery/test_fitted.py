@@ -66,10 +66,9 @@ def test_the_likelihood_beside_random_effects_is_that_of_the_dense_covariance_wi
         covariance[rows, rows] += variance * effects[segment] @ effects[segment].T
         starts[rows, 2 * segment : 2 * segment + 2] = slopes[segment, :, :2]
     contrasts = null_space(starts.T)
-    dense, left = contrasts.T @ covariance @ contrasts, contrasts.T @ white.ravel()
-    slope = contrasts.T @ slopes[..., 2].ravel()
-    whitened = np.linalg.inv(np.linalg.cholesky(dense))
-    left, slope = whitened @ left, whitened @ slope
+    dense = contrasts.T @ covariance @ contrasts
+    whitened = np.linalg.inv(np.linalg.cholesky(dense)) @ contrasts.T
+    left, slope = whitened @ white.ravel(), whitened @ slopes[..., 2].ravel()
     squares = left @ left - (slope @ left) ** 2 / (slope @ slope)
     level = max(squares / 30, least)
     wanted = np.linalg.slogdet(dense)[1] + 30 * np.log(level) + squares / level
