@@ -37,9 +37,9 @@ class PersonSamples:
         return nominal, exo, self.held_out
 
 
-def person_samples(number: int, calibration: bool = False) -> PersonSamples:
+def person_samples(number: int) -> PersonSamples:
     """240 s of one of the twelve in both conditions; who changes gait late does not: twelve are needed."""
-    person = replace(the_twelve(calibration)[number], change_s=math.inf)
+    person = replace(the_twelve()[number], change_s=math.inf)
     walks = walks_of(person, WALK_S)
     settings = ResponseSettings(OUTPUTS, HELD_OUT_S)
     parts = {

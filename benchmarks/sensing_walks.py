@@ -57,21 +57,19 @@ def chosen_walks(word: str, people: int) -> list[Person]:
     return treadmill_walks() if word == "treadmill" else cohort_walks(people)
 
 
-def treadmill_walks(sensors: tuple[str, ...] = SENSORS, lags: Lags = LAGS) -> list[Person]:
+def treadmill_walks() -> list[Person]:
     """The person of treadmill_walk_ik, twelve walks of 21 s."""
     with tempfile.TemporaryDirectory() as name:
-        return _people(treadmill(DATA / "gait", Path(name)), sensors, lags)
+        return _people(treadmill(DATA / "gait", Path(name)), LAGS)
 
 
-def cohort_walks(
-    people: int = 12, duration_s: float = 60.0, sensors: tuple[str, ...] = SENSORS, lags: Lags = LAGS
-) -> list[Person]:
+def cohort_walks(people: int = 12, lags: Lags = LAGS) -> list[Person]:
     """Nominal walks of the embedded cohort."""
     with tempfile.TemporaryDirectory() as name:
-        return _people(write_demonstration(Path(name), duration_s, people), sensors, lags, "nominal")
+        return _people(write_demonstration(Path(name), 60.0, people), lags, "nominal")
 
 
-def _people(study: Study, sensors: tuple[str, ...], lags: Lags, condition: str = "") -> list[Person]:
-    walks = sensed_walks(study, sensors, condition)
-    what = sensing(tuple(channel.name for channel in walks.channels), sensors, lags, walks.rate_hz)
+def _people(study: Study, lags: Lags, condition: str = "") -> list[Person]:
+    walks = sensed_walks(study, SENSORS, condition)
+    what = sensing(tuple(channel.name for channel in walks.channels), SENSORS, lags, walks.rate_hz)
     return [Person(name, walks, what) for name in walks.people]

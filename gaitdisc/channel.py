@@ -7,7 +7,7 @@ import difflib
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 from gaitdisc.errors import ChannelError, UnitError
@@ -15,7 +15,6 @@ from gaitdisc.units import known_units
 
 QUANTITIES = ("angle", "translation", "marker", "moment", "force", "vertical_force",
               "pressure_centre", "power", "emg", "signal")  # fmt: skip
-SIDES = ("r", "l", "")
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class Channel:
                 f"found {self.quantity!r}",
                 f"Use one of: {', '.join(QUANTITIES)}.",
             )
-        if self.side not in SIDES:
+        if self.side not in ("r", "l", ""):
             raise ChannelError(
                 f"the side of channel {self.name!r} must be 'r', 'l' or ''",
                 f"found {self.side!r}",
@@ -94,6 +93,11 @@ class Vocabulary:
     positive: dict[str, str]  # channel name -> what a positive value means
     aliases: dict[str, str]
 
+    @cached_property
+    def by_name(self) -> dict[str, Channel]:
+        """Channels by their own names, in the order of the vocabulary."""
+        return {channel.name: channel for channel in self.channels}
+
     def named(self, label: str) -> Channel | None:
         """Channel that a label means, or None.
 
@@ -106,15 +110,7 @@ class Vocabulary:
         'emg_ta_r'
         """
         name = self.aliases.get(folded_label(label)) or self.aliases.get(folded_label(path_label(label)))
-        return next((c for c in self.channels if c.name == name), None) if name else None
-
-    def nearest(self, label: str, among: Iterable[str] | None = None) -> str | None:
-        """Known name most like a label, or None where none is near.
-
-        >>> vocabulary().nearest("ankle_ange_r")
-        'ankle_angle_r'
-        """
-        return nearest_word(label, [c.name for c in self.channels] if among is None else among)
+        return self.by_name.get(name or "")
 
 
 def nearest_word(word: str, among: Iterable[str]) -> str | None:
@@ -132,6 +128,12 @@ def hint_nearest(word: str, among: Iterable[str]) -> str:
     """Return the end of a sentence that names the nearest word, or nothing."""
     nearest = nearest_word(word, among)
     return f", the nearest is {nearest!r}" if nearest else ""
+
+
+def did_you_mean(word: str, among: Iterable[str], otherwise: str = "") -> str:
+    """Return the question whether the nearest word was meant, or another remedy where none is near."""
+    nearest = nearest_word(word, among)
+    return f"Did you mean {nearest!r}?" if nearest else otherwise
 
 
 def list_names(names: Sequence[str], most: int = 6, none: str = "nothing") -> str:

@@ -1,8 +1,9 @@
 """Units: one table and one parser; a recording may be in a closed list of them, and is converted once, at ingest.
 
 Inside the package there is one unit for each dimension: deg for angles (rad enters only where dynamics are computed),
-m, s, N, N m, V, W, kg, and 1 for ratios. A rate is the unit per second (`deg/s`, `deg/s2`); a squared error has a
-squared unit. A simulation file may use any product of units with powers: `N m s/rad`, `kg m^2`, `1/s^2`.
+m, s, N, N m, V, W, kg, degC, and 1 for ratios (1/min for heart rate and cadence). A rate is the unit per second
+(`deg/s`, `deg/s2`); a squared error has a squared unit. A simulation file may use any product of units with powers:
+`N m s/rad`, `kg m^2`, `1/s^2`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import UnitError
 
-_BASES = ("kg", "m", "s", "rad", "V")
+_BASES = ("kg", "m", "s", "rad", "V", "degC")
 Dimension = tuple[float, ...]
 Powers = dict[str, float]  # of the words of a unit
 
@@ -30,9 +31,12 @@ _FACTORS = {
     "%": _of(0.01),
     "kg": _of(1.0, kg=1),
     "g": _of(1e-3, kg=1),
+    "km": _of(1e3, m=1),
     "m": _of(1.0, m=1),
     "cm": _of(1e-2, m=1),
     "mm": _of(1e-3, m=1),
+    "h": _of(3600.0, s=1),
+    "min": _of(60.0, s=1),
     "s": _of(1.0, s=1),
     "ms": _of(1e-3, s=1),
     "Hz": _of(1.0, s=-1),
@@ -45,6 +49,7 @@ _FACTORS = {
     "V": _of(1.0, V=1),
     "mV": _of(1e-3, V=1),
     "uV": _of(1e-6, V=1),
+    "degC": _of(1.0, degC=1),
 }
 _PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?")
 
@@ -62,41 +67,29 @@ _CLOSED = {  # of a recording: the unit used inside, and what is converted to it
     "W/kg": (),
     "%": (),
     "1": (),
+    "1/min": (),
+    "degC": (),
 }
 _INNER = {unit: inner for inner, others in _CLOSED.items() for unit in (inner, *others)}
 _SPELLINGS = {
-    "degree": "deg",
-    "degrees": "deg",
-    "°": "deg",
-    "radian": "rad",
-    "radians": "rad",
-    "meter": "m",
-    "meters": "m",
-    "metre": "m",
-    "metres": "m",
-    "millimeter": "mm",
-    "millimeters": "mm",
-    "newton": "N",
-    "nt": "N",
-    "newtons": "N",
-    "nm": "N m",
-    "n.m": "N m",
-    "n*m": "N m",
-    "n-m": "N m",
-    "nmm": "N mm",
-    "ntmm": "N mm",
-    "n.mm": "N mm",
-    "n*mm": "N mm",
-    "ncm": "N cm",
-    "nmm/kg": "N mm/kg",
-    "n.mm/kg": "N mm/kg",
-    "nm/kg": "N m/kg",
-    "volt": "V",
-    "volts": "V",
-    "µv": "uV",
-    "μv": "uV",
-    "percent": "%",
-    "": "",
+    word: unit
+    for unit, words in {
+        "deg": "degree degrees °",
+        "rad": "radian radians",
+        "m": "meter meters metre metres",
+        "mm": "millimeter millimeters",
+        "N": "newton newtons nt",
+        "N m": "nm n.m n*m n-m",
+        "N mm": "nmm ntmm n.mm n*mm",
+        "N cm": "ncm",
+        "N m/kg": "nm/kg",
+        "N mm/kg": "nmm/kg n.mm/kg",
+        "V": "volt volts",
+        "uV": "µv μv",
+        "%": "percent",
+        "degC": "°c celsius",
+    }.items()
+    for word in words.split()
 }
 _BY_LOWER_CASE = {unit.lower(): unit for unit in _INNER}
 
@@ -115,8 +108,7 @@ def parsed_unit(text: str) -> str | None:
     text = re.sub(r"\s+", " ", text.strip())
     if text in _INNER:
         return text
-    spelled = _SPELLINGS.get(text.lower(), _BY_LOWER_CASE.get(text.lower()))
-    return spelled or None
+    return _SPELLINGS.get(text.lower(), _BY_LOWER_CASE.get(text.lower()))
 
 
 def inner_unit(unit: str) -> str:
@@ -149,28 +141,34 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
     return values if factor == 1 else values * factor
 
 
+def offset_words(*units: str) -> str:
+    """Say why a temperature is not converted, as the end of a sentence, where one of the units is K or degF."""
+    why = "; temperatures must be in degC, because K and degF differ from it by an offset and units are converted by "
+    return f"{why}factors" if {"K", "degK", "degF", "°F"}.intersection(units) else ""
+
+
 def rate_unit(unit: str, order: int = 1) -> str:
     """Unit of a time derivative.
 
     >>> rate_unit("deg", 2), rate_unit("1", 1)
     ('deg/s2', '1/s')
     """
-    if order == 0:
-        return unit
-    return f"{unit}/s" if order == 1 else f"{unit}/s{order}"
+    return unit if order == 0 else f"{unit}/s{order if order > 1 else ''}"
 
 
 def unit_factor(unit: str, to: str) -> float | None:
     """Factor from one unit to another.
 
     unit, to: products of base units with powers; what stands after a stroke divides
-    returns: none where a unit is unknown; NaN where both are known and measure different things
+    returns: none where a unit is unknown; NaN where both are known and measure different things, or an offset apart
 
     >>> round(unit_factor("deg/s", "rad/s"), 6), unit_factor("N mm", "N m"), unit_factor("furlong", "m")
     (0.017453, 0.001, None)
     >>> unit_factor("N m", "W s")
     1.0
     """
+    if "degC" in (unit, to) and offset_words(unit, to):
+        return math.nan
     one, other = _measured(unit_words(unit)), _measured(unit_words(to))
     if one is None or other is None:
         return None

@@ -23,7 +23,7 @@ from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_tri
 
 INPUTS = ("recorded", "per_kg", "plantarflexors", "others", "phase")
 LOWPASS_HZ, EDGE_S, TRIALS = 10.0, 2.0, 8
-PRESSURE_M, EMG_ERROR, OTHERS_NM, ERROR_HZ = 0.003, 0.05, 1.5, 6.0
+PRESSURE_M, ERROR_HZ = 0.003, 6.0
 TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration, as in tracked_ankle.toml
 ANKLE, SIDE = 2, 0
 FLEXIONS = [0, 3, 4]  # hip, knee and ankle among the walk's angles
@@ -35,9 +35,7 @@ def own_foot_kg(person: Person) -> float:
     return 0.0145 * person.mass_kg + FOOT_KG
 
 
-def ankle_trials(
-    walk: TrueWalk, emg_late_s: float, emg_error: float = EMG_ERROR, others_nm: float = OTHERS_NM
-) -> Measured:
+def ankle_trials(walk: TrueWalk, emg_late_s: float, emg_error: float, others_nm: float) -> Measured:
     """Stretches of a walk, as inputs and observation of tracked_ankle.toml; errors are standard deviations."""
     rng = np.random.default_rng([walk.seed, 31])
     trial = measured(walk, walk.person.name, "", emg_late_s).stream("kinematics")

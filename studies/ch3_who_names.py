@@ -75,7 +75,7 @@ def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
                 record = recorded(hidden.system, Conditions(noise, seed, duration_s=hidden.duration_s))
                 methods = METHODS if seed == seeds[0] and noise in CURVED else NAMING
                 found += [discover_answer(hidden, record), *(method_answer(hidden, record, each) for each in methods)]
-    block = Block("names", "Who names it", (), (naming_figure(found, "names"),), (naming_table(found, "names"),))
+    block = Block("names", "Who names it", (), (naming_figure(found, "names"),), (naming_table(found),))
     return written({}, [block], "Who names the hidden effect, sections 3.4 and 3.5", folder)
 
 

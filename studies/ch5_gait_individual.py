@@ -92,7 +92,7 @@ def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:
         masked = (MASKED,) if "shred" in kinds else ()
         missing = gait.against_missing(own, what, channels, (*kinds, *masked))
         save_table(pd.concat([gait.against_noise(own, what, channels, kinds), missing]), file)
-    figure = gait.disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors", "disturbed")
+    figure = gait.disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors")
     return Block("disturbed", "Noise and missing readings", (), (figure,))
 
 

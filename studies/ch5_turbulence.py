@@ -85,7 +85,7 @@ def run(
     best = [cell for cell in cells if cell.model == kinds[-1]]
     ceilings = {cell.split: cell.relative_l2 for cell in cells if cell.model == CEILING}
     drawn = (
-        flow_figure(numbers, settings.power, "flow"),
+        flow_figure(numbers, settings.power),
         maps_figure(flow, shown, "maps", "As Fig. 5.2, top"),
         boxes_figure(best, "boxes", f"As Fig. 5.2, centre: {kinds[-1]}", ceilings),
         histograms_figure(best, "errors", "As Fig. 5.2, bottom"),

@@ -32,8 +32,8 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from gaitdisc.discovery.discover_tracked import joints_of
 from gaitdisc.discovery.prescribed import CLOSED, ResidualMoment
-from gaitdisc.discovery.tracked_joints import joints_of
 from gaitdisc.discovery.tracked_pass import Pass, moments_of_angle_noise, tracked_pass, with_angle_noise
 from gaitdisc.engines.tracked_mapping import read_tracked
 

@@ -1,12 +1,19 @@
-"""Where real recordings lie, and the skip where they do not."""
+"""A command line as a person calls it; where real recordings lie, and the skip where they do not."""
 
 import gc
+import io
 import os
+import signal
+import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from subprocess import CompletedProcess
+from unittest.mock import patch
 
 import pytest
 from hypothesis import settings
 
+from gaitdisc.cli import main
 from gaitdisc.ingest import array_file, c3d, hdf5, reader_process
 
 # An example may take as long as it does: no test rests on how busy this machine is.
@@ -44,6 +51,43 @@ def one_reader_for_all_files():
             patch.setattr(module, "ReaderProcess", given)
         yield
     started.close(lasting)
+
+
+@pytest.fixture(scope="session")
+def called():
+    """Exit code and everything printed, with refusals printed as `main` prints them; tests/test_cli.py starts anew.
+
+    ends: exit code that the command must end with; any where absent
+    """
+
+    def call(*words, ends=None):
+        arguments, out, err = ["gaitdisc", *map(str, words)], io.StringIO(), io.StringIO()
+        before = signal.getsignal(signal.SIGTERM)
+        with patch.object(sys, "argv", arguments), redirect_stdout(out), redirect_stderr(err):
+            try:
+                main()
+                code = 0
+            except SystemExit as end:
+                code = end.code
+            finally:
+                signal.signal(signal.SIGTERM, before)
+        done = CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+        assert ends in (None, code), (done.stdout, done.stderr)
+        assert "Traceback" not in done.stdout + done.stderr
+        return done
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def said(called):
+    """All that a command prints that ends with this code, on one line."""
+
+    def say(*words, ends):
+        done = called(*words, ends=ends)
+        return " ".join(f"{done.stdout} {done.stderr}".split())
+
+    return say
 
 
 @pytest.fixture(scope="session")

@@ -72,9 +72,9 @@ def _shape(channel, side):
     return SHAPES[channel.name[:-2]]
 
 
-def made_controls(count=20, condition="walk"):
+def made_controls(count=20):
     """A reference of so many people."""
-    return reference_of([made_person(f"C{k:02d}", condition, seed=5) for k in range(count)], "controls", PROVENANCE)
+    return reference_of([made_person(f"C{k:02d}", seed=5) for k in range(count)], "controls", PROVENANCE)
 
 
 def made_run(*cycles, refusals=()):

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.simulation.compiled_simulation import Compiled
-from gaitdisc.simulation.program import BOUND
+from gaitdisc.simulation.machine import BOUND
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation

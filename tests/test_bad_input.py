@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 from driven_walker import DrivenWalker
 from texts import says
-from typer.testing import CliRunner
 
-from gaitdisc.cli import app, main
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
@@ -36,38 +34,52 @@ def folder(walk, tmp_path):
     return tmp_path
 
 
-def checked(folder, files, **settings):
-    """Exit code, and what `gaitdisc check` says of a sound person P01 and of P02, whose device walk is `files`."""
-    sound = tuple(PlannedTrial(condition=word, files=(f"{word}.mot",)) for word in ("nominal", "exo"))
-    others = PlannedTrial(condition="nominal", files=("P02/nominal.mot",))
-    people = (
-        Participant(id="P02", trials=(others, PlannedTrial(condition="exo", files=tuple(files)))),
-        Participant(id="P01", trials=sound),
-    )
-    models = Models(angles=ANGLES, outputs=("knee_angle_r",))
-    study = Study(
-        conditions=Conditions(nominal="nominal", device="exo"), participants=people, models=models, **settings
-    )
+def walker(name, **files):
+    """Somebody with a trial in each condition, of one or several files."""
+    trials = tuple(PlannedTrial(condition=word, files=tuple(own)) for word, own in files.items())
+    return Participant(id=name, trials=trials)
+
+
+SOUND = walker("P01", nominal=["nominal.mot"], exo=["exo.mot"])
+
+
+def written(folder, *people, **settings):
+    models, conditions = Models(angles=ANGLES, outputs=("knee_angle_r",)), Conditions(nominal="nominal", device="exo")
+    study = Study(conditions=conditions, participants=people, models=models, **settings)
     write_study(study.placed(folder), folder / "study.toml")
-    done = CliRunner().invoke(app, ["check", str(folder), "--json"])
-    seen = {(one["participant"], one["condition"]): one for one in json.loads(done.stdout)}
-    return done.exit_code, seen
 
 
-def refusal(folder, files, **settings):
-    code, seen = checked(folder, files, **settings)
-    assert code == SOME_REFUSED
-    assert seen["P01", "exo"]["light"] != "red", "the rest of the batch goes on"
-    assert seen["P02", "nominal"]["light"] != "red"
-    assert seen["P02", "exo"]["light"] == "red"
-    return seen["P02", "exo"]["refusal"]
+@pytest.fixture
+def checked(folder, called):
+    """What `gaitdisc check` says of a sound person P01 and of P02, whose device walk is these files."""
+
+    def check(*files, ends=0):
+        written(folder, walker("P02", nominal=["P02/nominal.mot"], exo=files), SOUND)
+        done = called("check", folder, "--json", ends=ends)
+        return {(one["participant"], one["condition"]): one for one in json.loads(done.stdout)}
+
+    return check
+
+
+@pytest.fixture
+def refusal(checked):
+    """Why the device walk of P02 is refused, where nothing else is."""
+
+    def refuse(*files):
+        seen = checked(*files, ends=SOME_REFUSED)
+        assert seen["P01", "exo"]["light"] != "red", "the rest of the batch goes on"
+        assert seen["P02", "nominal"]["light"] != "red"
+        assert seen["P02", "exo"]["light"] == "red"
+        return seen["P02", "exo"]["refusal"]
+
+    return refuse
 
 
 def altered(walk, folder, change):
     kinematics = walk.stream("kinematics").selected(ANGLES)
     values = np.array(kinematics.values)
     write_storage(kinematics.with_values(change(values)), folder / "bad.mot")
-    return ["bad.mot"]
+    return "bad.mot"
 
 
 @pytest.mark.parametrize(
@@ -79,48 +91,48 @@ def altered(walk, folder, change):
         ("packed.c3d", b"PK\x03\x04" + bytes(2000), "ZIP"),
     ],
 )
-def test_a_file_that_is_absent_empty_or_of_another_kind(folder, file, content, said):
+def test_a_file_that_is_absent_empty_or_of_another_kind(folder, file, content, said, refusal):
     if content is not None:
         (folder / file).write_bytes(content)
-    assert says(refusal(folder, [file]), file, said)
+    assert says(refusal(file), file, said)
 
 
-def test_a_column_missing(walk, folder):
+def test_a_column_missing(walk, folder, refusal):
     write_storage(walk.stream("kinematics").selected(ANGLES[:4]), folder / "bad.mot")
-    said = refusal(folder, ["bad.mot"])
+    said = refusal("bad.mot")
     assert says(said, "knee_angle_l; bad.mot", "4 channels")
 
 
-def test_units_absent(walk, folder):
+def test_units_absent(walk, folder, refusal):
     kinematics = walk.stream("kinematics").selected(ANGLES)
     names = [f"my_{name}" for name in ANGLES]
     rows = [",".join(["time", *names])]
     rows += [",".join(map(str, row)) for row in np.column_stack([kinematics.time, kinematics.values])]
     (folder / "bad.csv").write_text("\n".join(rows))
-    said = refusal(folder, ["bad.csv"])
+    said = refusal("bad.csv")
     assert "unit" in said and "bad.csv" in said and "my_hip_flexion_r" in said
 
 
-def test_a_rate_that_is_not_constant(walk, folder):
+def test_a_rate_that_is_not_constant(walk, folder, refusal):
     kinematics = walk.stream("kinematics").selected(ANGLES)
     write_table(kinematics, folder / "bad.csv")
     lines = (folder / "bad.csv").read_text().splitlines()
     (folder / "bad.csv").write_text("\n".join(lines[:500] + lines[530:]))
-    said = refusal(folder, ["bad.csv"])
+    said = refusal("bad.csv")
     assert "bad.csv" in said and "0.31 s" in said
 
 
-def test_nan_in_force(walk, folder):
+def test_nan_in_force(walk, folder, refusal):
     forces = walk.stream("forces")
     values = np.array(forces.values)
     values[5000:5010, 0] = np.nan
     write_storage(forces.with_values(values), folder / "forces.mot")
-    said = refusal(folder, ["exo.mot", "forces.mot"])
+    said = refusal("exo.mot", "forces.mot")
     assert says(said, "forces.mot: ground_force_r_vy", "10 of 30000", "missing")
     assert "t = 5 s" in said
 
 
-def test_left_and_right_swapped(walk, folder):
+def test_left_and_right_swapped(walk, folder, refusal):
     kinematics = walk.stream("kinematics")
     swap = str.maketrans("rl", "lr")
     columns = [kinematics.index(name[:-1] + name[-1].translate(swap)) for name in ANGLES[:2]]
@@ -129,71 +141,55 @@ def test_left_and_right_swapped(walk, folder):
     values[:, 3:] = kinematics.selected(ANGLES).values[:, :2]
     write_storage(kinematics.selected(ANGLES).with_values(values), folder / "bad.mot")
     write_storage(walk.stream("forces"), folder / "forces.mot")
-    said = refusal(folder, ["bad.mot", "forces.mot"])
+    said = refusal("bad.mot", "forces.mot")
     assert "exchanged" in said
 
 
-def test_radians_in_a_file_that_says_degrees(walk, folder):
-    said = refusal(folder, altered(walk, folder, np.deg2rad))
+def test_radians_in_a_file_that_says_degrees(walk, folder, refusal):
+    said = refusal(altered(walk, folder, np.deg2rad))
     assert "bad.mot" in said and "rad" in said
 
 
-def test_somebody_who_stands(walk, folder):
-    said = refusal(folder, altered(walk, folder, lambda values: values[:1] + 0.01 * np.sin(values)))
+def test_somebody_who_stands(walk, folder, refusal):
+    said = refusal(altered(walk, folder, lambda values: values[:1] + 0.01 * np.sin(values)))
     assert "bad.mot" in said
 
 
-def test_a_participant_with_one_condition_only(folder):
-    person = Participant(id="P02", trials=(PlannedTrial(condition="nominal", files=("nominal.mot",)),))
-    study = Study(conditions=Conditions(nominal="nominal", device="exo"), participants=(person,))
-    write_study(study.placed(folder), folder / "study.toml")
-    done = CliRunner().invoke(app, ["run", str(folder), "--quiet"])
-    assert done.exit_code == REFUSED
-    assert says(done.output, "'nominal'", "'exo'; P02", "1", "'nominal', none", "'exo'")
+def test_a_participant_with_one_condition_only(folder, called):
+    written(folder, walker("P02", nominal=["nominal.mot"]))
+    said = called("run", folder, "--quiet", ends=REFUSED).stderr
+    assert says(said, "'nominal'", "'exo'; P02", "1", "'nominal', none", "'exo'")
 
 
-def test_a_held_out_part_longer_than_the_trial(folder, walk):
-    sound = tuple(PlannedTrial(condition=word, files=(f"{word}.mot",)) for word in ("nominal", "exo"))
-    study = Study(
-        conditions=Conditions(nominal="nominal", device="exo"),
-        participants=(Participant(id="P01", trials=sound),),
-        models=Models(angles=ANGLES, outputs=("knee_angle_r",)),
-        held_out={"seconds": 90.0},
-    )
-    write_study(study.placed(folder), folder / "study.toml")
-    done = CliRunner().invoke(app, ["run", str(folder), "--quiet"])
-    assert done.exit_code == REFUSED
-    assert says(done.output, "too short to hold out", "90 s") and "lasts 30.00 s" in done.output
+def test_a_held_out_part_longer_than_the_trial(folder, walk, called):
+    written(folder, SOUND, held_out={"seconds": 90.0})
+    said = called("run", folder, "--quiet", ends=REFUSED).stderr
+    assert says(said, "too short to hold out", "90 s") and "lasts 30.00 s" in said
 
 
-def test_a_typo_in_the_study(folder, monkeypatch, capsys):
-    checked(folder, ["exo.mot"])
+def test_a_typo_in_the_study(folder, called):
+    written(folder, SOUND)
     text = (folder / "study.toml").read_text()
     (folder / "study.toml").write_text(text.replace("kinematics_hz", "kinematic_hz"))
-    monkeypatch.setattr("sys.argv", ["gaitdisc", "check", str(folder)])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    said = capsys.readouterr().err
-    assert stopped.value.code == REFUSED
+    said = called("check", folder, ends=REFUSED).stderr
     assert "kinematics_hz" in said and "study.toml" in said and "line" in said
 
 
-def test_a_trial_of_a_person_who_changed_is_refused(walk, folder):
+def test_a_trial_of_a_person_who_changed_is_refused(walk, folder, refusal):
     def changed(values):
         values[2250:] += np.array([8.0, -8.0, 6.0, 8.0, -8.0])
         return values
 
-    said = refusal(folder, altered(walk, folder, changed))
+    said = refusal(altered(walk, folder, changed))
     assert "not change late" in said
 
 
-def test_dropping_nothing_silently(walk, folder):
+def test_dropping_nothing_silently(walk, folder, checked):
     trial = replace(walk, streams={"kinematics": walk.stream("kinematics").selected(ANGLES)})
     values = np.array(trial.stream("kinematics").values)
     values[1000:1040, 1] = np.nan
     write_storage(trial.stream("kinematics").with_values(values), folder / "bad.mot")
-    code, seen = checked(folder, ["bad.mot"])
-    assert code == 0
+    seen = checked("bad.mot")
     kinds = {(finding["kind"], finding["channel"]) for finding in seen["P02", "exo"]["findings"]}
     assert ("gap", "knee_angle_r") in kinds
 
@@ -209,22 +205,22 @@ def test_moments_named_after_the_force_add_no_contact(walk, folder):
         np.testing.assert_array_equal(force_contacts(read)[side].time, contacts.time)
 
 
-def test_knees_counted_the_other_way_give_the_same_strides(walk, folder):
+def test_knees_counted_the_other_way_give_the_same_strides(walk, folder, checked):
     signs = np.where([name.startswith("knee") for name in ANGLES], -1.0, 1.0)
-    _, seen = checked(folder, altered(walk, folder, lambda values: values * signs))
+    seen = checked(altered(walk, folder, lambda values: values * signs))
     assert seen["P02", "exo"]["strides"] == seen["P01", "exo"]["strides"] != {}
     said = [one for one in seen["P02", "exo"]["findings"] if one["kind"] == "knee sign"]
     assert [(one["file"], one["channel"]) for one in said] == [("bad.mot", "knee_angle_r"), ("bad.mot", "knee_angle_l")]
 
 
-def test_one_absurd_cell_costs_itself_only(walk, folder):
+def test_one_absurd_cell_costs_itself_only(walk, folder, checked):
     def absurd(values):
         values[1500, 1] = 1e6
         return values
 
-    code, seen = checked(folder, altered(walk, folder, absurd))
+    seen = checked(altered(walk, folder, absurd))
     (said,) = [one for one in seen["P02", "exo"]["findings"] if one["kind"] == "out of range"]
-    assert code == 0 and seen["P02", "exo"]["light"] == "amber"
+    assert seen["P02", "exo"]["light"] == "amber"
     assert (said["file"], said["channel"]) == ("bad.mot", "knee_angle_r")
     assert says(said["what"], "1e+06 deg", "frame 1501 (t = 15", "s)", "range", "-90", "180 deg")
     study = load_study(folder)

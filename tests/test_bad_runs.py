@@ -14,9 +14,7 @@ import pandas as pd
 import pytest
 from driven_walker import DrivenWalker
 from texts import says
-from typer.testing import CliRunner
 
-from gaitdisc.cli import app, main
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
@@ -50,7 +48,7 @@ def folder(recordings, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def ran(recordings, tmp_path_factory):
+def ran(recordings, tmp_path_factory, said):
     """A finished run of one participant, to be copied."""
     folder = tmp_path_factory.mktemp("ran")
     for word in ("nominal", "exo"):
@@ -58,7 +56,7 @@ def ran(recordings, tmp_path_factory):
     written(folder, walker("P01"))
     with pytest.MonkeyPatch.context() as brief:
         brief.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
-        assert said("run", folder)[0] == 0
+        said("run", folder, "--quiet", ends=0)
     return folder
 
 
@@ -77,13 +75,6 @@ def written(folder, *people, outputs=("knee_angle_r", "ankle_angle_r")):
     write_study(study.placed(folder), folder / "study.toml")
 
 
-def said(word, folder, *options):
-    """Exit code and all that is printed, on one line."""
-    done = CliRunner().invoke(app, [word, str(folder), "--quiet", *options])
-    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
-    return done.exit_code, " ".join(done.output.split())
-
-
 def page_of(folder):
     """Text of the report, without its figures."""
     page = (folder / "run" / "report" / "report.html").read_text(encoding="utf-8")
@@ -91,18 +82,15 @@ def page_of(folder):
     return " ".join(text.split())
 
 
-def test_one_participant_carries_no_test(folder):
-    written(folder, walker("P01"))
-    code, _ = said("run", folder)
-    assert code == 0
-    assert says(page_of(folder), "One participant is not enough")
-    tests = json.loads((folder / "run" / "tests" / "tests.json").read_text())
+def test_one_participant_carries_no_test(ran):
+    assert says(page_of(ran), "One participant is not enough")
+    tests = json.loads((ran / "run" / "tests" / "tests.json").read_text())
     assert tests["participants"] == 1
     assert tests["too_few"]
 
 
 @pytest.mark.slow
-def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
+def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder, said):
     for name in ("P02", "P03", "P04_nominal", "P04_exo"):  # no two people share a recording
         file = "exo.mot" if name.endswith("exo") else "nominal.mot"
         (folder / f"{name}.mot").write_bytes((folder / file).read_bytes() + b"\n" * (2 + ord(name[2])))
@@ -111,8 +99,7 @@ def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
         walker("P04", "P04_nominal.mot", "P04_exo.mot"),
         walker("P05", "still_ankle_angle_r_nominal.mot", "still_ankle_angle_r_exo.mot"),
     )  # fmt: skip
-    code, words = said("run", folder)
-    assert code == SOME_REFUSED
+    words = said("run", folder, "--quiet", ends=SOME_REFUSED)
     assert says(words, "P02", "'nominal'", "'exo'; P02", "1", "'nominal', none")
     assert says(words, "P03 exo: P03 exo", "1", "no", "'exo.mot'")
     assert says(words, "P05", "P05: d2(ankle_angle_r)/dt2")
@@ -127,46 +114,34 @@ def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
     assert set(tests["n"]) <= {2}
 
 
-def test_an_input_that_does_not_move_is_told(folder):
+def test_an_input_that_does_not_move_is_told(folder, said):
     written(folder, walker("P01", "still_ankle_angle_l_nominal.mot", "still_ankle_angle_l_exo.mot"))
-    code, _ = said("run", folder)
-    assert code == 0
+    said("run", folder, "--quiet", ends=0)
     findings = pd.read_csv(folder / "run" / "report" / "tables" / "findings.csv")
     told = findings[findings["channel"] == "ankle_angle_l"]
     assert list(told["what"]) == ["5 deg throughout"] * 2
     assert told["spoils"].str.contains("coordinate is locked").all()
 
 
-def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(folder, monkeypatch):
+def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(folder, monkeypatch, said):
     diverging = partial(TrainingSettings, learning_rate=1e30)
     monkeypatch.setattr("gaitdisc.run.run_study.TrainingSettings", diverging)
     written(folder, walker("P01"))
-    code, words = said("run", folder)
-    assert code == REFUSED
+    words = said("run", folder, "--quiet", ends=REFUSED)
     assert says(words, "P01", "Nominal model:")
     assert says(words, "1e+30. Use another seed")
 
 
-def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_and_says_so(folder):
+def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_and_says_so(folder, said):
     written(folder, walker("P01"))
-    code, words = said("ablate", folder, "--length", "5", "--length", "60")
-    assert code == 0
+    words = said("ablate", folder, "--length", 5, "--length", 60, "--quiet", ends=0)
     assert says(words, "left", "P01", "60 s", "20.7 s")
     assert says(page_of(folder), "Lengths left out", "60 s")
     quantity = pd.read_csv(folder / "run" / "quantities" / "P01" / "quantity.csv")
     assert sorted(set(quantity["length_s"])) == [5.0, 20.7]
 
 
-def refused_words(monkeypatch, capsys, *words):
-    """Stop with exit code 1, and what is said."""
-    monkeypatch.setattr("sys.argv", ["gaitdisc", *map(str, words), "--quiet"])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    assert stopped.value.code == REFUSED
-    return " ".join(capsys.readouterr().err.split())
-
-
-def test_a_disk_that_fills_in_the_middle_keeps_what_was_finished(folder, monkeypatch, capsys):
+def test_a_disk_that_fills_in_the_middle_keeps_what_was_finished(folder, monkeypatch, said):
     for word in ("nominal", "exo"):
         (folder / f"second_{word}.mot").write_bytes((folder / f"{word}.mot").read_bytes() + b"\n")
     written(folder, walker("P01"), walker("P02", "second_nominal.mot", "second_exo.mot"))
@@ -179,56 +154,52 @@ def test_a_disk_that_fills_in_the_middle_keeps_what_was_finished(folder, monkeyp
 
     with monkeypatch.context() as disk:
         disk.setattr(os, "fsync", full)
-        words = refused_words(disk, capsys, "run", folder)
+        words = said("run", folder, "--quiet", ends=REFUSED)
     assert "WriteError" in words and says(words, "left", "choose another folder")
     assert not (folder / "run" / "run.json").exists()
     assert not list(folder.rglob(".part-*"))
     kept = (folder / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns
-    code, words = said("run", folder)
-    assert (code, "n = 2 participants" in words) == (0, True)
+    assert "n = 2 participants" in said("run", folder, "--quiet", ends=0)
     assert (folder / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns == kept
 
 
-def test_a_folder_that_cannot_be_written(folder, monkeypatch, capsys):
+def test_a_folder_that_cannot_be_written(folder, said):
     written(folder, walker("P01"))
     (folder / "file").write_text("")
-    words = refused_words(monkeypatch, capsys, "run", folder, "--out", folder / "file" / "run")
+    words = said("run", folder, "--quiet", "--out", folder / "file" / "run", ends=REFUSED)
     assert says(words, "folder") and "choose another folder with --out" in words
 
 
-def test_two_runs_in_one_folder(folder, monkeypatch, capsys):
+def test_two_runs_in_one_folder(folder, monkeypatch, said):
     from gaitdisc.write_lock import write_lock
 
     written(folder, walker("P01"))
     with write_lock(folder / "run"), monkeypatch.context() as another:
         another.setattr("gaitdisc.write_lock._HELD", ContextVar("held", default=frozenset()))
-        words = refused_words(another, capsys, "run", folder)
+        words = said("run", folder, "--quiet", ends=REFUSED)
     assert says(words, f"{os.getpid()}", f"{folder}/run/")
 
 
-def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypatch, tmp_path_factory):
+def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypatch, tmp_path_factory, said, called):
     written(folder, walker("P01"))
-    said("run", folder)
+    said("run", folder, "--quiet", ends=0)
     there = tmp_path_factory.mktemp("another") / "machine"
     shutil.copytree(folder, there)
     shutil.rmtree(folder / "run")
     monkeypatch.setattr(socket, "gethostname", lambda: "another")
     kept = (there / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns
-    assert said("run", there)[0] == 0
+    said("run", there, "--quiet", ends=0)
     assert (there / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns == kept
-    assert CliRunner().invoke(app, ["report", str(there / "run")]).exit_code == 0
+    called("report", there / "run", ends=0)
 
 
 @pytest.mark.parametrize("file", ["response.json", "r2.csv", "arrays.npz"])
-def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, monkeypatch, capsys, file):
+def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, said, file):
     folder = shutil.copytree(ran, tmp_path / "copy")
     damaged = folder / "run" / "responses" / "P01" / file
     whole = damaged.read_bytes()
     damaged.write_bytes(whole[: len(whole) // 2])
-    monkeypatch.setattr("sys.argv", ["gaitdisc", "report", str(folder / "run")])
-    with pytest.raises(SystemExit):
-        main()
-    words = " ".join(capsys.readouterr().err.split())
+    words = said("report", folder / "run", ends=REFUSED)
     assert f"P01/{file} is" in words and says(words, "`gaitdisc run` keeps")
-    assert said("run", folder)[0] == 0
+    said("run", folder, "--quiet", ends=0)
     assert damaged.read_bytes() == whole

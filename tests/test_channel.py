@@ -42,7 +42,8 @@ def test_both_sides_are_there():
 
 
 def test_nearest():
-    assert vocabulary().nearest("ankle_ang_r", among=("knee_angle_r", "ankle_angle_r")) == "ankle_angle_r"
+    assert nearest_word("ankle_ang_r", ("knee_angle_r", "ankle_angle_r")) == "ankle_angle_r"
+    assert nearest_word("ankle_ange_r", vocabulary().by_name) == "ankle_angle_r"
     assert nearest_word("zzz", ["filters"]) is None
 
 
@@ -68,11 +69,4 @@ def test_the_file_has_no_doubled_names():
 
 
 def test_sides():
-    assert [side_of(n) for n in ("a_r", "A_L", "a_r.x", "a_r/speed", "relative", "floor")] == [
-        "r",
-        "l",
-        "r",
-        "r",
-        "",
-        "",
-    ]
+    assert [side_of(n) for n in ("a_r", "A_L", "a_r.x", "a_r/speed", "relative", "floor")] == [*"rlrr", "", ""]

@@ -88,11 +88,6 @@ def _with_other_parameters(public) -> list[str]:
     ]
 
 
-def test_every_public_thing_has_a_docstring(public):
-    assert len(public) > 1000
-    assert [name for name, thing in public.items() if not inspect.getdoc(thing)] == []
-
-
 def test_what_the_library_offers_documents_every_parameter(public):
     offered = _offered(public)
     assert len(offered) > 100
@@ -100,12 +95,8 @@ def test_what_the_library_offers_documents_every_parameter(public):
 
 
 def test_no_docstring_names_a_parameter_that_is_not_there(public):
+    assert len(public) > 1000
     assert _with_other_parameters(public) == []
-
-
-def test_functions_take_at_most_seven_arguments(public):
-    functions = {name: thing for name, thing in public.items() if inspect.isfunction(thing)}
-    assert [name for name, thing in functions.items() if len(_signature(thing)) > 7] == []
 
 
 def test_a_line_in_place_of_a_section_names_a_real_parameter_too():

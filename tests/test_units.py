@@ -68,6 +68,12 @@ def test_every_unit_of_a_recording_is_in_the_one_table():
         ("N/kg", "m/s^2", 1.0),
         ("kN", "N", 1000.0),
         ("mV", "V", 1e-3),
+        ("1/min", "Hz", 1 / 60),
+        ("km/h", "m/s", 1 / 3.6),
+        ("1/(min s)", "1/s^2", 1 / 60),
+        ("h/(km min)", "1/m", 0.06),
+        ("degC/min", "degC/s", 1 / 60),
+        ("J/degC", "N m/degC", 1.0),
     ],
 )
 def test_factors(unit, to, factor):
@@ -77,6 +83,14 @@ def test_factors(unit, to, factor):
 def test_what_measures_something_else_has_no_factor():
     assert math.isnan(unit_factor("N", "N m"))
     assert math.isnan(unit_factor("deg", "1"))
+    assert math.isnan(unit_factor("degC", "m"))
+
+
+@pytest.mark.parametrize("other", ["K", "degF"])
+def test_a_temperature_of_another_zero_has_no_factor(other):
+    assert math.isnan(unit_factor("degC", other)) and math.isnan(unit_factor(other, "degC"))
+    assert unit_factor("degC", "degC") == 1.0
+    assert parsed_unit(other) is None
 
 
 @pytest.mark.parametrize("unit", ["furlong", "N m rad-", "", "m^^2", "x" * 10_000])

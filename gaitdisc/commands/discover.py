@@ -68,7 +68,8 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.engines.mapping import names_engine
     from gaitdisc.simulation.writing import write_simulation
 
-    request = Request.read(catalogue, tuple(one.strip() for one in effects.split(",") if one.strip()), alpha)
+    given = tuple(one.strip() for one in effects.split(",") if one.strip())
+    request = Request.read(catalogue, given, alpha, progress)
     if measured is not None and names_engine(simulation):
         from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
         from gaitdisc.engines.tracked_mapping import read_tracked
@@ -77,11 +78,11 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         if walk is not None:
             from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
 
-            answered = discover_tracked(walk, measured, request, progress)
+            answered = discover_tracked(walk, measured, request)
             said = (*answered.written.notes, *answered.said)
             _write(answered.found, out, draw, progress, lambda: write_tracked(answered, out), said)
             return
-        answer = discover_model_file(simulation, measured, request, progress)
+        answer = discover_model_file(simulation, measured, request)
         said = (*answer.written.notes, answer.runs.said)
         _write(answer.found, out, draw, progress, lambda: write_answer(answer, out), said)
         return
@@ -90,13 +91,13 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         _write(found, folder, draw, progress, lambda: [write_simulation(augmented, folder / "augmented.toml").name])
 
     if measured is not None:
-        with_model(*discover_files(simulation, measured, request, progress), out)
+        with_model(*discover_files(simulation, measured, request), out)
         return
     whose, _, joint = participant.partition(":")
 
     def discovered(person: str, folder: Path) -> Discovery:
         claim_folder(folder, *FILES)
-        found, augmented = discover_study(simulation, person, request, progress, joint or ANKLE)
+        found, augmented = discover_study(simulation, person, request, joint or ANKLE)
         with_model(found, augmented, folder)
         return found
 
@@ -135,7 +136,7 @@ def _write(
 
 def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
     """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
-    from gaitdisc.discovery.device_people import lines, over_people
+    from gaitdisc.discovery.device_study import lines, over_people
     from gaitdisc.errors import GaitdiscError
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.spreadsheet import write_csv

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
@@ -32,6 +31,7 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.effect_units import places_unit, unit_of_channel
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
@@ -86,21 +86,21 @@ def answer(
     discovery = Discovery(
         verdict.word if agrees else "unexplained",
         "",
-        whereabouts(case, stated, train) if effects or not agrees else (),
-        effects,
-        (
+        where=whereabouts(case, stated, train) if effects or not agrees else (),
+        effects=effects,
+        rivals=(
             *(reported_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
             *(
                 FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
                 for one in verdict.small  # that close too little of the gap to be named
             ),
         ),
-        train,
-        held_out,
-        channels,
-        tuple(unit_of_channel(base, name) for name in channels),
-        drawn_runs(case, held.before, held.after),
-        (*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
+        train=train,
+        held_out=held_out,
+        channels=channels,
+        units=tuple(unit_of_channel(base, name) for name in channels),
+        runs=drawn_runs(case, held.before, held.after),
+        findings=(*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
         explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
@@ -242,7 +242,7 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
     )
 
 
-def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] | None:
+def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     """Return how strongly an effect acts along the runs that were fitted (run, sample) [the place's unit].
 
     returns: None of what is no term, and of one that comes late
@@ -251,11 +251,10 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> NDArray[np.float64] 
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None
     segments, drive, fit = now.shooting.segments, case.measured.drive, now.model.fit
-    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [
         Points(*one, fit.values, rate=drive.rate)
-        for one in zip(time, fit.states, segments.of(drive.inputs), strict=True)
+        for one in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
     ]
     return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
 

@@ -21,7 +21,6 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapScale, cross_validated, errs_more
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest
-from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.scored_model import ScoredModel
@@ -58,10 +57,7 @@ class Beam:
 
     def fit(self, sets: Iterable[tuple[Part, ...]]) -> list[CrossValidated]:
         """Fit sets, so that they are weighed as well."""
-        fitted = [
-            cross_validated(self.scale, self.as_read.shooting, self.search.base, parts, self.as_read.model)
-            for parts in sets
-        ]
+        fitted = [cross_validated(self.scale, self.as_read, parts) for parts in sets]
         fitted = [one for one in fitted if self.search.sensible(one.model)]
         self.known.update((one.model.explanations, one) for one in fitted)
         return fitted
@@ -69,7 +65,7 @@ class Beam:
     def select_forward(self, begin: CrossValidated) -> CrossValidated:
         """Return the best set found by adding explanations to one, or to a far-off number, and exchanging them."""
         self.known.setdefault(self.as_read.model.explanations, self.as_read)
-        far = self.fit(one.parts for one in self.search.far_off(self.as_read.scored))
+        far = self.fit(one.parts for one in self.search.far_off(self.as_read))
         self.known[begin.model.explanations] = begin
         if begin is not self.as_read:
             for one in far:
@@ -113,7 +109,7 @@ class Beam:
         promising = []
         for score in scores:
             left = math.sqrt(max(1 - score.gain / whole, 0.0))
-            promised = now.gap / self.as_read.gap * left + model.penalty + penalty_of(score.candidate, score.values)
+            promised = now.gap / self.as_read.gap * left + model.penalty + score.candidate.penalty(score.values)
             if promised < wanted:
                 promising.append(score)
         return promising[:most]
@@ -123,7 +119,7 @@ class Beam:
         wanted = now.model.explanations | {score.candidate.identity}
         if wanted not in self.known:
             parts = (*now.model.parts, Part(score.candidate, score.values))
-            longer = cross_validated(self.scale, now.shooting, self.search.base, parts, now.model)
+            longer = cross_validated(self.scale, now, parts)
             if not self.search.sensible(longer.model):
                 return None
             self.known[wanted] = longer
@@ -134,7 +130,7 @@ class Beam:
         wanted = now.model.explanations - {gone}
         if wanted not in self.known:
             parts = tuple(part for part in now.model.parts if part.candidate.identity != gone)
-            self.known[wanted] = cross_validated(self.scale, now.shooting, self.search.base, parts, now.model)
+            self.known[wanted] = cross_validated(self.scale, now, parts)
         return self.known[wanted]
 
     def _exchange(self, best: CrossValidated) -> None:
@@ -154,7 +150,7 @@ class Beam:
             for part in now.model.parts:
                 fewer = self.without(now, part.candidate.identity)
                 share = (fewer.gap - now.gap) / self.as_read.gap
-                worth = max(CRITERIA.matters, penalty_of(part.candidate, part.values))
+                worth = max(CRITERIA.matters, part.candidate.penalty(part.values))
                 if share < worth or errs_more(fewer, now) >= ALPHA:
                     losses.append((share, part, fewer))
             if not losses:
@@ -192,8 +188,8 @@ class Beam:
 class Outcome:
     """A set of explanations, and what was weighed beside it."""
 
-    as_read: ScoredModel  # the simulation as read and with the set, on the same runs
-    now: ScoredModel  # the simulation as read and with the set, on the same runs
+    as_read: ScoredModel
+    now: ScoredModel  # with the set, on the same runs
     closed: float  # share of the gap that goes, on runs left out of the fit
     # of the errors left out of the fit, with and without the set; its p times the number of explanations that were open
     # (Bonferroni), for the same runs chose among these
@@ -203,7 +199,7 @@ class Outcome:
     others: tuple[ScoredModel, ...]  # the cheapest sets of all, whatever they cost
 
 
-def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
+def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
     """Search the plainest set of explanations that closes most of the gap; None where none closes enough.
 
     First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
@@ -211,17 +207,17 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
 
     also: sets that another search found, weighed beside those that are found here
     """
-    search = case.search
+    search, scale = case.search, case.scale
     search = replace(search, candidates=(*search.candidates, *unnamed_terms(search.base, search.places)))
-    as_read = near_runs(case, scale)
+    as_read = near_runs(case)
     if scale.agrees(as_read.model.fit) or not as_read.gap:
         return None
     beam = Beam(search, scale, as_read)
     beam.fit(also)
     best = beam.select_forward(as_read)
-    longer = on_longer_runs(case, scale, best) if best.model.explanations else None
+    longer = on_longer_runs(case, best) if best.model.explanations else None
     if longer:
-        beam = Beam(search, scale, as_read_on(case, scale, as_read, longer))
+        beam = Beam(search, scale, as_read_on(scale, as_read, longer))
         if not beam.as_read.gap:
             return None
         best = beam.select_forward(longer)
@@ -229,26 +225,26 @@ def closing_most(case: Case, scale: GapScale, also: tuple[tuple[Part, ...], ...]
     now = beam.plainest(now)
     if not now.model.explanations:
         return None
-    near, others = (tuple(one.scored for one in beam.near(now, within)) for within in (TIED, np.inf))
+    near, others = (tuple(beam.near(now, within)) for within in (TIED, np.inf))
     closed = 1 - now.gap / beam.as_read.gap
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
     test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), case.alpha)
-    return Outcome(beam.as_read.scored, now.scored, closed, test, tuple(small), near, others[:LISTED])
+    return Outcome(beam.as_read, now, closed, test, small=tuple(small), near=near, others=others[:LISTED])
 
 
-def near_runs(case: Case, scale: GapScale) -> CrossValidated:
+def near_runs(case: Case) -> CrossValidated:
     """Fit the simulation as read to runs that are halved until it stays near the data.
 
     Of runs on which it never does, the longest are taken that halving makes hardly better.
     """
     period = min(case.rhythm.period, case.rhythm.duration / 2) * case.rhythm.rate
-    samples, tried = case.longest, []
+    samples, scale, tried = case.longest, case.scale, []
     while True:
         shooting = case.learned_runs(samples)
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
         enough, starts = CONVERGED * shooting.seen.size, case.guess.starts(shooting.segments)
         begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
-        now = cross_validated(scale, shooting, case.search.base, (), begun)
+        now = cross_validated(scale, ScoredModel(begun, shooting), ())
         tried.append((scale.relative(now.model.fit), now))
         if tried[-1][0] < CRITERIA.near or samples / 2 < max(FEWEST, HALF_PERIOD * period):
             break
@@ -257,9 +253,9 @@ def near_runs(case: Case, scale: GapScale) -> CrossValidated:
     return next(now for error, now in tried if error * WORTH_HALVING <= least)
 
 
-def on_longer_runs(case: Case, scale: GapScale, now: CrossValidated) -> CrossValidated | None:
+def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
     """Fit what was found to runs ever twice as long, while it stays near the data; None if none is longer."""
-    longest, guess, found = case.longest, case.guess, None
+    longest, guess, scale, found = case.longest, case.guess, case.scale, None
     samples = now.shooting.segments.span
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)
@@ -267,20 +263,20 @@ def on_longer_runs(case: Case, scale: GapScale, now: CrossValidated) -> CrossVal
         shooting = replace(case.learned_runs(samples), past=guess.states)
         shooting = shooting.with_noise(scale.error_of(before.model.fit))
         starts = guess.starts(shooting.segments)
-        begun = fit_model(shooting, case.search.base, before.model.parts, starts, TURNS, like=before.model)
-        longer = cross_validated(scale, shooting, case.search.base, begun.parts, begun)
+        begun = before.model.refitted(shooting, starts=starts, turns=TURNS)
+        longer = cross_validated(scale, ScoredModel(begun, shooting), begun.parts)
         if not scale.relative(longer.model.fit) < CRITERIA.near:
             break
         found = longer
     return found
 
 
-def as_read_on(case: Case, scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
+def as_read_on(scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
     """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread."""
     shooting = longer.shooting.with_noise(scale.error_of(as_read.model.fit))
-    starts = longer.model.fit.starts
-    model = fit_model(shooting, case.search.base, (), starts, TURNS, like=as_read.model)
+    model = as_read.model.refitted(shooting, starts=longer.model.fit.starts, turns=TURNS)
     most = CRITERIA.lost * (scale.spread / scale.size) ** 2
     square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())
-    return CrossValidated(model, shooting, np.full(len(longer.errors), mean), scale.gap_above(mean))
+    errors = np.full(len(longer.errors), mean)
+    return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(mean))

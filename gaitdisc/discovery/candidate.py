@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from gaitdisc.discovery.catalogue import Shape, with_names
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.effect_units import unit_of_state
 from gaitdisc.simulation.expression import Tree, parsed, substituted, written
@@ -15,13 +16,6 @@ from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
-# verdict -> the kind of place it names
-PLACE_OF = {
-    "wrong_parameter": "parameter",
-    "input_error": "input",
-    "sensor_error": "observation",
-    "wrong_initial_condition": "state",
-}
 # How an error of a signal reads, {s} being the signal: (slot, value when nothing is wrong, expression)
 SIGNAL_ERRORS = {
     "input_gain": ("gain", 1.0, "{gain}*{s}"),
@@ -32,6 +26,29 @@ SIGNAL_ERRORS = {
     "sensor_drift": ("rate", 0.0, "({s}) + {rate}*t"),
     "sensor_lag": ("seconds", 0.0, "{s}"),
 }
+
+# Explanations that can imitate some others, and many others, and so have to close more of a gap than a plain one
+BENT = (
+    *SIGNAL_ERRORS,
+    "quadratic_stiffness",
+    "linear_coupling",
+    "one_sided_spring",
+    "dead_zone_spring",
+    "one_sided_damper",
+)
+FLEXIBLE = (
+    "contact_damper",
+    "hysteresis",
+    "series_elasticity",
+    "phase_locked_moment",
+    "unnamed",
+    "input_saturation",
+    "input_product",
+    "periodic_forcing",
+    "delayed_feedback",
+    "product_coupling",
+)
+LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
 
 UNNAMED = "unnamed"
 UNNAMED_MEANS = "an effect that is not in the catalogue"
@@ -124,6 +141,18 @@ class Candidate:
         low, high = self.bounds
         return max(low - value, value - high)
 
+    def penalty(self, values: Mapping[str, float]) -> float:
+        """Return the share of the gap that it must close to be worth its statement.
+
+        The more kinds of motion an explanation can imitate, the more of a gap it has to close.
+
+        values: its numbers: a friction that drives costs the least that is named more than one that resists
+        """
+        drives = self.name in LOSSES and values.get("factor", 0.0) > 0
+        flexible, bent = self.name in FLEXIBLE, self.name in BENT
+        price = CRITERIA.bent if bent else CRITERIA.plain
+        return price + CRITERIA.bent * flexible + CRITERIA.matters * drives
+
     def pieces_at(self, constants: Mapping[str, str]) -> tuple[str, ...]:
         """Return the pieces of a missing term with its constants written in."""
         marked = {f"_{slot}": text for slot, text in constants.items()}
@@ -161,12 +190,17 @@ class Candidate:
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
 
-def _late(simulation: Simulation, seen: str, seconds: str) -> str:
-    """An observation as it was some seconds ago, definitions that stand in it written out."""
-    by: dict[str, Tree] = {}
+def _written_out(simulation: Simulation, expression: str, known: Mapping[str, Tree]) -> Tree:
+    """An expression with the definitions that stand in it written out, and with what is known of other names."""
+    by = {**known}
     for name, text in simulation.definitions:
         by[name] = substituted(parsed(text), by, simulation.signals)
-    whole = {"seen": substituted(parsed(seen), by, simulation.signals)}
+    return substituted(parsed(expression), by, simulation.signals)
+
+
+def _late(simulation: Simulation, seen: str, seconds: str) -> str:
+    """An observation as it was some seconds ago."""
+    whole = {"seen": _written_out(simulation, seen, {})}
     return written(substituted(parsed(f"delay(seen, {seconds})"), whole, simulation.signals))
 
 
@@ -220,8 +254,8 @@ def candidates_of(
                         shape.name,
                         shape.written(written),
                         shape.constants,
-                        role,
-                        shape.means,
+                        role=role,
+                        means=shape.means,
                         names=shape.names,
                         states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
                     )
@@ -284,12 +318,17 @@ def _occurs(name: str, text: str) -> bool:
     return re.search(rf"\b{re.escape(name)}\b", text) is not None
 
 
+def unnamed(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
+    """Return a term that no shape is; role: what stands for x in it."""
+    return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role, means=UNNAMED_MEANS)
+
+
 def unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
     inputs = [one.name for one in simulation.driving if one.name != "phase"]
     return tuple(
-        Candidate("missing_physics", place.kind, place.name, UNNAMED, (term,), None, place.motions[0][0], UNNAMED_MEANS)
+        unnamed(place, (term,), place.motions[0][0])
         for place in places
         for term in _terms(simulation, place, inputs, rate_of)
     )
@@ -303,12 +342,5 @@ def _terms(simulation: Simulation, place: Place, inputs: list[str], rate_of: dic
     if rate and isinstance(simulation, Simulation):
         for other, speed in rate_of.items():
             if other != own:
-                yield _acceleration(simulation, speed)
-
-
-def _acceleration(simulation: Simulation, speed: str) -> str:
-    """The right-hand side of a rate, definitions written out and nothing at the ports."""
-    by: dict[str, Tree] = {port.name: parsed("0") for port in simulation.ports}
-    for name, text in simulation.definitions:
-        by[name] = substituted(parsed(text), by, simulation.signals)
-    return written(substituted(parsed(dict(simulation.equations)[speed]), by, simulation.signals))
+                nothing = {port.name: parsed("0") for port in simulation.ports}
+                yield written(_written_out(simulation, dict(simulation.equations)[speed], nothing))

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, Identity
+from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted, prior_of
-from gaitdisc.discovery.own_states import with_own_states
-from gaitdisc.discovery.penalty import penalty_of
-from gaitdisc.discovery.shooting import ENOUGH, Shooting
+from gaitdisc.discovery.shooting import ENOUGH, TURNS, Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -41,6 +40,7 @@ class Part:
 class CandidateModel:
     """The simulation with some explanations in it, fitted to segments."""
 
+    base: Simulation  # as read
     simulation: Simulation  # with the explanations, their numbers as parameters
     machine: Compiled
     parts: tuple[Part, ...]  # the explanations, with the numbers that were found
@@ -59,7 +59,7 @@ class CandidateModel:
     @property
     def penalty(self) -> float:
         """What its explanations have to close [of the gap of the simulation as read]."""
-        return sum(penalty_of(part.candidate, part.values) for part in self.parts)
+        return sum(part.candidate.penalty(part.values) for part in self.parts)
 
     @property
     def size(self) -> int:
@@ -71,7 +71,22 @@ class CandidateModel:
         """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better."""
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
 
-    def with_estimates(self, values: NDArray[np.float64], covariance: NDArray[np.float64]) -> CandidateModel:
+    def refitted(
+        self,
+        shooting: Shooting,
+        parts: tuple[Part, ...] | None = None,
+        starts: Values | None = None,
+        turns: int = TURNS,
+        enough: float = ENOUGH,
+    ) -> CandidateModel:
+        """Return the simulation with the same explanations or others, fitted from where this model came to lie.
+
+        starts (segment, state): start states to begin from; this model's where absent
+        """
+        parts, starts = self.parts if parts is None else parts, self.fit.starts if starts is None else starts
+        return fit_model(shooting, self.base, parts, starts, turns, enough, like=self)
+
+    def with_estimates(self, values: Values, covariance: Values) -> CandidateModel:
         """Return the model with other numbers, and their covariance; its runs stay as they are.
 
         values (parameter,): all parameters
@@ -101,8 +116,8 @@ def fit_model(
     shooting: Shooting,
     base: Simulation,
     parts: tuple[Part, ...],
-    starts: NDArray[np.float64],
-    turns: int = 12,
+    starts: Values,
+    turns: int = TURNS,
     enough: float = ENOUGH,
     like: CandidateModel | None = None,
 ) -> CandidateModel:
@@ -132,4 +147,4 @@ def fit_model(
         Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})
         for part, slots in zip(parts, names, strict=True)
     )
-    return CandidateModel(simulation, machine, found, fit)
+    return CandidateModel(base, simulation, machine, found, fit)

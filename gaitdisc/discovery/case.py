@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.candidate import candidates_of
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
-from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.catalogue import ALL, Request, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import record_filter_of
 from gaitdisc.discovery.first_states import StateGuess, guess_states
@@ -30,6 +28,7 @@ from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
@@ -64,7 +63,7 @@ class Case:
         return self.search.rhythm
 
     @cached_property
-    def sensor_noise(self) -> NDArray[np.float64]:
+    def sensor_noise(self) -> Values:
         """Standard deviation of each sensor's noise in the record (channel,): as the file says, or else as the record.
 
         What the file says is that of the sensor; the record's filter leaves less. NaN where the file says nothing and a
@@ -97,7 +96,7 @@ class Case:
             return not now.noise.is_autocorrelated
         return leaves(now, self.sensor_noise) < CRITERIA.mere_noise
 
-    def noise_floor(self, noise: NDArray[np.float64]) -> NDArray[np.float64]:
+    def noise_floor(self, noise: Values) -> Values:
         """Return the size of the sensors' noise (channel,), or where it is not known, what a simulation leaves.
 
         noise (channel,): what a simulation leaves [the channel's unit]
@@ -144,10 +143,10 @@ class Case:
         begun = fit_model(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
-        model = fit_model(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
+        model = begun.refitted(shooting, starts=guess.starts(shooting.segments))
         if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
             model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
-        return scored(shooting.with_past(model.fit.states), self.search.base, model)
+        return scored(shooting.with_past(model.fit.states), model)
 
     def predictable_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `growth`."""
@@ -165,7 +164,7 @@ class Case:
     def fitted_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
         """Fit a model to other runs, which begin along its own."""
         starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-        return fit_model(shooting, self.search.base, now.model.parts, starts, like=now.model)
+        return now.model.refitted(shooting, starts=starts)
 
     def lengthened(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
@@ -179,7 +178,7 @@ class Case:
             longer = self.fitted_over(shooting.with_noise(now.noise), now)
             if not np.isfinite(longer.fit.misfit):
                 break
-            longer = replace(scored(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
+            longer = replace(scored(shooting.with_past(longer.fit.states), longer), gained=now.gained)
             if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.model):
                 break
             fit = longer.model.fit
@@ -192,33 +191,26 @@ class Case:
         return now
 
 
-def set_up_case(
-    simulation: Simulation,
-    measured: Measured,
-    shapes: tuple[Shape, ...] = (),
-    progress: Callable[[str], None] = lambda _: None,
-    possible: Callable[[Candidate], bool] = lambda _: True,
-    alpha: float = ALPHA,
-) -> Case:
+def set_up_case(simulation: Simulation, measured: Measured, request: Request = ALL) -> Case:
     """Prepare a case: split the trials, list places and explanations, guess the states.
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
     """
-    simulation = with_constant_errors(matched(simulation, measured, shapes))
+    simulation = with_constant_errors(matched(simulation, measured, request.shapes))
     if len(measured.trials) == 1:
         measured = split_in_time(measured)
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    considered = tuple(filter(possible, candidates_of(simulation, places, (*known_shapes(), *shapes))))
-    search = Search(simulation, places, considered, rhythm, progress)
+    considered = tuple(filter(request.possible, candidates_of(simulation, places, (*known_shapes(), *request.shapes))))
+    search = Search(simulation, places, considered, rhythm, request.progress)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
     passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
     learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
-    case = Case(search, measured, learned, held_out, guess, passed, alpha)
+    case = Case(search, measured, learned, held_out, guess, passed, alpha=request.alpha)
     return _less_idle(replace(case, substeps=_count_substeps(case)))
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gaitdisc.discovery.result import ALPHA
 from gaitdisc.errors import ReadError, SchemaError
@@ -18,6 +18,11 @@ from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.toml_text import parsed_toml
+
+if TYPE_CHECKING:
+    from gaitdisc.discovery.candidate import Candidate
+    from gaitdisc.discovery.candidate_model import CandidateModel
+    from gaitdisc.discovery.scored_model import ScoredModel
 
 ROLES = ("x", "v", "y", "a", "b", "u")
 SIGNALS = ("t", "phase")
@@ -73,19 +78,31 @@ class Shape:
 
 @dataclass(frozen=True)
 class Request:
-    """What a user requests: effects of their own beside those that come along, or exactly some and no search."""
+    """What a user requests: effects of their own beside those that come along, or exactly some and no search.
+
+    A door adds which explanations are possible there, and how the numbers of what was found are fitted once more.
+    """
 
     shapes: tuple[Shape, ...] = ()
     effects: tuple[str, ...] = ()  # `name@place`; nothing is searched where there are any
     catalogue: Path | None = None  # the file of the shapes
     alpha: float = ALPHA  # the greatest rate of false finds
+    progress: Callable[[str], None] = lambda _: None
+    possible: Callable[[Candidate], bool] = lambda _: True
+    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model
 
     @classmethod
-    def read(cls, catalogue: Path | None, effects: tuple[str, ...] = (), alpha: float = ALPHA) -> Request:
+    def read(
+        cls,
+        catalogue: Path | None,
+        effects: tuple[str, ...] = (),
+        alpha: float = ALPHA,
+        progress: Callable[[str], None] = lambda _: None,
+    ) -> Request:
         """Read a catalogue, if there is one, and note the effects and the rate of false finds."""
         if not 0 < alpha < 1:
             raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use .05, for example.")
-        return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha)
+        return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha, progress)
 
 
 ALL = Request()  # the effects that come along
@@ -181,8 +198,9 @@ def _shape(entry: Any, where: str) -> Shape:
             f"{where} has {constants!r}",
             "Choose one of these.",
         )
-    if entry.get("needs", "") not in NEEDS:
-        raise SchemaError('a shape may need only "angle"', f"{where} has {entry['needs']!r}", "Remove the line.")
+    needs = entry.get("needs", "")
+    if needs not in NEEDS:
+        raise SchemaError('a shape may need only "angle"', f"{where} has {needs!r}", "Remove the line.")
     names = entry.get("names", {})
     numbers = ["factor", *(f"factor_{number}" for number in range(1, len(pieces))), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
@@ -192,7 +210,7 @@ def _shape(entry: Any, where: str) -> Shape:
             'Write names = { factor = "stiffness" }.',
         )
     means = str(entry.get("means", name.replace("_", " ")))
-    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), means, dict(names), dict(states))
+    return Shape(name, tuple(pieces), dict(constants), needs, means, names=dict(names), states=dict(states))
 
 
 def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:

@@ -14,7 +14,7 @@ systematic review. Gait Posture 29(3), 360-369.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.processing.muscle_moment import (
+    FIRMNESS,
     GAIN_RIDGE,
     USUAL_HARMONICS,
     Driven,
@@ -29,9 +30,14 @@ from gaitdisc.processing.muscle_moment import (
     MuscleMoment,
     Sums,
     Values,
+    bounded,
+    cycle,
     model_of,
+    parts_of_stride,
     solved,
     sums_of,
+    tied,
+    usual_angle,
 )
 
 LEARNED = 0.75  # of the device walk's strides, from its beginning
@@ -44,6 +50,8 @@ SPEEDS, LAGS, RESPECTS = (0.7, 1.4), (0.5, 2.0), (1 / 3, 3.0)
 # curve of a person moves by from one session to the next (McGinley et al. 2009: 2 deg and less)
 SHIFT_RAD, SHIFT_HARMONICS, SHIFTS = np.radians(1.0), 4, 12
 NORMAL_95 = 1.96
+UNSEEN_HARMONICS = 8  # of the curve over the stride that no electrode sees, where a mass at the foot is weighed
+PARTS = (1, 3)  # of the stride, each of which may resist a departure differently; what either says counts half
 FINER = np.linspace(-1.5, 1.5, 7)  # steps of a grid about its best value
 
 
@@ -97,23 +105,23 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
     if held < CLOSES:
         return None
     found, number, draws = _drawn_anew(both, best, value, DRAWS)
-    errors = [float(np.std(draws)), _doubted(model.form, (nominal, device), best, value)]
+    errors = [float(np.std(draws)), _doubted(model.form, nominal, device, best, value)]
     if len(best.values) > 1 and not best.columns(device.driven, value).shape[1]:  # known to a step of the finer grid
         errors.append((FINER[1] - FINER[0]) * abs(best.values[1] - best.values[0]) / np.sqrt(12))
     spread = float(np.linalg.norm(errors))
     if abs(number - best.neutral) < NORMAL_95 * spread:
         return None
     changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
-    return Changed(best, changed, number, spread, held, rival, rival_left / left)
+    return Changed(best, changed, number, spread, held, rival=rival, rival_leaves=rival_left / left)
 
 
-def _doubted(form: Form, walks: tuple[Walk, Walk], change: Change, about: float) -> float:
+def _doubted(form: Form, nominal: Walk, device: Walk, change: Change, about: float) -> float:
     """Standard deviation of a number by what nobody measured: the muscles' form, and the device walk's usual stride."""
-    both = _Both.of(form, *walks)
+    both = _Both.of(form, nominal, device)
     number = _drawn_anew(both, change, about, 0)[1]
     others = [
-        [_Both.of(replace(form, fastest=pace * form.fastest), *walks) for pace in SPEEDS],
-        [_Both.of(replace(form, lag_s=more * form.lag_s), *walks) for more in LAGS],
+        [_Both.of(replace(form, fastest=pace * form.fastest), nominal, device) for pace in SPEEDS],
+        [_Both.of(replace(form, lag_s=more * form.lag_s), nominal, device) for more in LAGS],
         [replace(both, respect=more * both.respect) for more in RESPECTS],
         [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
     ]
@@ -158,10 +166,9 @@ class _Both:
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
         return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
 
-    def found(self, sums: tuple[Sums, Sums], weights: tuple[Values, Values]) -> tuple[Values, float]:
+    def found(self, sums: Sequence[Sums], weights: Sequence[Values]) -> tuple[Values, float]:
         """Coefficients and what they leave, strides so many times."""
-        parts = [one.of(weight) for one, weight in zip(sums, weights, strict=True)]
-        found = solved(Sums(*(a + b for a, b in zip(*parts, strict=True))), len(self.device.driven.signs), self.respect)
+        found = solved(together(sums, weights), len(self.device.driven.signs), self.respect)
         left = sum(float(weight @ one.left(found)) for one, weight in zip(sums, weights, strict=True))
         return found, left
 
@@ -187,13 +194,19 @@ def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[
     sums = [both.sums(change, value) for value in values]
     linear = change.columns(both.device.driven, about).shape[1] > 0
 
-    def best(weights: tuple[Values, Values]) -> tuple[Values, float]:
+    def best(weights: Sequence[Values]) -> tuple[Values, float]:
         tried = [both.found(one, weights) for one in sums]
         at = int(np.argmin([left for _, left in tried]))
         return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
 
     found, number = best(both.once)
-    return found, number, [best((first, second))[1] for first, second in drawn_blocks(both.once)[:draws]]
+    return found, number, [best(weights)[1] for weights in drawn_blocks(both.once)[:draws]]
+
+
+def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:
+    """Normal equations of several walks, their strides so many times."""
+    parts = [one.of(weight) for one, weight in zip(walks, weights, strict=True)]
+    return Sums(*(a + b for a, b in zip(*parts, strict=True)))
 
 
 def drawn_blocks(once: Sequence[Values]) -> list[list[Values]]:
@@ -202,3 +215,59 @@ def drawn_blocks(once: Sequence[Values]) -> list[list[Values]]:
     counts = [block[-1] + 1 for block in blocks]
     drawn = ([np.bincount(rng.integers(0, n, n), minlength=n) for n in counts] for _ in range(DRAWS))
     return [[one * each[block] for one, block, each in zip(once, blocks, times, strict=True)] for times in drawn]
+
+
+def foot_mass(model: MuscleMoment, nominal: Walk, device: Walk, per_kg: Values) -> tuple[float, float]:
+    """Mass at the foot in the device walk and its standard deviation [kg]: inverse dynamics knows nothing of it.
+
+    What inverse dynamics computes without the mass is what muscles make, less what carries the mass along the measured
+    path. Most of what muscles make in its stead no electrode sees: the leg departs from its usual path, and stiffness
+    and damping resist. Strides of one walk hardly show these in swing, where whatever pushes a joint away moves its
+    moment as well; the departure of the one walk's mean stride from the other's does. So gains, stiffness and damping
+    against that departure, a curve over the stride that is the same in both walks, and the mass are fitted together to
+    both.
+
+    The deviation holds strides of both walks drawn anew, the usual stride of the device walk unknown by a degree, and
+    what the number of parts of the stride makes of the mass.
+
+    per_kg: what each kg adds to the net moment of the device walk (sample,) [N m/kg]
+    """
+    values, spreads = zip(*(_weighed(model.form, nominal, device, per_kg, parts) for parts in PARTS), strict=True)
+    return float(np.mean(values)), float(np.hypot(np.mean(spreads), np.std(values)))
+
+
+def _weighed(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: int) -> tuple[float, float]:
+    """Mass and its standard deviation with stiffness in some parts of the stride."""
+    muscles = len(nominal.driven.signs)
+    own = replace(form, usual=usual_angle(device.driven, device.stride >= 0))
+    signed = np.zeros(2 * muscles + FIRMNESS + parts + 1 + 1 + 2 * UNSEEN_HARMONICS + 1, bool)
+    signed[: 2 * muscles + FIRMNESS + parts + 1] = True
+    once = [np.ones(int(walk.stride.max()) + 1) for walk in (nominal, device)]
+
+    def sums(walk: Walk, usual: Form, carried: Values, expected: Values) -> Sums:
+        columns = _columns(usual, walk.driven, expected, parts)
+        return sums_of(np.column_stack([columns, -carried]), walk.moment, walk.stride, int(walk.stride.max()) + 1)
+
+    def mass(each: Iterable[Sums], weights: Iterable[Values]) -> float:
+        total = together(each, weights)
+        return float(bounded(tied(total.squares, muscles), total.match, signed)[-1])
+
+    first = sums(nominal, form, np.zeros(len(nominal.moment)), form.usual)
+    both = first, sums(device, own, per_kg, form.usual)
+    value = mass(both, once)
+    drawn = [mass(both, weights) for weights in drawn_blocks(once)]
+    shifted = [mass((first, sums(device, own, per_kg, form.usual + one)), once) for one in shifts_of_usual()]
+    return value, float(np.hypot(np.std(drawn), np.std(shifted)))
+
+
+def _columns(own: Form, driven: Driven, expected: Values, parts: int) -> Values:
+    """Gains, firmness about the walk's own mean stride, stiffness and damping against its departure, unseen waves.
+
+    expected: mean angle and its harmonics over the stride that the person is used to
+    """
+    behind = cycle(driven.phase, USUAL_HARMONICS) @ (expected - own.usual)
+    slow_by = np.gradient(behind) * driven.rate_hz
+    stiff = parts_of_stride(driven.phase, parts) * behind[:, None]
+    return np.hstack(
+        [own.muscles(driven), own.firm(driven), stiff, slow_by[:, None], cycle(driven.phase, UNSEEN_HARMONICS)]
+    )

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gaitdisc.discovery.beam import MOST, closing_most
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import wrong_starts
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
-from gaitdisc.discovery.gap_share import GapScale, cross_validated
+from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, proof_of, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.result import Estimate
@@ -45,21 +45,20 @@ class Verdict:
 
 def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
-    scale = case.scale
-    as_read, named, rivals = searched(case, as_read, scale)
+    as_read, named, rivals = searched(case, as_read)
     named = kept_on_longer_runs(case, as_read, named)
     exact = case.leaves_noise(named)
-    plain = None if exact else plainest(case, scale, named)
+    plain = None if exact else plainest(case, named)
     if plain:
-        return shape_that_leaves_noise(case, as_read, fitted_shape(as_read, case.search, scale), plain) or plain
+        return shape_that_leaves_noise(case, as_read, fitted_shape(case, as_read), plain) or plain
     names = len(named.model.parts)
     suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = names > 1 or suspect
-    shape = fitted_shape(as_read, case.search, scale) if wanted else None
+    shape = fitted_shape(case, as_read) if wanted else None
     autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect or not names else None
     if autocorrelated:
         return autocorrelated
-    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(case, shape, named))):
+    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(shape, named))):
         unnamed = proven_shape(case, as_read, shape, (named, *rivals))
         if unnamed:
             return unnamed
@@ -71,7 +70,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
         alone = decided(case, rivals[0], rivals) if rivals else (kept, rivals)
         if alone[0] is kept or (len(kept.model.parts) > 1 and proof_of(case, alone[0], kept, kept).bears_out):
-            longer = scored(kept.shooting, case.search.base, kept.model)
+            longer = scored(kept.shooting, kept.model)
         else:
             longer, rivals = alone
     proof = held_out_proof(case, as_read, longer)
@@ -81,7 +80,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
         return pushed or Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
     if not wanted and not case.leaves_noise(longer):
-        shape = fitted_shape(as_read, case.search, scale)
+        shape = fitted_shape(case, as_read)
     return shape_that_leaves_noise(case, as_read, shape, verdict) or verdict
 
 
@@ -124,16 +123,16 @@ def needed(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
     return now
 
 
-def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
+def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     """Return the verdict on the plainest explanations that close most of the gap; None where these close too little.
 
     named: the simulation with what the search selected, which leaves more than noise
     """
-    found = closing_most(case, scale, (named.model.parts,) if named.model.parts else ())
+    found = closing_most(case, (named.model.parts,) if named.model.parts else ())
     if found is None or found.closed < CRITERIA.half:
         return None
     found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
-    plain, likelier = compared([found.as_read, found.now], case.search.base)
+    plain, likelier = compared([found.as_read, found.now])
     if plain.bic - likelier.bic < CRITERIA.margin:
         return None
     now = needed(case, found.as_read, found.now)
@@ -151,32 +150,31 @@ def plainest(case: Case, scale: GapScale, named: ScoredModel) -> Verdict | None:
 def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
     """Return what held-out data prefer beyond chance among explanations that cost as much; what there was if nothing.
 
-    near: what costs hardly more; of these, what has as many explanations and no more numbers
+    near: what costs hardly more; of these, what has no more numbers. The plainest of what is preferred is returned
     """
-    parts, size = len(now.model.parts), now.model.size
-    equal = [one for one in near if len(one.model.parts) == parts and one.model.size <= size]
+    equal = [one for one in near if one.model.size <= now.model.size]
     proofs = [proof_of(case, now, one, one) for one in equal]
     better = [
-        (proof.test.fall, one)
+        (one.model.penalty, -proof.test.fall, one)
         for proof, one in zip(proofs, equal, strict=True)
         if proof.bears_out and proof.test.p < case.alpha / len(equal)
     ]
-    return max(better, key=lambda one: one[0])[1] if better else now
+    return min(better, key=lambda one: one[:2])[2] if better else now
 
 
-def searched(case: Case, as_read: ScoredModel, scale: GapScale) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
+def searched(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
 
     returns as_read, named: the simulation as read and with what was selected, on the same runs
     returns rivals: what else stood for the first place, best first
     """
-    named, rivals = select_forward(case.search, as_read, MOST, scale)
+    named, rivals = select_forward(case.search, as_read, MOST, case.scale)
     if named.model.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
     longer = case.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = select_forward(case.search, longer, MOST, scale)
+    named, rivals = select_forward(case.search, longer, MOST, case.scale)
     return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
 
 
@@ -191,21 +189,20 @@ def kept_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) ->
     kept = pruned(case.search, longer, CRITERIA.margin).model.parts
     if len(kept) == len(named.model.parts):
         return named
-    model = fit_model(named.shooting, case.search.base, kept, named.model.fit.starts, like=named.model)
-    return scored(named.shooting, case.search.base, model)
+    return scored(named.shooting, named.model.refitted(named.shooting, kept))
 
 
 def with_autocorrelation(
     case: Case, as_read: ScoredModel, named: ScoredModel, shape: ScoredModel | None, rivals: list[ScoredModel]
 ) -> Verdict | None:
     """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better."""
-    plain, *found = compared([as_read, named, *([shape] if shape else [])], case.search.base)
+    plain, *found = compared([as_read, named, *([shape] if shape else [])])
     likelier = [one for one in found if one.model.parts and plain.bic - one.bic >= CRITERIA.margin]
     ordered = [one for one in likelier if held_out_proof(case, plain, one).bears_out]
     if not ordered:
         return with_random_pushes(case, as_read, named, rivals)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
-    if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
+    if shape and found[1] in ordered and (found[0] not in ordered or found[1].bic < found[0].bic - worth):
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(case, plain, found[1]))
     return None
 
@@ -239,20 +236,20 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     of its own begins each held-out run where it suits: free runs must not stray with it.
     """
     pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
-    scale, base, among = case.scale, case.search.base, len(case.search.candidates)
+    scale, among = case.scale, len(case.search.candidates)
     span = as_read.shooting.segments.span
     others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
     others = [one for one in others if one.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
-        before, now = compared([as_read, one], base)
+        before, now = compared([as_read, one])
         beside = rank_process_noise(now.shooting, now.model, case.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
         proof = held_out_proof(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
         stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
         if one.model.parts and likelier > CRITERIA.margin and stays:
-            pair = [cross_validated(scale, now.shooting, base, each.model.parts, now.model) for each in (before, now)]
+            pair = [cross_validated(scale, now, each.model.parts) for each in (before, now)]
             if pair[0].errors.sum() > pair[1].errors.sum():  # of pieces left out of the fit
                 borne.append((likelier, now, proof))
     if not borne:
@@ -263,9 +260,9 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     return Verdict(now.word, now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
 
 
-def says_more(case: Case, shape: ScoredModel, named: ScoredModel) -> bool:
+def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
     """Whether one shape without a name explains more than several names together."""
-    named, shape = compared([named, shape], case.search.base)
+    named, shape = compared([named, shape])
     return shape.bic < named.bic - CRITERIA.margin
 
 
@@ -277,7 +274,7 @@ def decided(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[
     near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
     near = [case.lengthened(one, longer.shooting.segments.span) for one in near]
     near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
-    first, *others = ranked(compared([longer, *near], case.search.base), case.search.candidates)
+    first, *others = ranked(compared([longer, *near]), case.search.candidates)
     others = [replace(one, gained=first.gained + first.bic - one.bic) for one in others]
     decided_on = {one.labels for one in (first, *others)}
     return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]

@@ -10,8 +10,7 @@ from functools import partial
 import numpy as np
 
 from gaitdisc.discovery.answer import answer, augmented_of
-from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
@@ -36,22 +35,10 @@ NEAREST = 5  # effects that stand in a refusal
 CLOSE = 0.3  # of its range, moved from one sample to the next: ten samples in a period (pi / 10)
 
 
-def discover(
-    simulation: Simulation,
-    measured: Measured,
-    request: Request = ALL,
-    progress: Callable[[str], None] = lambda _: None,
-    possible: Callable[[Candidate], bool] = lambda _: True,
-    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
-) -> tuple[Discovery, Simulation]:
-    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink.
-
-    refitted: fits the numbers of what was found once more, where its runs stand for those of another program
-    """
-    measured = without_spikes(measured)
-    begun = partial(
-        set_up_case, simulation, shapes=request.shapes, progress=progress, possible=possible, alpha=request.alpha
-    )
+def discover(simulation: Simulation, measured: Measured, request: Request = ALL) -> tuple[Discovery, Simulation]:
+    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
+    measured, progress = without_spikes(measured), request.progress
+    begun = partial(set_up_case, simulation, request=request)
     whole = begun(measured)
     refuse_unknown(whole.search, request.effects)
 
@@ -73,7 +60,7 @@ def discover(
             progress("what was found explains a trial that had been left out: it is searched too")
             case, as_read, verdict = explained(kept)
     progress("showing it on what was held out")
-    return answer(case, as_read, verdict, refitted)
+    return answer(case, as_read, verdict, request.refitted)
 
 
 def weigh_explanations(
@@ -155,7 +142,7 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
                 f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
                 "Give another effect or place.",
             )
-        now = scored(now.shooting, search.base, min(tried, key=lambda one: one.fit.misfit))
+        now = scored(now.shooting, min(tried, key=lambda one: one.fit.misfit))
     now = case.lengthened(now)
     count = len(now.model.parts)
     idle = [

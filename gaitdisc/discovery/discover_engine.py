@@ -15,7 +15,7 @@ from gaitdisc.discovery.effect_words import at_place, spoken
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
 from gaitdisc.discovery.grids import rhythm_of
-from gaitdisc.discovery.result import ENGINE, Discovery, GapSize, Runs
+from gaitdisc.discovery.result import ENGINE, Discovery
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine, Values
@@ -32,9 +32,7 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.writing import write_simulation
 from gaitdisc.whole_file import write_whole
 
-_NONE, _NO_SIZE = np.empty((0, 0)), GapSize(0.0, 0.0, 0.0)
-_NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
-_NOTHING = Discovery("no_gap", "", (), (), (), _NO_SIZE, _NO_SIZE, (), (), _NO_RUNS)
+_NOTHING = Discovery("no_gap", "")
 NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
 SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
 MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
@@ -56,7 +54,6 @@ def discover_engine(
     measured: Callable[[Simulation], Measured],
     request: Request = ALL,
     files: dict[Path, str] | None = None,
-    progress: Callable[[str], None] = lambda _: None,
 ) -> EngineAnswer:
     """Find what a model of MuJoCo or OpenSim lacks.
 
@@ -71,12 +68,12 @@ def discover_engine(
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
-    fit = EngineFit(mapping, engine, data, states, progress=progress)
-    progress(f"running {engine.path.name} by {engine.called} along every trial")
+    fit = EngineFit(mapping, engine, data, states, progress=request.progress)
+    request.progress(f"running {engine.path.name} by {engine.called} along every trial")
     as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
     answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
     if request.effects or not answer.runs.leave_mere_noise:
-        answer = searched(fit, answer, request, read, progress)
+        answer = searched(fit, answer, replace(request, refitted=fit.noted), read)
     else:
         units = tuple(answer.runs.units.values())
         nothing = replace(_NOTHING, channels=data.channels, units=units, findings=data.findings)
@@ -95,21 +92,19 @@ def discover_engine(
     return replace(answer, found=replace(found, findings=findings, provenance=made))
 
 
-def searched(
-    fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str], progress: Callable[[str], None]
-) -> EngineAnswer:
+def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
     """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
-    progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
+    request.progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expanded(mapping, engine, data, states)
-    found, answer = discovered(linear, driven, request, read, progress, refitted=fit.noted)
+    found, answer = discovered(linear, driven, request, read)
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
     if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
-        progress(f"expanding again where {' and '.join(moved)} came to lie")
+        request.progress(f"expanding again where {' and '.join(moved)} came to lie")
         linear, driven = expanded(mapping, engine, data, states, moved)
-        found, answer = discovered(linear, driven, request, read, progress, refitted=fit.noted)
-    progress(f"running it by {engine.called}")
+        found, answer = discovered(linear, driven, request, read)
+    request.progress(f"running it by {engine.called}")
     runs = base.runs.among(np.isin(base.runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
     augmented, written, _ = fit.written(found, fit.parts)
     hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
@@ -163,12 +158,10 @@ def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
     )
 
 
-def discover_model_file(
-    model: Path, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
-) -> EngineAnswer:
+def discover_model_file(model: Path, measured: Path, request: Request = ALL) -> EngineAnswer:
     """Find what a model lacks against a file of measured trials."""
     files = {measured: "measured table"}
-    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), request, files, progress)
+    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), request, files)
 
 
 def measured_of_file(file: Path, mapping: Simulation) -> Measured:

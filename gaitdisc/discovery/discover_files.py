@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,12 +11,9 @@ from typing import cast
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.result import DEVICE, SIMULATION, Discovery, GapSize
-from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.ingest.raw_file import file_sha256
@@ -32,27 +29,21 @@ from gaitdisc.simulation.unit_check import unit_findings
 from gaitdisc.simulation.writing import simulation_text
 
 
-def discover_files(
-    simulation: Path, measured: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
-) -> tuple[Discovery, Simulation]:
+def discover_files(simulation: Path, measured: Path, request: Request = ALL) -> tuple[Discovery, Simulation]:
     """Find what a simulation file lacks against a table of measured trials."""
-    progress(f"reading {simulation.name} and {measured.name}")
+    request.progress(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
     data = read_measured(measured, model)
     files = {simulation: "simulation", measured: "measured table"}
-    return discovered(model, data, request, files, progress)
+    return discovered(model, data, request, files)
 
 
 def discover_study(
-    study: Path,
-    participant: str,
-    request: Request = ALL,
-    progress: Callable[[str], None] = lambda _: None,
-    joint: str = "ankle_angle",
+    study: Path, participant: str, request: Request = ALL, joint: str = "ankle_angle"
 ) -> tuple[Discovery, Simulation]:
     """Find what the device does at a participant's joint: what the Nominal moment model lacks on the device walk.
 
-    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says that nothing is named.
+    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says so.
 
     returns augmented: the Nominal model with what was found in it
     """
@@ -63,6 +54,7 @@ def discover_study(
     from gaitdisc.ingest.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
 
+    progress = request.progress
     progress(f"reading both walks of {participant} and fitting the Nominal model")
     read = load_study(study)
     person = read.participant(participant)
@@ -72,13 +64,13 @@ def discover_study(
         both = device_walks(read, participant, joint)
     except NoMomentsError as lacking:
         progress("comparing the motion alone")
-        model, data = nominal_and_trials(read, participant, joint)
-        found, augmented = discovered(model, data, request, walks, progress)
-        said = f"{lacking.needed.capitalize()}, but {lacking.found}; no effect can be named. From the motion alone: "
-        return replace(found, sentence=said + found.sentence), augmented
+        found, augmented = discovered(*nominal_and_trials(read, participant, joint), request, walks)
+        why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
+        how = "only the motion of both walks was compared, which gives no moment of the device"
+        return replace(found, sentence=f"{why}: {how}. {found.sentence}"), augmented
     model = tracked_joint(both.device, both.both_walks_model)
     data = tracked_trials(both.device, both.both_walks_model, model)
-    found, augmented = discovered(model, data, request, walks, progress, both.weighed)
+    found, augmented = discovered(model, data, replace(request, possible=both.weighed), walks)
     found, augmented = both.with_model_error(found), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
@@ -90,25 +82,17 @@ def discover_study(
 
 
 def discovered(
-    model: Simulation,
-    data: Measured,
-    request: Request,
-    files: dict[Path, str],
-    progress: Callable[[str], None],
-    weighed: Callable[[Candidate], bool] = lambda _: True,
-    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
+    model: Simulation, data: Measured, request: Request, files: dict[Path, str]
 ) -> tuple[Discovery, Simulation]:
     """Find what a model lacks against measured trials, with what the answer rests on.
 
     files: files that were read, and what each is called in the result
-    weighed: whether an explanation is possible; all are by default
-    refitted: fits the numbers of what was found once more; they stay as they are by default
     """
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
-            found, augmented = discover(model, data, request, progress, weighed, refitted)
+            found, augmented = discover(model, data, request)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "each sample of a simulation must be predictable from the previous one",
@@ -131,11 +115,11 @@ def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path
     public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
     numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
     trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
-    seen = [(one, public.finding(replace(one, what=_without(one.what, trials)))) for one in found.findings]
+    seen = {one: public.finding(replace(one, what=_without(one.what, trials))) for one in found.findings}
     return replace(found, provenance=made, hide=partial(_hidden, trials=trials, findings=seen))
 
 
-def _hidden(found: Discovery, trials: Mapping[str, str], findings: list[tuple[Finding, Finding]]) -> Discovery:
+def _hidden(found: Discovery, trials: Mapping[str, str], findings: Mapping[Finding, Finding]) -> Discovery:
     """Return an answer without a name of a person.
 
     trials: names of trials that may be one, and what they are called
@@ -151,7 +135,7 @@ def _hidden(found: Discovery, trials: Mapping[str, str], findings: list[tuple[Fi
         train=sized(found.train),
         held_out=sized(found.held_out),
         runs=replace(found.runs, names=tuple(_without(one, trials) for one in found.runs.names)),
-        findings=tuple(next((public for known, public in findings if known == one), one) for one in found.findings),
+        findings=tuple(findings.get(one, one) for one in found.findings),
         explanations=tuple(replace(one, held_out=one.held_out and sized(one.held_out)) for one in found.explanations),
         hide=None,
     )

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.discovery.catalogue import ALL, Request
+from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.catalogue import ALL, Request, Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover_engine import augmented_name
 from gaitdisc.discovery.effect_words import amount, at_place, shown_unit, spoken
 from gaitdisc.discovery.estimates import named_estimates
-from gaitdisc.discovery.prescribed import JointFinding, Named, Values
+from gaitdisc.discovery.joint_and_trials import EFFECTS, STRENGTH
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.prescribed import JointFinding, Named, ResidualMoment, Values, joint_finding
+from gaitdisc.discovery.record_filter import DENSE
 from gaitdisc.discovery.result import ALPHA, TRACKED, Discovery, FoundEffect, GapSize, Runs, Whereabouts
-from gaitdisc.discovery.tracked_joints import doubts, joints_of, shown_by
 from gaitdisc.discovery.tracked_pass import (
     SEED,
     Pass,
@@ -30,13 +33,17 @@ from gaitdisc.engines.mapping import drafted
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
 from gaitdisc.engines.written import WrittenModel, written_model
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
 from gaitdisc.saved.provenance import made_now
-from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.parts import Input, Parameter, Sensor, Term
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.whole_file import write_whole
+
+FEWEST = 20  # samples that hold what passes the low-pass
+BEYOND = 3.0  # times the noise of a joint, from which what is left is worth a word
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +57,7 @@ class TrackedAnswer:
     said: tuple[str, ...]
 
 
-def discover_tracked(
-    tracked: Tracked, kinematics: Path, request: Request = ALL, progress: Callable[[str], None] = lambda _: None
-) -> TrackedAnswer:
+def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
     if request.effects or request.alpha != ALPHA:
         raise SchemaError(
@@ -60,13 +65,14 @@ def discover_tracked(
             f"{kinematics.name} is a walk that is tracked",
             "Leave them out: each joint is searched.",
         )
+    progress = request.progress
     progress(f"reading {kinematics.name} and the forces")
     walk = tracked_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
     progress("computing what noise of the angles makes of them")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, angle_noise, request.shapes, progress)
+    base, joints = joints_of(walk, angle_noise, request)
     found = discovery_of(base, joints)
     progress("writing it into the model")
     augmented = drafted(engine)
@@ -94,6 +100,8 @@ def discover_tracked(
 
 def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     """Return what the joints show, as an answer: effects, rivals, the gap before and after."""
+    if not joints:
+        return sentence_of(Discovery("no_gap", ""), base, ())
     named = [(one, one.named) for one in joints if one.named is not None]
     effects, rivals = [], []
     for one, best in named:
@@ -104,18 +112,18 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     ordered = sorted((one for one in joints if one.rivals), key=lambda one: -one.rivals[0].gained)
     if not named:
         rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
-    units = tuple(sensor.unit for sensor in base.sensors) if joints else ()
+    units = tuple(sensor.unit for sensor in base.sensors)
     found = Discovery(
         named[0][1].part.candidate.verdict if named else "no_gap",
         "",
-        tuple(Whereabouts(one.kind, one.place, 1.0 / len(named)) for one in effects),
-        tuple(effects),
-        tuple(rivals),
-        _gap(joints, [one.named.explained if one.named else 0.0 for one in joints]),
-        _gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
-        tuple(f"net_{one.joint.port}" for one in joints),
-        units,
-        _runs(joints),
+        where=tuple(Whereabouts(one.kind, one.place, 1.0 / len(named)) for one in effects),
+        effects=tuple(effects),
+        rivals=tuple(rivals),
+        train=_gap(joints, [one.named.explained if one.named else 0.0 for one in joints]),
+        held_out=_gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
+        channels=tuple(f"net_{one.joint.port}" for one in joints),
+        units=units,
+        runs=_runs(joints),
     )
     sizes = found.held_out.channels.values()
     if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
@@ -138,8 +146,6 @@ def _effect(base: Simulation, one: Named, closed: float = float("nan")) -> Found
 
 
 def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
-    if not joints:
-        return GapSize(0.0, 0.0, 0.0)
     sizes = {}
     for one, effect in zip(joints, taken, strict=True):
         before, after = (float(np.sqrt(np.mean(each**2))) for each in (one.joint.left, one.joint.left - effect))
@@ -152,9 +158,6 @@ def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
 
 def _runs(joints: list[JointFinding]) -> Runs:
     """The whole walk, each block of its time with what was learned from the rest."""
-    none = np.empty((0, 0))
-    if not joints:
-        return Runs(np.zeros(0, int), none, none, none, none, none)
     measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
     named = np.column_stack([one.named.predicted if one.named else 0.0 * one.joint.left for one in joints])
     whole = [one[None] for one in (measured, measured - left, measured - left + named)]
@@ -195,3 +198,126 @@ def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...
         before, now = (f"{amount(walk.size(each[:, k]))} {one.force_unit}" for each in (walk.left, after))
         said.append(f"{one.called}, computed by OpenSim with the written model: {before} left before, {now} after")
     return tuple(said)
+
+
+def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[Simulation, list[JointFinding]]:
+    """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
+    if len(walk.times) < FEWEST:
+        raise SamplingError(
+            f"what is left is named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
+            f"{walk.cutoff_hz:g} Hz",
+            f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
+            "Record longer.",
+        )
+    base = _simulation(walk)
+    candidates = _candidates(base, walk, request.shapes)
+    joints = []
+    for number in walk.joints:
+        request.progress(f"weighing what is left at {walk.engine.coordinates[number].called}")
+        joint = _left(walk, base, number, angle_noise)
+        joints.append(joint_finding(joint, candidates[number], len(walk.joints)))
+    return base, joints
+
+
+def _simulation(walk: Pass) -> Simulation:
+    """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
+    plain, numbers = drafted(walk.engine), []
+    for name in walk.groups:
+        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the file's forces"))
+        numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="by which they act later than in the file"))
+    seen, sensors = [], []
+    for k in walk.joints:
+        one = walk.engine.coordinates[k]
+        terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in walk.groups_at(k)]
+        seen.append((f"net_{one.port}", " + ".join([*terms, one.port])))
+        sensors.append(Sensor(f"net_{one.port}", one.force_unit))
+    return replace(
+        plain,
+        title=f"tracked walk of {walk.engine.path.name}",
+        model="",
+        inputs=tuple(Input(name, "N m", "of the forces' file") for name in walk.groups),
+        parameters=tuple(numbers),
+        observations=tuple(seen) or plain.observations,
+        sensors=tuple(sensors),
+    )
+
+
+def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> dict[int, tuple[Candidate, ...]]:
+    """What may act at each joint: a device's shapes at its port, its muscles stronger or later, effects of the user."""
+    joints = {k: walk.engine.coordinates[k] for k in walk.joints}
+    places = [Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints.values()]
+    every = candidates_of(base, tuple(places), (*known_shapes(), *more))
+    effects = {*EFFECTS, *(shape.name for shape in more)}
+    possible = [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]
+    found = {}
+    for k, one in joints.items():
+        mine = {one.port, *(f"{name}_{word}" for name in walk.groups_at(k) for word in ("strength", "delay"))}
+        found[k] = tuple(each for each in possible if each.place in mine)
+    return found
+
+
+def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> ResidualMoment:
+    motion, one = walk.motion, walk.engine.coordinates[number]
+    points = Points(motion.time, np.hstack([motion.q, motion.v]), np.zeros((len(motion.time), len(base.inputs))))
+    known: dict[object, Values] = {}
+
+    def columns(candidate: Candidate, constants: Mapping[str, float]) -> Values:
+        key = (candidate.identity, *constants.values())
+        if key not in known:
+            known[key] = walk.dense(acting(candidate, constants))
+        return known[key]
+
+    def acting(candidate: Candidate, constants: Mapping[str, float]) -> Values:
+        if candidate.verdict == "wrong_parameter":
+            group, _, word = candidate.place.rpartition("_")
+            own = walk.groups[group]
+            if word == "delay":
+                own = np.interp(motion.time - constants["value"], motion.time, own) - own
+            return own[:, None]
+        extras = replace(points, extras={f"_{name}": value for name, value in constants.items()})
+        pieces = [np.broadcast_to(evaluate(base, piece, extras), len(motion.time)) for piece in candidate.pieces]
+        return np.column_stack(pieces)
+
+    return ResidualMoment(
+        one.port,
+        walk.times,
+        walk.dense(walk.left[:, number]),
+        walk.dense(walk.demanded[:, number]),
+        angle_noise[:, :, number],
+        along=motion.q[:, number],
+        columns=columns,
+    )
+
+
+def shown_by(walk: Pass, number: int, found: JointFinding) -> Finding:
+    """Return what a joint can show, and what is left there."""
+    one, joint = walk.engine.coordinates[number], found.joint
+    unit = one.force_unit
+    spring = found.least(walk.dense(walk.motion.q[:, number] - walk.motion.q[:, number].mean()))
+    damper = found.least(walk.dense(walk.motion.v[:, number]))
+    shares = [
+        f"{100 * found.least(walk.dense(walk.groups[name])):.2g} % of its {name.split('_')[-2]} muscles"
+        for name in walk.groups_at(number)
+    ]
+    left = float(np.sqrt(np.mean(joint.left**2)))
+    what = (
+        f"{one.called}: {left:.3g} {unit} are left of {np.std(joint.demanded):.3g}, noise {joint.floor:.2g}; it shows "
+        f"a spring from {spring:.2g} {unit}/{one.unit}, a damper from {damper:.2g} {unit} s/{one.unit}"
+        + "".join(f", {each}" for each in shares)
+    )
+    unexplained = float(np.sqrt(np.mean((joint.left - (found.named.explained if found.named else 0.0)) ** 2)))
+    if unexplained > BEYOND * joint.floor and found.named is None:
+        return Finding("warning", "without a name", "model", what, "what is left there: nothing weighed explains it")
+    return Finding("note", "joint", "model", what, "", one.called)
+
+
+def doubts(shown: list[Finding]) -> list[Finding]:
+    """Warn where joints are left far beyond their noise and have no name: the forces may answer another motion."""
+    unnamed = [one for one in shown if one.severity == "warning"]
+    if not unnamed:
+        return []
+    what = (
+        f"{len(unnamed)} of {len(shown)} joints have no name for what is left, {BEYOND:g} times their noise or more: "
+        "the forces may have been computed for another motion, or for angles of another low-pass (lowpass_hz)"
+    )
+    return [Finding("warning", "forces in doubt", "model", what, "what is named at the other joints")]

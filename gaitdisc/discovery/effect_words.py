@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from gaitdisc.discovery.result import Estimate, FoundEffect
+from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect
 
 LONGEST, FIGURES = 4, 6  # digits behind the point, digits in all
 MINUS = "\N{MINUS SIGN}"
@@ -66,6 +66,11 @@ def shown_unit(unit: str) -> tuple[str, float]:
     if _RAD.match(unit):
         return _RAD.sub("deg", unit), math.degrees(1.0)
     return ("" if unit == "1" else unit), 1.0
+
+
+def shown_channel(discovery: Discovery, channel: str) -> tuple[str, float]:
+    """Return the unit in which a person reads a channel, and the factor to it."""
+    return shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
 
 
 def amount(value: float, step: float = math.nan) -> str:

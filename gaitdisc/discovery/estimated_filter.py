@@ -9,15 +9,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
+from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.recorded_filter import RecordedFilter, recorded_filter
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -44,7 +45,7 @@ def record_filter_of(
     seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
     inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
     if inputs or any(one.signal > FELT for one in seen.values()):
-        seen = _beside_the_simulation(simulation, measured, period, guess, seen, inputs)
+        seen = _beside_the_simulation(_laid_over(simulation, measured, period, guess), seen, inputs)
     units = [simulation.sensor(name).unit for name in measured.channels]
     cutoffs = _as_the_surer(seen, units)
     if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
@@ -53,7 +54,7 @@ def record_filter_of(
     return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
 
 
-def _trials(measured: Measured, channel: int) -> list[NDArray[np.float64]]:
+def _trials(measured: Measured, channel: int) -> list[Values]:
     """One channel of each trial."""
     return [seen[:samples, channel] for seen, samples in zip(measured.observed, measured.samples, strict=True)]
 
@@ -87,20 +88,13 @@ def _finding(measured: Measured, channel: int, cutoff: float) -> Finding:
 
 
 def _beside_the_simulation(
-    simulation: Simulation,
-    measured: Measured,
-    period: float,
-    guess: StateGuess,
-    seen: dict[int, RecordedFilter],
-    inputs: bool,
+    now: ScoredModel, seen: dict[int, RecordedFilter], inputs: bool
 ) -> dict[int, RecordedFilter]:
     """Find the cut-offs anew, the signal falling as that of the simulation.
 
     Where inputs were filtered too, none are found if the simulation goes better with the record as it is.
     """
-    shooting, model = _laid_over(simulation, measured, period, guess)
-    like = _stitched(shooting, model, measured)
-    found = dict(seen)
+    measured, like, found = now.shooting.measured, _stitched(now), dict(seen)
     for number, one in seen.items():
         if one.signal <= FELT:
             continue
@@ -112,30 +106,27 @@ def _beside_the_simulation(
     if not inputs or not found:
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
-    filtered = replace(shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    other = fit_model(filtered, simulation, (), model.fit.starts, like=model)
-    return found if other.fit.misfit < model.fit.misfit else {}
+    filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
+    return found if now.model.refitted(filtered).fit.misfit < now.model.fit.misfit else {}
 
 
-def _laid_over(
-    simulation: Simulation, measured: Measured, period: float, guess: StateGuess
-) -> tuple[Shooting, CandidateModel]:
+def _laid_over(simulation: Simulation, measured: Measured, period: float, guess: StateGuess) -> ScoredModel:
     """The simulation as read, fitted to runs of a period that overlap."""
     length = max(int(period * measured.rate), FEWEST_SAMPLES)
     length = min(length, int(measured.samples.min()) // 2)
     segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
     shooting = Shooting(measured, segments, white_noise(np.nanstd(measured.observed, axis=(0, 1))), past=guess.states)
-    return shooting, fit_model(shooting, simulation, (), guess.starts(segments))
+    return ScoredModel(fit_model(shooting, simulation, (), guess.starts(segments)), shooting)
 
 
-def _stitched(shooting: Shooting, model: CandidateModel, measured: Measured) -> NDArray[np.float64]:
+def _stitched(now: ScoredModel) -> Values:
     """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
-    segments, fit = shooting.segments, model.fit
-    runs = shooting.unfiltered(model.machine, fit.states[None], fit.values[None])[0]
+    segments, observed, fit = now.shooting.segments, now.shooting.measured.observed, now.model.fit
+    runs = now.shooting.unfiltered(now.model.machine, fit.states[None], fit.values[None])[0]
     weight, shared = np.ones(segments.length), 2 * segments.margin
     ramp = np.sin(np.linspace(0, np.pi / 2, shared + 2)[1:-1]) ** 2
     weight[:shared], weight[segments.length - shared :] = ramp, ramp[::-1]
-    total, weights = np.zeros(measured.observed.shape), np.zeros(measured.observed.shape[:2])
+    total, weights = np.zeros(observed.shape), np.zeros(observed.shape[:2])
     for trial, samples, run in zip(segments.trial, segments.samples, runs, strict=True):
         total[trial, samples] += weight[:, None] * run
         weights[trial, samples] += weight

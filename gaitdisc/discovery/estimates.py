@@ -6,13 +6,13 @@ import re
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
 from gaitdisc.simulation.simulation import Simulation
 
@@ -35,7 +35,7 @@ def estimates_of(model: CandidateModel, number: int, base: Simulation) -> dict[s
     return named_estimates(part, np.asarray(model.fit.covariance)[np.ix_(rows, rows)], base)
 
 
-def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulation) -> dict[str, Estimate]:
+def named_estimates(part: Part, covariance: Values, base: Simulation) -> dict[str, Estimate]:
     """Return an explanation's numbers under their names.
 
     covariance (slot, slot): of its numbers, in the order of its slots; NaN where it is not known
@@ -111,7 +111,7 @@ def _is_wave(candidate: Candidate, number: int) -> bool:
     return (pair[0][1], pair[1][1]) == ("sin", "cos") and pair[0][2] == pair[1][2]
 
 
-def _wave(both: NDArray[np.float64], unit: str) -> list[tuple[str, float, NDArray[np.float64], str]]:
+def _wave(both: Values, unit: str) -> list[tuple[str, float, Values, str]]:
     """Amplitude and phase of a sin + b cos = A sin(. + phase), with their slopes by a and b."""
     size = float(np.hypot(*both)) or 1e-300
     return [

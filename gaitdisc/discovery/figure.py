@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from gaitdisc.discovery.effect_words import shown_unit
+from gaitdisc.discovery.effect_words import shown_channel, shown_unit
 from gaitdisc.discovery.method import method_of
 from gaitdisc.discovery.result import Discovery
+from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import MEASURED, MODELS, Room, in_style, legend, lines_of, panels, panels_for
 
@@ -44,7 +44,7 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
         return []
     channel = discovery.held_out.ranked[0]
     unit, floor = noise_floor(discovery, channel)
-    factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])[1]
+    factor = shown_channel(discovery, channel)[1]
     drawn, (cells,) = panels(1, len(explanations), 1.1, Room(left=0.6, top=0.3, across=0.12))
     for number, (axes, one) in enumerate(zip(cells, explanations, strict=True), 1):
         axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
@@ -107,7 +107,7 @@ def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> 
     _models(axes, time, seen - simulated, seen - augmented)
 
 
-def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
+def typical_stretch(gap: Values, samples: int) -> tuple[int, int]:
     """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
 
     gap (sample,): squared gap
@@ -121,7 +121,7 @@ def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
     return begin, min(begin + samples, len(gap))
 
 
-def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArray[np.float64]) -> pd.DataFrame:
+def binned(along: Values, values: Values, edges: Values) -> pd.DataFrame:
     """Return mean and standard deviation of values in bins, those with too few samples left out.
 
     along, values (sample,): where, and what
@@ -136,7 +136,7 @@ def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArr
 
 def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
     """Unit in which a channel is drawn, and the standard deviation of its noise in it."""
-    text, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
+    text, factor = shown_channel(discovery, channel)
     return text or "1", factor * discovery.held_out.channels[channel][2]
 
 
@@ -239,9 +239,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
     return Figure("against_state", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 
 
-def _models(
-    axes: Axes, at: NDArray[np.float64], simulated: NDArray[np.float64], augmented: NDArray[np.float64]
-) -> None:
+def _models(axes: Axes, at: Values, simulated: Values, augmented: Values) -> None:
     for values, look in ((simulated, MODELS["nominal"]), (augmented, MODELS["augmented"])):
         axes.plot(at, values, color=look.colour, linestyle=look.line, linewidth=1.1, zorder=3)
 

@@ -1,6 +1,8 @@
 """First guess of the states of a record, from which the fit of the start states begins.
 
-The observation map y = h(x, u, t) of a simulation is solved for the states at each sample of the record.
+The observation map y = h(x, u, t) of a simulation is solved for the states at each sample of the record. States that an
+effect brings along no channel shows. Along the states of the record each is a differential equation driven by measured
+signals; its course over whole trials gives the start of every run.
 """
 
 from __future__ import annotations
@@ -10,12 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.own_states import driven_by_others, run_twice
 from gaitdisc.discovery.segments import Segments
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.derivatives import savgol_filter
-from gaitdisc.simulation.compiled_simulation import Compiled
+from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.program import at_points, leaf_columns
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -37,13 +41,13 @@ LEFT = 0.5  # of a channel's spread, beyond which a sample is not solved
 class StateGuess:
     """States of every trial, roughly."""
 
-    states: NDArray[np.float64]  # (trial, sample, state), NaN beyond a trial's end
+    states: Values  # (trial, sample, state), NaN beyond a trial's end
 
-    def starts(self, segments: Segments) -> NDArray[np.float64]:
+    def starts(self, segments: Segments) -> Values:
         """Return the guess at each segment's first sample (segment, state)."""
         return self.states[segments.trial, segments.begin].copy()
 
-    def with_run(self, segments: Segments, states: NDArray[np.float64]) -> StateGuess:
+    def with_run(self, segments: Segments, states: Values) -> StateGuess:
         """Return the guess with a run put in its place where there is one.
 
         states (segment, sample, state): their states; those that effects bring along, after the others, are left out
@@ -65,7 +69,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     window = max(int(SHARE_OF_PERIOD * period * rate) // 2 * 2 + 1, 5)
     spread = np.nanstd(observed, axis=(0, 1))
     spread = np.where(spread > 0, spread, 1.0)
-    pairs = [(machine.states.index(one), machine.states.index(other)) for one, other in rate_of.items()]
+    rates = {machine.states.index(one): machine.states.index(other) for one, other in rate_of.items()}
     initial = np.array([state.initial or 0.0 for state in simulation.states])
     out, hidden = np.full((*observed.shape[:2], len(machine.states)), np.nan), np.ones(len(machine.states), bool)
     for trial, record in enumerate(observed):
@@ -76,16 +80,14 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
         slope = np.column_stack([savgol_filter(one, width, 3, 1, 1 / rate) for one in whole]) / spread
         t = drive.time0[trial] + np.arange(length) / rate
         seeing = ObservationMap(machine, t, drive.inputs[trial, :length], spread)
-        out[trial, :length], known = _states(seeing, (smooth, slope), np.tile(initial, (length, 1)), pairs, rate)
+        out[trial, :length], known = _states(seeing, smooth, slope, np.tile(initial, (length, 1)), rates, rate)
         hidden &= ~known
     if hidden.any() and not hidden.all() and isinstance(simulation, Simulation):
         out = _following(simulation, drive, out, hidden)
     return StateGuess(out)
 
 
-def _following(
-    simulation: Simulation, drive: Drive, states: NDArray[np.float64], hidden: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDArray[np.bool_]) -> Values:
     """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
     machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden).tolist())))
     driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
@@ -101,27 +103,22 @@ def _following(
 
 
 def _states(
-    seeing: ObservationMap,
-    seen: tuple[NDArray[np.float64], NDArray[np.float64]],
-    begin: NDArray[np.float64],
-    pairs: list[tuple[int, int]],
-    rate: float,
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    seeing: ObservationMap, smooth: Values, slope: Values, begin: Values, rates: dict[int, int], rate: float
+) -> tuple[Values, NDArray[np.bool_]]:
     """States of one trial (sample, state), and which of them the channels say (state,).
 
     A rate that they leave open is the slope of its position.
     """
-    smooth, slope = seen
     free = np.ones(begin.shape[1], bool)
     x, known = seeing.solved(smooth, begin, free)
     often = known.mean(axis=0) > OFTEN
-    rates = [(one, other) for one, other in pairs if often[one] and not often[other]]
-    free[[other for _, other in rates]] = False
-    for _ in range(TURNS if rates else 0):
+    open_ones = {one: other for one, other in rates.items() if often[one] and not often[other]}
+    free[[*open_ones.values()]] = False
+    for _ in range(TURNS if open_ones else 0):
         slopes = seeing.jacobian(x)
         beside = (slopes * ~free) @ (np.gradient(x, axis=0) * rate)[..., None]  # what the rates' own change shows
         moving = np.linalg.pinv(slopes * free, rcond=RANK) @ ((slope - seeing.drift(x, rate))[..., None] - beside)
-        for position, other in rates:
+        for position, other in open_ones.items():
             x[:, other] = _bridged(moving[:, position, 0], known[:, position])
         if not slopes[:, :, ~free].any():
             break
@@ -131,8 +128,82 @@ def _states(
     return x, often | ~free
 
 
-def _bridged(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _bridged(values: Values, known: NDArray[np.bool_]) -> Values:
     return values if known.all() else np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])
+
+
+def with_own_states(shooting: Shooting, machine: Compiled, values: Values, starts: Values) -> Values:
+    """Return start states (segment, state) with those of the effects' own states, where these are not yet among them.
+
+    values (parameter,): its parameters
+    starts (segment, state): of the simulation as read, first; what follows is replaced
+    """
+    if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
+        return starts[:, : len(machine.states)]
+    segments = shooting.segments
+    own = followed(shooting, machine.simulation, values[None])[0][segments.trial, segments.begin]
+    return np.concatenate([starts[:, : shooting.past.shape[2]], own], axis=1)
+
+
+def followed(shooting: Shooting, simulation: Simulation, values: Values) -> Values:
+    """Return the effects' own states along the states of the record (version, trial, sample, own state).
+
+    values (version, parameter): its parameters, several versions of them
+    """
+    assert shooting.past is not None
+    drive = shooting.measured.drive
+    inputs = np.concatenate([_bridged_trials(shooting.past, drive.samples), drive.inputs], axis=2)
+    along = Drive(drive.rate, drive.time0, inputs, drive.samples)
+    machine = compile_simulation(
+        driven_by_others(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
+    )
+    trials, versions = len(drive.samples), len(values)
+    trial = np.tile(np.arange(trials), versions)
+    starts = np.tile([state.initial or 0.0 for state in machine.simulation.states], (len(trial), 1))
+    rows = Rows(trial, 0 * trial, starts, np.repeat(values, trials, axis=0))
+    runs = np.nan_to_num(run_twice(machine, along, rows, shooting.substeps)[1], nan=0.0, posinf=0.0, neginf=0.0)
+    return runs.reshape(versions, trials, runs.shape[1], -1)
+
+
+def run_twice(machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBSTEPS) -> tuple[Values, Values]:
+    """Run over whole trials, and once more from where each ended: by then it has forgotten its start.
+
+    returns: both runs (row, sample, state)
+    """
+    steps = int(drive.samples.max()) - 1
+    first, _ = machine.run(drive, rows, steps, substeps=substeps)
+    ends = first[np.arange(len(rows.trial)), drive.samples[rows.trial] - 1]
+    again = replace(rows, starts=np.nan_to_num(ends, nan=0.0, posinf=0.0, neginf=0.0))
+    return first, machine.run(drive, again, steps, substeps=substeps)[0]
+
+
+def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation:
+    """Return the equations of some of the states, the others being inputs before the rest; nothing acts at ports."""
+    states, equations = [simulation.states[one] for one in own], dict(simulation.equations)
+    others = [one for one in simulation.states if one not in states]
+    return replace(
+        simulation,
+        states=tuple(states),
+        inputs=(*(Input(state.name, state.unit) for state in others), *simulation.inputs),
+        parameters=tuple(replace(one, low=None, high=None) for one in simulation.parameters),
+        equations=tuple((state.name, equations[state.name]) for state in states),
+        ports=(),
+        definitions=(*((port.name, "0") for port in simulation.ports), *simulation.definitions),
+        observations=(),
+        sensors=(),
+        effects=(),
+    )
+
+
+def _bridged_trials(states: Values, samples: NDArray[np.int64]) -> Values:
+    """States of every trial, unknown samples bridged by straight lines, zero beyond the end (trial, sample, state)."""
+    out = np.zeros(states.shape)
+    for trial, length in enumerate(samples):
+        for state, values in enumerate(states[trial, :length].T):
+            known = np.isfinite(values)
+            if known.any():
+                out[trial, :length, state] = _bridged(values, known)
+    return out
 
 
 @dataclass(frozen=True)
@@ -140,11 +211,11 @@ class ObservationMap:
     """What a simulation observes at the samples of one trial, over each channel's spread; delays are taken as none."""
 
     machine: Compiled
-    t: NDArray[np.float64]  # (sample,), time [s]
-    u: NDArray[np.float64]  # (sample, input), inputs
-    spread: NDArray[np.float64]  # (channel,), of the measured channels [each channel's unit]
+    t: Values  # (sample,), time [s]
+    u: Values  # (sample, input), inputs
+    spread: Values  # (channel,), of the measured channels [each channel's unit]
 
-    def at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, x: Values) -> Values:
         """Return the channels that states give (sample, channel).
 
         x (sample, state): states
@@ -156,7 +227,7 @@ class ObservationMap:
             seen = at_points(program, leaf_columns(self.t, x, self.u, machine.defaults), late, len(x))
         return seen.T / self.spread
 
-    def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def jacobian(self, x: Values) -> Values:
         """Return the slopes of the channels by the states (sample, channel, state); zero where there is none.
 
         x (sample, state): states
@@ -168,7 +239,7 @@ class ObservationMap:
             columns.append((self.at(x + nudge) - self.at(x - nudge)) / (2 * nudge[state]))
         return np.nan_to_num(np.stack(columns, axis=2), nan=0.0, posinf=0.0, neginf=0.0)
 
-    def drift(self, x: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    def drift(self, x: Values, rate: float) -> Values:
         """Return how fast the channels change while the states rest, through inputs and time (sample, channel) [1/s].
 
         x (sample, state): states
@@ -179,9 +250,7 @@ class ObservationMap:
         ahead, behind = (replace(self, t=self.t[at], u=self.u[at]).at(x) for at in (after, before))
         return np.nan_to_num((ahead - behind) * rate / np.maximum(after - before, 1)[:, None])
 
-    def solved(
-        self, seen: NDArray[np.float64], begin: NDArray[np.float64], free: NDArray[np.bool_]
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def solved(self, seen: Values, begin: Values, free: NDArray[np.bool_]) -> tuple[Values, NDArray[np.bool_]]:
         """Return the states that give what is seen, by Gauss-Newton, nearest to where the search begins.
 
         What the channels do not determine stays as it began (pseudo-inverse).
@@ -207,9 +276,7 @@ class ObservationMap:
         whole = np.diagonal(space, axis1=1, axis2=2) > DETERMINED
         return x, whole & (left < LEFT**2)[:, None]
 
-    def _descended(
-        self, seen: NDArray[np.float64], x: NDArray[np.float64], free: NDArray[np.bool_]
-    ) -> NDArray[np.float64]:
+    def _descended(self, seen: Values, x: Values, free: NDArray[np.bool_]) -> Values:
         """Gauss-Newton at all samples side by side, each step halved while it gains nothing."""
         left = self._left(seen, x)
         for _ in range(SOLVING_TURNS):
@@ -226,6 +293,6 @@ class ObservationMap:
                 break
         return x
 
-    def _left(self, seen: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _left(self, seen: Values, x: Values) -> Values:
         """Mean squared misfit of each sample (sample,)."""
         return np.nan_to_num(((seen - self.at(x)) ** 2).mean(axis=1), nan=np.inf)

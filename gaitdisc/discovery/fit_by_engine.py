@@ -162,7 +162,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     given = np.array([one.sd or np.nan for one in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
     units = {name: one.unit for name, one in sensors.items()}
-    return OwnRuns(left, left, at, engine.called, units, floor, fit.states.shape[2])
+    return OwnRuns(left, left, at, engine.called, units, floor=floor, states=fit.states.shape[2])
 
 
 def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:
@@ -198,7 +198,7 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
         held_out=sizes[1],
         effects=effects,
         explanations=(*named, *found.explanations[len(named) :]),
-        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, data.trials),
+        runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, names=data.trials),
     )
     said = sentence_of(found, base, fit.parts if effects else ())
     return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.simulation import Simulation
 
 OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # of a fit, one row for each segment
@@ -26,16 +27,16 @@ class Prior:
     # (number,), where they stand among the parameters
     places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     # (number,) each, as in the file [each parameter's unit]
-    value: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    low: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    high: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    value: Values = field(default_factory=lambda: np.zeros(0))
+    low: Values = field(default_factory=lambda: np.zeros(0))
+    high: Values = field(default_factory=lambda: np.zeros(0))
 
     @property
-    def sd(self) -> NDArray[np.float64]:
+    def sd(self) -> Values:
         """Standard deviations (number,)."""
         return (self.high - self.low) / 4
 
-    def left(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def left(self, values: Values) -> Values:
         """Return how far numbers are from the file's, in standard deviations (number,): file minus number.
 
         values (parameter,): all parameters
@@ -48,7 +49,7 @@ class Prior:
         names = tuple(name for name in self.names if name in free)
         return Prior(names, self.places[kept], self.value[kept], self.low[kept], self.high[kept])
 
-    def within(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def within(self, values: Values) -> Values:
         """Return parameters with those that have bounds put inside them (parameter,).
 
         values (parameter,): all parameters
@@ -62,9 +63,9 @@ class Prior:
 class RandomEffects:
     """A residual and the slopes of constants, along the principal axes of independent random effects."""
 
-    products: NDArray[np.float64]  # (1 + free, 1 + free), of the residual and the slopes, those of the prior among them
-    along: NDArray[np.float64]  # (segment, effect, 1 + free), their products with each principal effect
-    strength: NDArray[np.float64]  # (segment, effect), sum of squares that a principal effect of unit size adds
+    products: Values  # (1 + free, 1 + free), of the residual and the slopes, those of the prior among them
+    along: Values  # (segment, effect, 1 + free), their products with each principal effect
+    strength: Values  # (segment, effect), sum of squares that a principal effect of unit size adds
 
     def likelihood(self, variance: float, numbers: int, least: float = 0.0) -> tuple[float, float]:
         """Return minus twice the log likelihood, up to a constant, and the residual's variance that is likeliest.
@@ -87,17 +88,17 @@ class Fitted:
     """A simulation fitted to segments."""
 
     free: tuple[str, ...]
-    values: NDArray[np.float64]  # (parameter,), every parameter of the simulation, fitted or not, in its unit
-    starts: NDArray[np.float64]  # (segment, state), start states
-    states: NDArray[np.float64]  # (segment, sample, state), the run
-    residual: NDArray[np.float64]  # (segment, sample, channel), measured minus run [the channel's unit]
-    white: NDArray[np.float64]  # (segment, sample times channel), the residual as independent numbers of unit variance
+    values: Values  # (parameter,), every parameter of the simulation, fitted or not, in its unit
+    starts: Values  # (segment, state), start states
+    states: Values  # (segment, sample, state), the run
+    residual: Values  # (segment, sample, channel), measured minus run [the channel's unit]
+    white: Values  # (segment, sample times channel), the residual as independent numbers of unit variance
     # (segment, sample times channel, state + free), what each start state and each constant would change in `white`;
     # zero where a run failed
-    slopes: NDArray[np.float64]
+    slopes: Values
     prior: Prior = field(default_factory=Prior)  # of those of the constants that have bounds; they stand last in `free`
     # (free, free), covariance of the constants where they were estimated otherwise than by the misfit
-    stated: NDArray[np.float64] | None = None
+    stated: Values | None = None
 
     @property
     def misfit(self) -> float:
@@ -107,7 +108,7 @@ class Fitted:
         return float((self.white**2).sum() + (self.prior.left(self.values) ** 2).sum())
 
     @property
-    def misfits(self) -> NDArray[np.float64]:
+    def misfits(self) -> Values:
         """The misfit of each segment (segment,); infinite where it failed."""
         squares = (self.white**2).sum(axis=1)
         return np.where(np.isfinite(squares), squares, np.inf)
@@ -131,14 +132,14 @@ class Fitted:
         return replace(self, stated=None, **parts)
 
     @property
-    def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def projected(self) -> tuple[Values, Values]:
         """What the start states cannot explain: of `white` (segment, number), and of the constants' slopes."""
         n = self.starts.shape[1]
         basis = start_basis(self.slopes[..., :n])
         return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
 
     @property
-    def stacked(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def stacked(self) -> tuple[Values, Values]:
         """As `projected`, flat, with a row for each number of the prior (row,), (row, free)."""
         left, slopes = self.projected
         rows = np.zeros((len(self.prior.names), len(self.free)))
@@ -146,7 +147,7 @@ class Fitted:
         flat = np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
         return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
 
-    def beside(self, effects: NDArray[np.float64]) -> RandomEffects:
+    def beside(self, effects: Values) -> RandomEffects:
         """Return the residual beside random effects.
 
         effects (segment, number, effect): what each changes of `white`
@@ -158,7 +159,7 @@ class Fitted:
         return RandomEffects(flat.T @ flat, along, np.maximum(strength, 0.0))
 
     @property
-    def covariance(self) -> NDArray[np.float64]:
+    def covariance(self) -> Values:
         """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
         if self.stated is not None:
             return self.stated
@@ -191,7 +192,7 @@ def prior_of(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Pri
     return Prior(names, np.array(places, dtype=np.intp), *(np.array(each, float) for each in numbers))
 
 
-def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+def start_basis(slopes: Values) -> Values:
     """Return an orthonormal basis, segment by segment, of what the start states can explain.
 
     slopes (segment, number, state): slopes of the whitened residual
@@ -202,7 +203,7 @@ def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     return basis * ~weak[:, None, :]
 
 
-def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
+def without(basis: Values, columns: Values) -> Values:
     """Return columns less what a basis explains of them.
 
     basis (segment, number, state): orthonormal, from `start_basis`

@@ -8,15 +8,16 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import UNNAMED, UNNAMED_MEANS, Candidate
+from gaitdisc.discovery.candidate import Candidate, unnamed
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.gap_share import CrossValidated, GapScale, cross_validated
+from gaitdisc.discovery.gap_share import CrossValidated, cross_validated
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
@@ -35,18 +36,17 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
 
     At a place between bodies the states may be differences of two, and another body's.
     """
-    shapes = [one for motion in place.motions for one in _shapes_over(place, motion, now, search)]
+    shapes = [one for motion in place.motions for one in _shapes_over(place, *motion, now, search)]
     if any(one.name == "phase" for one in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
         pieces = [f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres]
-        shapes.append(_unnamed(place, pieces, place.motions[0][0]))
+        shapes.append(unnamed(place, tuple(pieces), place.motions[0][0]))
     return shapes
 
 
-def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search: Search) -> list[Candidate]:
+def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search) -> list[Candidate]:
     """Shapes over a position and its rate; where it has none, over it and another state."""
-    x, v = motion
     v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: _visited(axis, now, search) for axis in axes}
@@ -57,14 +57,10 @@ def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search
         shapes.append([f"{piece}*{name}" for piece in across])
     if len(axes) > 1:
         shapes += [_bumps(ranges, dict.fromkeys(axes, BUMPS)), _powers(ranges)]
-    return [_unnamed(place, pieces, x) for pieces in shapes]
+    return [unnamed(place, tuple(pieces), x) for pieces in shapes]
 
 
-def _unnamed(place: Place, pieces: list[str], role: str) -> Candidate:
-    return Candidate("missing_physics", place.kind, place.name, UNNAMED, tuple(pieces), None, role, UNNAMED_MEANS)
-
-
-def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredModel | None:
+def fitted_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     """Fit a shape at every place and return the one that closes most of the gap on runs left out of the fit.
 
     The slopes of the simulation as read say which shapes promise most; these are fitted, and the best ones thinned out
@@ -73,18 +69,17 @@ def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredMod
 
     returns: under the noise that it leaves; None where no shape can be fitted
     """
-    plain = cross_validated(scale, now.shooting, search.base, (), now.model)
+    search, scale = case.search, case.scale
+    plain = cross_validated(scale, now, ())
     if not np.isfinite(plain.gap):
         return None
-    tried = [_cross_validated(scale, search, plain, part) for part in _promising(now, search, plain)]
+    tried = [cross_validated(scale, plain, (part,)) for part in _promising(now, search, plain)]
     best = _cheapest(tried, plain)[:2]
     tried = best + [
-        _cross_validated(scale, search, plain, part)
-        for one in best
-        for part in (*_thinned(one.model), *_local(one.model))
+        cross_validated(scale, plain, (part,)) for one in best for part in (*_thinned(one.model), *_local(one.model))
     ]
     kept = _cheapest([one for one in tried if search.sensible(one.model)], plain)
-    return scored(now.shooting, search.base, kept[0].model) if kept else None
+    return scored(now.shooting, kept[0].model) if kept else None
 
 
 def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
@@ -94,10 +89,6 @@ def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
     return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: cost_of(one, plain))
-
-
-def _cross_validated(scale: GapScale, search: Search, plain: CrossValidated, part: Part) -> CrossValidated:
-    return cross_validated(scale, plain.shooting, search.base, (part,), plain.model)
 
 
 def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:
@@ -146,28 +137,27 @@ def _slot_of(part: Part, piece: str) -> str:
     return part.candidate.slots[part.candidate.pieces.index(piece)]
 
 
-def _visited(axis: str, now: ScoredModel, search: Search) -> tuple[float, float]:
-    """Return where a state or difference mostly lies."""
+def _visited(axis: str, now: ScoredModel, search: Search) -> Values:
+    """Return between which values a state or difference mostly lies (2,)."""
     known = len(search.base.states)
     states = now.model.fit.states[..., :known].reshape(-1, known)
     inputs = np.zeros((len(states), len(search.base.inputs)))
     along = evaluate_many(search.base, [axis], Points(np.zeros(len(states)), states, inputs))[0]
-    low, high = np.quantile(along, [0.02, 0.98])
-    return float(low), float(high)
+    return np.quantile(along, [0.02, 0.98])
 
 
-def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> list[str]:
+def _bumps(ranges: dict[str, Values], counts: dict[str, int]) -> list[str]:
     centres: list[list[str]] = []
     for axis, count in counts.items():
         low, high = ranges[axis]
         step = (high - low) / (count - 1) or 1.0
         name = _bracketed(axis)
-        at: NDArray[np.float64] = np.linspace(low, high, count)
+        at: Values = np.linspace(low, high, count)
         centres.append([f"(({name} - {_number(centre)})/{SHARPNESS * step:.4g})**2" for centre in at])
     return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
 
 
-def _powers(ranges: dict[str, tuple[float, float]]) -> list[str]:
+def _powers(ranges: dict[str, Values]) -> list[str]:
     """Return the products of powers of two states, each between -1 and 1 where it mostly lies."""
     scaled = []
     for axis, (low, high) in ranges.items():

@@ -154,14 +154,10 @@ def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:
         measured,
         simulated,
         augmented,
-        names,
+        names=names,
     )
 
 
 DISCOVERY = Kind(
-    Discovery,
-    NAME,
-    write=save_discovery,
-    read=load_discovery,
-    page="gaitdisc.discovery.page:write_discovery_report",
+    Discovery, NAME, write=save_discovery, read=load_discovery, page="gaitdisc.discovery.page:write_discovery_report"
 )

@@ -48,7 +48,7 @@ def select_forward(
         far = scale is not None and number > 1 and leaves(better, scale.noise) > FAR
         if number > 1:
             better = better if far else settled(search, better, worth, explored)
-            before, better = compared([before, better], search.base)
+            before, better = compared([before, better])
         gained = before.bic - better.bic
         if gained < worth or not is_certain(better.model) or (enough and len(better.model.parts) == number):
             break
@@ -78,7 +78,7 @@ def beside_others(
     for first in unlike[: FIRST_PLACES - 1]:
         pairs += ranked(search.extended(first)[1:], search.candidates)[:1]
         explored.add(first.model.explanations)
-    return ranked(compared(pairs, search.base), search.candidates)[0]
+    return ranked(compared(pairs), search.candidates)[0]
 
 
 def settled(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
@@ -103,7 +103,7 @@ def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> 
         explored.add(rest.model.explanations)
         others = search.extended(rest)[1:]
         if others:
-            now, *others = compared([now, *others], search.base)
+            now, *others = compared([now, *others])
             best = ranked(others, search.candidates)[0]
             if best.bic < now.bic - SAME:
                 now = best

@@ -7,19 +7,18 @@ person can use is another question: how much of the disagreement goes, and with 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.noise import Noise, white_noise
 from gaitdisc.discovery.paired_test import errors_rise_p
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.recording.arrays import Values
 
 CONVERGED = 1e-4  # of a number's share of the misfit
 TURNS, AGAIN = 15, 6
@@ -35,11 +34,11 @@ WEAK = 1e-11
 class GapScale:
     """What a gap is measured against."""
 
-    noise: NDArray[np.float64]  # (channel,), standard deviation of the sensors' noise [the channel's unit]
-    spread: NDArray[np.float64]  # (channel,), standard deviation of the measurement [the channel's unit]
+    noise: Values  # (channel,), standard deviation of the sensors' noise [the channel's unit]
+    spread: Values  # (channel,), standard deviation of the measurement [the channel's unit]
 
     @property
-    def size(self) -> NDArray[np.float64]:
+    def size(self) -> Values:
         """What a simulation that lacks nothing may leave (channel,): noise, and a model error of a hundredth."""
         return np.sqrt(self.noise**2 + (CRITERIA.model_error * self.spread) ** 2)
 
@@ -79,39 +78,32 @@ class GapScale:
 
 
 @dataclass(frozen=True, eq=False)
-class CrossValidated:
+class CrossValidated(ScoredModel):
     """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to."""
 
-    model: CandidateModel
-    shooting: Shooting
-    errors: NDArray[np.float64]  # (piece,), mean squares left out of the fit, in squares of the scale's size
-    gap: float  # their root mean square above the sensors' noise
-
-    @property
-    def scored(self) -> ScoredModel:
-        """The same, scored by its information criterion."""
-        return ScoredModel(self.model, self.shooting)
+    # (piece,), mean squares left out of the fit, in squares of the scale's size; infinite where it failed
+    errors: Values = field(default_factory=lambda: np.full(1, np.inf))
+    gap: float = np.inf  # their root mean square above the sensors' noise
 
 
-def cross_validated(
-    scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: CandidateModel
-) -> CrossValidated:
+def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]) -> CrossValidated:
     """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
 
-    like: of the same segments: where start states and numbers with bounds begin
+    begun: on the same segments: where start states and numbers with bounds begin
     """
+    model, shooting = begun.model, begun.shooting
     enough = CONVERGED * shooting.seen.size / CRITERIA.independent
-    shooting = shooting.with_noise(scale.error_of(like.fit))
-    model = fit_model(shooting, base, parts, like.fit.starts, TURNS, enough, like)
+    shooting = shooting.with_noise(scale.error_of(model.fit))
+    model = model.refitted(shooting, parts, turns=TURNS, enough=enough)
     if not np.isfinite(model.fit.misfit):
-        return CrossValidated(model, shooting, np.full(1, np.inf), float("inf"))
+        return CrossValidated(model, shooting)
     shooting = shooting.with_noise(scale.error_of(model.fit)).with_past(model.fit.states)
-    model = fit_model(shooting, base, model.parts, model.fit.starts, AGAIN, enough, model)
+    model = model.refitted(shooting, turns=AGAIN, enough=enough)
     if not np.isfinite(model.fit.misfit):
-        return CrossValidated(model, shooting, np.full(1, np.inf), float("inf"))
+        return CrossValidated(model, shooting)
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
     errors = left_out_errors(model.fit) * square / shooting.known.mean()
-    return CrossValidated(model, shooting, errors, scale.gap_above(float(errors.mean())))
+    return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(float(errors.mean())))
 
 
 def errs_more(one: CrossValidated, other: CrossValidated) -> float:
@@ -121,7 +113,7 @@ def errs_more(one: CrossValidated, other: CrossValidated) -> float:
     return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
 
 
-def left_out_errors(fit: Fitted) -> NDArray[np.float64]:
+def left_out_errors(fit: Fitted) -> Values:
     """Return the mean squares of whitened residuals that the constants were estimated without (piece,).
 
     The fit is linear in its constants and start states around where it ended. Where whole runs are left out, their own
@@ -132,7 +124,7 @@ def left_out_errors(fit: Fitted) -> NDArray[np.float64]:
     return _without_pieces(fit)
 
 
-def _without_runs(fit: Fitted) -> NDArray[np.float64]:
+def _without_runs(fit: Fitted) -> Values:
     left, slopes = fit.projected
     normal = np.swapaxes(slopes, 1, 2) @ slopes
     match = np.einsum("srf,sr->sf", slopes, left)
@@ -150,7 +142,7 @@ def _without_runs(fit: Fitted) -> NDArray[np.float64]:
     return np.array(errors)
 
 
-def _without_pieces(fit: Fitted) -> NDArray[np.float64]:
+def _without_pieces(fit: Fitted) -> Values:
     """As above with one or two runs: pieces are left out, never the first of a run, which determines its start."""
     runs, rows = fit.white.shape
     pieces = math.ceil((FEW if fit.white.size < SHORT_RUN * runs else MANY) / runs)
@@ -166,9 +158,7 @@ def _without_pieces(fit: Fitted) -> NDArray[np.float64]:
     return np.array(errors)
 
 
-def _estimated_without(
-    fit: Fitted, run: int, kept: NDArray[np.intp]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _estimated_without(fit: Fitted, run: int, kept: NDArray[np.intp]) -> tuple[Values, Values]:
     """Start states of one run (state,) and the constants (free,), from its kept rows and all other runs."""
     n = fit.starts.shape[1]
     normal, match = _prior(fit)
@@ -184,7 +174,7 @@ def _estimated_without(
     return np.asarray(start, np.float64), moved
 
 
-def _prior(fit: Fitted) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _prior(fit: Fitted) -> tuple[Values, Values]:
     """What the prior adds to the normal equations (free, free), (free,)."""
     own = len(fit.prior.names)
     normal, match = np.zeros((len(fit.free), len(fit.free))), np.zeros(len(fit.free))
@@ -195,7 +185,7 @@ def _prior(fit: Fitted) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return normal, match
 
 
-def _solved(normal: NDArray[np.float64], match: NDArray[np.float64]) -> NDArray[np.float64]:
+def _solved(normal: Values, match: Values) -> Values:
     if not len(match):
         return match
     size = np.sqrt(np.maximum(np.diag(normal), 1e-300))

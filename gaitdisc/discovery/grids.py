@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gaitdisc.recording.arrays import Values
 
 QUANTILES = np.linspace(0.04, 0.96, 15)
 HALF_WIDTHS = np.linspace(0.08, 0.92, 9)
@@ -31,7 +32,7 @@ class Rhythm:
         return self.period * self.rate
 
 
-def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
+def rhythm_of(observed: Values, rate: float) -> Rhythm:
     """Read the main period off the measured channels.
 
     observed (trial, sample, channel): measured, NaN where a trial has ended
@@ -58,7 +59,7 @@ def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
     return Rhythm(float(np.median(periods)), observed.shape[1] / rate, rate)
 
 
-def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.float64]:
+def grid(kind: str, along: Values, rhythm: Rhythm) -> Values:
     """Return where the search for one constant begins.
 
     kind: as in the catalogue: `quantiles of x`, `half widths of x`, `delays`, `frequencies`, `phases`, `phase widths`
@@ -77,7 +78,7 @@ def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.fl
     return PHASES if kind == "phases" else PHASE_WIDTHS
 
 
-def delays(rhythm: Rhythm, either_way: bool = False) -> NDArray[np.float64]:
+def delays(rhythm: Rhythm, either_way: bool = False) -> Values:
     """Return the delays at which a search begins [s]: up to about half a period.
 
     either_way: whether a signal may as well come early: one that was recorded late
@@ -91,7 +92,7 @@ def delays(rhythm: Rhythm, either_way: bool = False) -> NDArray[np.float64]:
     return np.concatenate([late, -late]) if either_way else late
 
 
-def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm) -> list[dict[str, float]]:
+def cells(constants: dict[str, str], along: Values, rhythm: Rhythm) -> list[dict[str, float]]:
     """Return every combination of the constants' beginnings.
 
     along (sample,): x along the run

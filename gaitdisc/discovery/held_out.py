@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
 from gaitdisc.discovery.result import GapSize, Runs
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.finding import Finding
 
 TURNS = 30
@@ -30,10 +30,10 @@ class Trial:
 
     segments: Segments
     fit: Fitted
-    measured: NDArray[np.float64]  # (run, sample, channel), the measurement
+    measured: Values  # (run, sample, channel), the measurement
 
     @property
-    def misfits(self) -> NDArray[np.float64]:
+    def misfits(self) -> Values:
         """Misfit of each run (run,)."""
         return self.fit.misfits
 
@@ -87,7 +87,7 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
     return float(error), float(doubt)
 
 
-def spread_by_inputs(case: Case, run: Fitted, shooting: Shooting, now: ScoredModel) -> NDArray[np.float64]:
+def spread_by_inputs(case: Case, run: Fitted, shooting: Shooting, now: ScoredModel) -> Values:
     """Mean square that the stated errors of inputs move a run by (run, sample, channel); 0 where none wanders."""
     base, moved = case.search.base, np.zeros_like(run.residual)
     for seed in range(DRAWN if wandering(base) else 0):
@@ -160,7 +160,7 @@ def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
-def _started(shooting: Shooting, now: ScoredModel, starts: NDArray[np.float64]) -> Fitted:
+def _started(shooting: Shooting, now: ScoredModel, starts: Values) -> Fitted:
     """Return a model run over segments from the start states that suit it best, its constants as they are."""
     machine, values = now.model.machine, now.model.fit.values
     return shooting.fitted(machine, (), values, with_own_states(shooting, machine, values, starts), TURNS)
@@ -217,9 +217,7 @@ def compare_runs(case: Case, before: Trial, after: Trial, like: ScoredModel) -> 
     return replace(paired_test(before.fit.residual, after.fit.residual, like.noise.size), alpha=case.alpha)
 
 
-def gap_size(
-    before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], test: PairedTest
-) -> GapSize:
+def gap_size(before: Trial, after: Trial, floor: Values, channels: tuple[str, ...], test: PairedTest) -> GapSize:
     """Measure the gap before and after.
 
     floor (channel,): standard deviation of the noise [the channel's unit]
@@ -235,14 +233,13 @@ def drawn_runs(case: Case, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them."""
     segments, drive = before.segments, case.measured.drive
     names = [one.name for one in case.search.base.inputs]
-    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
         segments.trial,
-        time[:, segments.compared],
+        segments.times(drive)[:, segments.compared],
         phase[:, segments.compared],
         before.measured,
         before.measured - before.fit.residual,
         after.measured - after.fit.residual,
-        case.measured.trials,
+        names=case.measured.trials,
     )

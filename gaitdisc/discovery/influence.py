@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.linearised import pushable
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.result import FoundEffect
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
@@ -51,9 +51,7 @@ def _said(kind: str, names: tuple[str, ...]) -> str:
     return f"{kind} {words} has" if len(names) == 1 else f"{kind}s {words} have" if names else ""
 
 
-def idle_parts(
-    shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: NDArray[np.float64]
-) -> Idle:
+def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: Values) -> Idle:
     """Find what changes nothing in any measured channel along runs that begin at the data.
 
     starts (segment, state): where each run begins

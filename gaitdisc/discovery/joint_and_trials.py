@@ -6,13 +6,13 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import Change, Walk
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.joint_record import JointRecord
 from gaitdisc.processing.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State
@@ -39,7 +39,6 @@ EFFECTS = (
     "coulomb_friction", "phase_locked_moment",
 )  # fmt: skip
 WORDS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
-Values = NDArray[np.float64]
 
 
 def driven_of(record: JointRecord) -> Driven:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.running import compile_simulation
@@ -29,12 +30,12 @@ MOST_RUNS = 0.8  # of the segments, in which growth must stay below
 class Linearised:
     """The one-sample maps of a fitted run, linearised."""
 
-    onward: NDArray[np.float64]  # (segment, step, state, state), f: what a change of state becomes one sample later
+    onward: Values  # (segment, step, state, state), f: what a change of state becomes one sample later
     # (segment, step, state, place), g: what a unit push at a place, held over the sample, adds
-    pushed: NDArray[np.float64]
-    landed: NDArray[np.float64]  # (segment, step, state), where each step of the run lands
+    pushed: Values
+    landed: Values  # (segment, step, state), where each step of the run lands
 
-    def first_growth(self, factor: float, states: NDArray[np.float64]) -> int | None:
+    def first_growth(self, factor: float, states: Values) -> int | None:
         """Return the first sample at which a small change of the start has grown so much in a fifth of the segments.
 
         states (segment, sample, state): the run, for that spread; of a state that stands still (a guess that says
@@ -58,7 +59,7 @@ class Linearised:
         """Return the maps of some of the segments."""
         return Linearised(self.onward[some], self.pushed[some], self.landed[some])
 
-    def of_push(self, place: int, push: NDArray[np.float64]) -> NDArray[np.float64]:
+    def of_push(self, place: int, push: Values) -> Values:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
 
         push (segment, sample, candidate): the push at each sample [the place's unit]
@@ -66,7 +67,7 @@ class Linearised:
         held = 0.5 * (push[:, :-1] + push[:, 1:])
         return self.of_change(self.pushed[:, :, :, place, None] * held[:, :, None, :])
 
-    def of_change(self, change: NDArray[np.float64]) -> NDArray[np.float64]:
+    def of_change(self, change: Values) -> Values:
         """Return the change of state (segment, sample, state, candidate) that changes of each step's landing cause.
 
         change (segment, step, state, candidate): what each step lands further
@@ -84,11 +85,7 @@ def linearise(shooting: Shooting, simulation: Simulation, places: tuple[Place, .
 
 
 def linearise_along(
-    shooting: Shooting,
-    simulation: Simulation,
-    places: tuple[Place, ...],
-    run: NDArray[np.float64],
-    values: NDArray[np.float64],
+    shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], run: Values, values: Values
 ) -> Linearised:
     """Linearise every step along given states.
 
@@ -123,7 +120,7 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
     return compile_simulation(simulation)
 
 
-def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:
+def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Values) -> Values:
     """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
 
     change (segment, sample, state, candidate): to first order
@@ -140,9 +137,7 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDAr
     return shooting.filtered(slopes @ change, 1)
 
 
-def seen_push(
-    shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted
-) -> NDArray[np.float64]:
+def seen_push(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Values:
     """Return what a unit push changes at once in what the sensors see (segment, sample, channel, place).
 
     Before any filter, states as they are: an input may stand in what is measured.
@@ -153,7 +148,7 @@ def seen_push(
     return np.moveaxis(seen[1:] - seen[0], 0, -1) / PUSH
 
 
-def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:
+def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: Values) -> Values:
     """As `seen_change`, where what is measured depends on states some time ago: each candidate observed by itself."""
     spans = np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
     size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError, StrideError
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.process import Walk
 from gaitdisc.processing.processed_walks import processed_walks
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.parts import Input, Parameter, Port, State
@@ -91,7 +91,7 @@ def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
     return measured_of_trials(trials, ("phase",), ("theta",), walk.trial.name)
 
 
-def _motion(walk: Walk, name: str) -> tuple[NDArray[np.float64], ...]:
+def _motion(walk: Walk, name: str) -> tuple[Values, ...]:
     """Angle, rate, acceleration [rad, s] and share of the stride, sample by sample."""
     column = walk.state.names.index(name)
     trajectory = walk.trajectory

@@ -24,6 +24,7 @@ from gaitdisc.discovery.places import kinematic_rates
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
@@ -135,7 +136,7 @@ class _Bench:
         shooting = Shooting(measured, segments, white_noise(self.spread), self.substeps, guess.states)
         return fit_model(shooting, self.simulation, (), guess.starts(segments)).fit, segments
 
-    def errors(self, fit: Fitted, segments: Segments) -> NDArray[np.float64]:
+    def errors(self, fit: Fitted, segments: Segments) -> Values:
         """Root mean square of what is left of each trial [standard deviations]; infinite where a run failed."""
         square = (fit.residual / self.spread) ** 2
         square[~np.isfinite(fit.white).all(axis=1)] = np.inf
@@ -194,9 +195,7 @@ def shifted(measured: Measured, shift: int) -> Measured:
     return replace(measured, drive=drive, observed=observed)
 
 
-def _left(
-    seen: NDArray[np.float64], run: NDArray[np.float64], slopes: NDArray[np.float64], begin: NDArray[np.intp]
-) -> float:
+def _left(seen: Values, run: Values, slopes: Values, begin: NDArray[np.intp]) -> float:
     """Mean square of what another stretch of the record leaves of a run, its start free to first order."""
     samples = begin[:, None] + np.arange(run.shape[1])
     inside = (samples >= 0) & (samples < len(seen))
@@ -207,7 +206,7 @@ def _left(
     return float((rest**2).sum() / max(kept.sum(), 1))
 
 
-def _lowest(values: NDArray[np.float64]) -> list[int]:
+def _lowest(values: Values) -> list[int]:
     """Places of the local minima, the least first."""
     padded = np.concatenate([[np.inf], values, [np.inf]])
     places = np.flatnonzero((values <= padded[:-2]) & (values <= padded[2:]))
@@ -251,7 +250,7 @@ def without_trial_apart(case: Case) -> Measured:
     return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
 
 
-def _left_without(case: Case, trial: int, spread: NDArray[np.float64]) -> float:
+def _left_without(case: Case, trial: int, spread: Values) -> float:
     """Root mean square that the best single explanation of all other trials leaves [standard deviations]."""
     others = tuple(other for other in range(len(case.measured.trials)) if other != trial)
     part = replace(case, learned=others)

@@ -45,10 +45,8 @@ def estimates_table(discovery: Discovery) -> Table:
     rows, records = [], []
     for effect in discovery.effects:
         for name, one in effect.estimates.items():
-            number, unit = name.replace("_", " "), "" if one.unit == "1" else one.unit
-            size = (one.high - one.low) / 2
-            written = (f"{amount(each, size)} {unit}".strip() for each in (one.value, one.low, one.high))
-            rows.append((spoken(effect.name), effect.place, number, *written, _degrees(one)))
+            number = name.replace("_", " ")
+            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), _degrees(one)))
             records.append(
                 (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
             )
@@ -69,7 +67,7 @@ def gap_table(discovery: Discovery) -> Table:
                 continue
             shown, factor = shown_unit(unit)
             before, after, floor = size.channels[channel]
-            amounts = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
+            amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
             rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
@@ -107,7 +105,7 @@ def trials_table(discovery: Discovery) -> Table:
             shown, factor = shown_unit(unit)
             of_trial = (one[runs.trial == number][:, :, place] for one in errors)
             before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
-            amounts = (f"{amount(factor * one, factor * before / 20)} {shown}".strip() for one in (before, after))
+            amounts = (with_unit(amount(factor * one, factor * before / 20), shown) for one in (before, after))
             rows.append((name, channel, *amounts))
             records.append((name, channel, before, after, unit))
     caption = (
@@ -151,9 +149,7 @@ def corrections_table(discovery: Discovery) -> Table:
     rows, records = [], []
     for one in discovery.corrections:
         found, unit = one.found, "" if one.found.unit == "1" else one.found.unit
-        size = (found.high - found.low) / 2
-        written = (f"{amount(each, size)} {unit}".strip() for each in (found.value, found.low, found.high))
-        rows.append((one.parameter, f"{one.given:.6g} {unit}".strip(), *written))
+        rows.append((one.parameter, with_unit(f"{one.given:.6g}", unit), *_amounts(found)))
         records.append((one.parameter, one.given, found.value, found.low, found.high, found.unit))
     caption = (
         "Parameters of the file that changed within their bounds. These are not effects: every explanation, and the "
@@ -204,6 +200,12 @@ def closed_share(before: float, after: float, floor: float) -> float:
     """
     there = before**2 - floor**2
     return min((before**2 - after**2) / there, 1.0) if there > 0.02 * floor**2 else math.nan
+
+
+def _amounts(one: Estimate) -> list[str]:
+    """Value, low and high end of an interval, in the unit of the file."""
+    unit = "" if one.unit == "1" else one.unit
+    return [with_unit(amount(each, (one.high - one.low) / 2), unit) for each in (one.value, one.low, one.high)]
 
 
 def _degrees(one: Estimate) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
@@ -82,7 +82,7 @@ def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
     return simulation.states[int(np.argmax(np.abs(moved).mean(axis=0)))].name
 
 
-def _rates(machine: Compiled, x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rates(machine: Compiled, x: Values, u: Values) -> Values:
     """Rates at points, with nothing coming late."""
     late = np.zeros((len(x), len(machine.right_hand_side.delays)))
     return machine.rates(np.zeros(len(x)), x, u, machine.defaults, late)

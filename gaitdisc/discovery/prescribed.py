@@ -20,16 +20,15 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
-from gaitdisc.discovery.penalty import penalty_of
+from gaitdisc.recording.arrays import Values
 
-Values = NDArray[np.float64]
 LATEST_S, DELAYS = 0.12, 25
 BLOCK, MOST_BLOCKS = 4, 10  # samples of a block of time that is held out at least: a period of the low-pass; blocks
 GAP = 2  # samples to either side of it that nothing is learned from: what is half a period apart is independent
 CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
-CHANGED = 0.06  # by which a muscle group's strength differs at least, as in a device walk
 ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
 FLAT = 1e-9
+UNTESTED = PairedTest(1.0, 0, 0.0)
 SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each number that passes twice
 
 
@@ -58,6 +57,21 @@ class ResidualMoment:
         parts = np.array_split(every, count)
         return [(part, every[(every < part[0] - GAP) | (every > part[-1] + GAP)]) for part in parts]
 
+    def explained(self, candidate: Candidate, values: Mapping[str, float]) -> Values:
+        """What a candidate with some numbers makes of the moment (sample,) [N m]."""
+        constants = {slot: values[slot] for slot in candidate.constants or {}}
+        factors = [values[slot] for slot in candidate.slots[: len(candidate.pieces)]]
+        if candidate.verdict == "wrong_parameter":
+            late = candidate.place.endswith("_delay")
+            constants, factors = (values, [1.0]) if late else ({}, [values["value"] - 1.0])
+        return self.columns(candidate, constants) @ np.array(factors)
+
+    def slope(self, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
+        """What a unit of one of its numbers adds (sample,)."""
+        step = 1e-3 * max(abs(values[slot]), 1e-2)
+        sides = [self.explained(candidate, {**values, slot: values[slot] + sign * step}) for sign in (1, -1)]
+        return (sides[0] - sides[1]) / (2 * step)
+
 
 @dataclass(frozen=True, eq=False)
 class Named:
@@ -68,8 +82,8 @@ class Named:
     explained: Values  # (sample,) [N m]
     predicted: Values  # (sample,), each block of the time from the rest of it [N m]
     gained: float  # fall of twice the log likelihood beyond the price of its numbers and of choosing it
-    held_out: float  # fall of twice the log likelihood of what was held out
-    test: PairedTest
+    held_out: float = 0.0  # fall of twice the log likelihood of what was held out
+    test: PairedTest = UNTESTED
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,50 +92,127 @@ class JointFinding:
 
     joint: ResidualMoment
     noise: Noise
-    named: Named | None
-    rivals: tuple[Named, ...]  # best first
     open_ones: int  # candidates at all joints
+    named: Named | None = None
+    rivals: tuple[Named, ...] = ()  # best first
 
     def least(self, column: Values) -> float:
         """Smallest factor of a column (sample,) that would be named here."""
         samples = len(self.joint.time)
-        wanted = (CRITERIA.margin + _price(1, samples, self.open_ones)) * SAMPLES_A_NUMBER / samples
-        size = float(np.linalg.norm(_white(self.noise, column)))
+        wanted = (CRITERIA.margin + self._price(1)) * SAMPLES_A_NUMBER / samples
+        size = float(np.linalg.norm(self._white(column)))
         return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
+
+    def weigh(self, candidates: tuple[Candidate, ...], refined: bool) -> list[Named]:
+        """Fit candidates to all of the record, the best first."""
+        fitted = [self._fitted(each, refined) for each in candidates]
+        return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
+
+    def _fitted(self, candidate: Candidate, refined: bool) -> Named | None:
+        """Numbers of a candidate on all of the record, None where it is nowhere in it."""
+        joint, samples, count = self.joint, len(self.joint.time), len(candidate.slots)
+        values = self._numbers(candidate, np.arange(samples), refined)
+        if values is None:
+            return None
+        explained = joint.explained(candidate, values)
+        slopes = np.column_stack([joint.slope(candidate, values, slot) for slot in candidate.slots])
+        jacobian = self._white(slopes)
+        before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, joint.left - explained))
+        variance = max(after / max(samples - count, 1), 1.0)
+        covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
+        gained = _fall(before, after, samples) - self._price(count)
+        return Named(Part(candidate, values), covariance, explained, np.zeros(samples), gained)
+
+    def prove(self, one: Named) -> Named:
+        """Predict each block of the time with numbers of the rest."""
+        joint, predicted = self.joint, np.zeros(len(self.joint.time))
+        for held, learned in joint.blocks:
+            values = self._numbers(one.part.candidate, learned)
+            if values is not None:
+                predicted[held] = joint.explained(one.part.candidate, values)[held]
+        after = joint.left - predicted
+        test = paired_test(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
+        before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, after))
+        return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
+
+    def _numbers(self, candidate: Candidate, some: NDArray[np.intp], refined: bool = True) -> dict[str, float] | None:
+        """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
+        from scipy.optimize import minimize
+
+        joint = self.joint
+        known = np.isin(np.arange(len(joint.time)), some)
+        y, late = self._white(joint.left, known), candidate.place.endswith("_delay")
+
+        def fit(constants: Mapping[str, float]) -> tuple[float, Values]:
+            columns = joint.columns(candidate, constants)
+            white = self._white(columns, known)
+            if late:
+                return float(((y - white[:, 0]) ** 2).sum()), np.empty(0)
+            if np.linalg.norm(columns[some], axis=0).min() < FLAT * max(len(some), 1):
+                return np.inf, np.zeros(columns.shape[1])
+            factors = np.asarray(np.linalg.lstsq(white, y, rcond=None)[0], np.float64)
+            return float(((y - white @ factors) ** 2).sum()), factors
+
+        span = float(joint.time[-1] - joint.time[0])
+        rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
+        starts = cells(dict(candidate.constants or {}), joint.along, rhythm)
+        if late:
+            starts = [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
+        scores = [fit(one)[0] for one in starts]
+        best = starts[int(np.argmin(scores))]
+        if not np.isfinite(min(scores)):
+            return None
+        if best and refined:
+            names = list(best)
+            grids = [np.unique([one[name] for one in starts]) for name in names]
+            steps = [np.median(np.diff(each)) if len(each) > 1 else 0.1 * abs(each[0]) for each in grids]
+            width = np.maximum(steps, FLAT)
+            at = np.array([best[name] for name in names])
+            simplex = np.vstack([at, *(at + step * np.eye(len(names))[k] for k, step in enumerate(width))])
+            found = minimize(
+                lambda x: min(fit(dict(zip(names, x, strict=True)))[0], 1e12),
+                at,
+                method="Nelder-Mead",
+                options={"initial_simplex": simplex, "xatol": 1e-4 * width.max(), "fatol": 1e-3, "maxiter": 60},
+            )
+            if found.fun <= min(scores):
+                best = dict(zip(names, map(float, found.x), strict=True))
+        factors = fit(best)[1]
+        if candidate.verdict == "wrong_parameter":
+            return best if late else {"value": 1.0 + float(factors[0])}
+        return dict(zip(candidate.slots, [*map(float, factors), *best.values()], strict=True))
+
+    def _price(self, count: int) -> float:
+        """What the numbers of a candidate and the choice among all cost."""
+        return count * float(np.log(len(self.joint.time))) + 2 * float(np.log(max(self.open_ones, 1)))
+
+    def _white(self, columns: Values, known: NDArray[np.bool_] | None = None) -> Values:
+        """Whitened values (sample,) or columns (sample, column); 0 at samples that are not to be known, then afresh."""
+        where = None if known is None else known[None, :, None]
+        return self.noise.whitened(columns.reshape(1, len(columns), 1, -1), where).reshape(columns.shape)
 
 
 def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
-    open_ones = len(candidates) * joints
     floor = CRITERIA.model_error * float(np.std(joint.demanded))
-    noise = noise_of(joint.angle_noise[:, :, None], least=floor)
+    found = JointFinding(joint, noise_of(joint.angle_noise[:, :, None], least=floor), len(candidates) * joints)
     ordered: list[Named] = []
     for _ in range(ROUNDS):
-        coarse = _weighed(joint, noise, candidates, open_ones, refined=False)
+        coarse = found.weigh(candidates, refined=False)
         best = tuple(one.part.candidate for one in coarse[:REFINED])
-        ordered = _weighed(joint, noise, best, open_ones, refined=True)
+        ordered = found.weigh(best, refined=True)
         rest = min((joint.left - one.explained for one in ordered), key=np.linalg.norm, default=joint.left)
-        if np.sqrt(np.mean(rest**2)) <= noise.size[0]:
+        if np.sqrt(np.mean(rest**2)) <= found.noise.size[0]:
             break
-        noise = noise_of(rest[None, :, None], used=2, least=floor)
+        found = replace(found, noise=noise_of(rest[None, :, None], used=2, least=floor))
     near = [one for one in ordered if one.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
-    proven = sorted((_proven(joint, noise, one) for one in near), key=lambda one: -one.held_out)
+    proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
     alike = [one for one in proven if one.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
     order = [one.identity for one in candidates]  # of two with one penalty the first in the catalogue is the simpler
-    alike.sort(
-        key=lambda one: (penalty_of(one.part.candidate, one.part.values), order.index(one.part.candidate.identity))
-    )
+    alike.sort(key=lambda one: (one.part.candidate.penalty(one.part.values), order.index(one.part.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
     first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
-    return JointFinding(joint, noise, first, tuple(ordered), open_ones)
-
-
-def _weighed(
-    joint: ResidualMoment, noise: Noise, candidates: tuple[Candidate, ...], open_ones: int, refined: bool
-) -> list[Named]:
-    """Fit candidates to all of the record, the best first."""
-    fitted = [_fitted(joint, noise, each, open_ones, refined) for each in candidates]
-    return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
+    return replace(found, named=first, rivals=tuple(ordered))
 
 
 def borne_out(joint: ResidualMoment, one: Named) -> bool:
@@ -131,111 +222,6 @@ def borne_out(joint: ResidualMoment, one: Named) -> bool:
     return matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
 
 
-def _fitted(joint: ResidualMoment, noise: Noise, candidate: Candidate, open_ones: int, refined: bool) -> Named | None:
-    """Numbers of a candidate on all of the record, None where it is nowhere in it."""
-    samples, count = len(joint.time), len(candidate.slots)
-    values = _numbers(joint, noise, candidate, np.arange(samples), refined)
-    if values is None:
-        return None
-    explained = _explained(joint, candidate, values)
-    slopes = np.column_stack([_slope(joint, candidate, values, slot) for slot in candidate.slots])
-    jacobian = _white(noise, slopes)
-    before, after = (float((_white(noise, each) ** 2).sum()) for each in (joint.left, joint.left - explained))
-    variance = max(after / max(samples - count, 1), 1.0)
-    covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
-    gained = _fall(before, after, samples) - _price(count, samples, open_ones)
-    part = Part(candidate, values)
-    return Named(part, covariance, explained, np.zeros(samples), gained, 0.0, PairedTest(1.0, 0, 0.0))
-
-
-def _proven(joint: ResidualMoment, noise: Noise, one: Named) -> Named:
-    """Predict each block of the time with numbers of the rest."""
-    predicted = np.zeros(len(joint.time))
-    for held, learned in joint.blocks:
-        values = _numbers(joint, noise, one.part.candidate, learned)
-        if values is not None:
-            predicted[held] = _explained(joint, one.part.candidate, values)[held]
-    after = joint.left - predicted
-    test = paired_test(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
-    before, after = (float((_white(noise, each) ** 2).sum()) for each in (joint.left, after))
-    return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
-
-
-def _numbers(
-    joint: ResidualMoment, noise: Noise, candidate: Candidate, some: NDArray[np.intp], refined: bool = True
-) -> dict[str, float] | None:
-    """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
-    from scipy.optimize import minimize
-
-    known = np.isin(np.arange(len(joint.time)), some)
-    y, late = _white(noise, joint.left, known), candidate.place.endswith("_delay")
-
-    def fit(constants: Mapping[str, float]) -> tuple[float, Values]:
-        columns = joint.columns(candidate, constants)
-        white = _white(noise, columns, known)
-        if late:
-            return float(((y - white[:, 0]) ** 2).sum()), np.empty(0)
-        if np.linalg.norm(columns[some], axis=0).min() < FLAT * max(len(some), 1):
-            return np.inf, np.zeros(columns.shape[1])
-        factors = np.asarray(np.linalg.lstsq(white, y, rcond=None)[0], np.float64)
-        return float(((y - white @ factors) ** 2).sum()), factors
-
-    span = float(joint.time[-1] - joint.time[0])
-    rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
-    starts = cells(dict(candidate.constants or {}), joint.along, rhythm)
-    if late:
-        starts = [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
-    scores = [fit(one)[0] for one in starts]
-    best = starts[int(np.argmin(scores))]
-    if not np.isfinite(min(scores)):
-        return None
-    if best and refined:
-        names = list(best)
-        grids = [np.unique([one[name] for one in starts]) for name in names]
-        steps = [np.median(np.diff(each)) if len(each) > 1 else 0.1 * abs(each[0]) for each in grids]
-        width = np.maximum(steps, FLAT)
-        at = np.array([best[name] for name in names])
-        simplex = np.vstack([at, *(at + step * np.eye(len(names))[k] for k, step in enumerate(width))])
-        found = minimize(
-            lambda x: min(fit(dict(zip(names, x, strict=True)))[0], 1e12),
-            at,
-            method="Nelder-Mead",
-            options={"initial_simplex": simplex, "xatol": 1e-4 * width.max(), "fatol": 1e-3, "maxiter": 60},
-        )
-        if found.fun <= min(scores):
-            best = dict(zip(names, map(float, found.x), strict=True))
-    factors = fit(best)[1]
-    if candidate.verdict == "wrong_parameter":
-        return best if late else {"value": 1.0 + float(factors[0])}
-    return dict(zip(candidate.slots, [*map(float, factors), *best.values()], strict=True))
-
-
-def _explained(joint: ResidualMoment, candidate: Candidate, values: Mapping[str, float]) -> Values:
-    constants = {slot: values[slot] for slot in candidate.constants or {}}
-    factors = [values[slot] for slot in candidate.slots[: len(candidate.pieces)]]
-    if candidate.verdict == "wrong_parameter":
-        late = candidate.place.endswith("_delay")
-        constants, factors = (values, [1.0]) if late else ({}, [values["value"] - 1.0])
-    return joint.columns(candidate, constants) @ np.array(factors)
-
-
 def _fall(before: float, after: float, count: int) -> float:
     """Fall of twice the log likelihood of a noise whose size is fitted, and is no less than what it is taken for."""
     return count / SAMPLES_A_NUMBER * float(np.log1p(max(before - after, 0.0) / max(after, count)))
-
-
-def _price(count: int, samples: int, open_ones: int) -> float:
-    """What the numbers of a candidate and the choice among all cost."""
-    return count * float(np.log(samples)) + 2 * float(np.log(max(open_ones, 1)))
-
-
-def _slope(joint: ResidualMoment, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
-    step = 1e-3 * max(abs(values[slot]), 1e-2)
-    sides = [_explained(joint, candidate, {**values, slot: values[slot] + sign * step}) for sign in (1, -1)]
-    return (sides[0] - sides[1]) / (2 * step)
-
-
-def _white(noise: Noise, columns: Values, known: NDArray[np.bool_] | None = None) -> Values:
-    """Whitened values (sample,) or columns (sample, column); 0 at samples that are not to be known, then afresh."""
-    where = None if known is None else known[None, :, None]
-    return noise.whitened(columns.reshape(1, len(columns), 1, -1), where).reshape(columns.shape)

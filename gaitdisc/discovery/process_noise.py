@@ -19,13 +19,13 @@ from gaitdisc.discovery.linearised import linearise, seen_change
 from gaitdisc.discovery.noise import Noise, noise_of, sensor_noise, white_noise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 
 SHARES = np.logspace(-3, 3, 19)  # of the process noise's variance in what is seen, against the sensor's
 MOST_SEGMENTS = 24
 MOST_NUMBERS = 400
 LEAST_NOISE = 0.01  # of a channel's residual, which its sensor's noise is at least: what rounding leaves is none
 ROUNDED = 1e-3  # of the variance is taken as white: what is left of a record above its filter's cut-off
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
     return sorted(found, key=lambda one: one.bic)
 
 
-def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Array:
+def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:
     """Covariance of noise that was white before the filter (segment, number, number), of unit size.
 
     What was not measured is taken for independent of all else.
@@ -105,12 +105,12 @@ def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Array:
     return np.where(both, out.reshape(length * channels, -1), np.eye(length * channels))
 
 
-def _volume(starts: Array) -> float:
+def _volume(starts: Values) -> float:
     """Log determinant of the information on start states, all segments together."""
     return float(2 * np.log(np.maximum(np.linalg.svd(starts, compute_uv=False), 1e-12)).sum())
 
 
-def _autoregressive(noise: Noise, plain: Array, slopes: Array, now: Fitted, known: NDArray[np.bool_]) -> float:
+def _autoregressive(noise: Noise, plain: Values, slopes: Values, now: Fitted, known: NDArray[np.bool_]) -> float:
     """Return the criterion of the model with autoregressive noise of each sensor, over the same numbers."""
     white, starts = noise.whitened(plain, known).reshape(now.white.shape), noise.whitened(slopes, known)
     now = replace(now, white=white, slopes=starts.reshape(*white.shape, -1))

@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.compiled import compiled
+from gaitdisc.recording.arrays import Values
 
 SETTLING_PERIODS = 1.0  # of the cut-off, after which the filter has forgotten all but 1 % (exp(-2 pi / sqrt 2))
 DENSE = 4.0  # samples a period of the cut-off hold all that passes: at half that rate 0.4 % of the power is left
@@ -43,11 +43,11 @@ class RecordFilter:
         return max(int(self.rate_hz / (DENSE * highest)), 1)
 
     @property
-    def gains(self) -> NDArray[np.float64]:
+    def gains(self) -> Values:
         """What the filter leaves of white noise (channel,): the standard deviation after over that before."""
         return np.sqrt((self._response**2).sum(axis=0))
 
-    def autocorrelation(self, lags: int) -> NDArray[np.float64]:
+    def autocorrelation(self, lags: int) -> Values:
         """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared."""
         response = self._response
         late = [np.roll(response, lag * self.every, axis=0) for lag in range(lags + 1)]
@@ -56,13 +56,13 @@ class RecordFilter:
         return np.array([(response * one).sum(axis=0) for one in late]) / (response**2).sum(axis=0)
 
     @property
-    def _response(self) -> NDArray[np.float64]:
+    def _response(self) -> Values:
         """To an impulse (sample, channel)."""
         impulse = np.zeros((1, 8 * max(self.margin, 1) + 1, len(self.cutoffs_hz)))
         impulse[:, impulse.shape[1] // 2] = 1.0
         return self.filtered(impulse, 1)[0]
 
-    def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    def filtered(self, observed: Values, axis: int) -> Values:
         """Simulated channels as the record would have them.
 
         observed (..., sample, channel, ...): runs; the channels follow the samples
@@ -80,7 +80,7 @@ class RecordFilter:
         return out.reshape(observed.shape)
 
 
-def _coefficients(cutoff: float) -> NDArray[np.float64]:
+def _coefficients(cutoff: float) -> Values:
     """b0, a1, a2 of a Butterworth low-pass of order 2 (b1 = 2 b0, b2 = b0), its cut-off as a share of the rate."""
     k = math.tan(math.pi * cutoff)
     whole = 1 + ROOT_TWO * k + k * k
@@ -88,7 +88,7 @@ def _coefficients(cutoff: float) -> NDArray[np.float64]:
 
 
 @compiled(nogil=True)
-def run_both_ways(values: NDArray[np.float64], channel: int, coefficients: NDArray[np.float64], padding: int) -> None:
+def run_both_ways(values: Values, channel: int, coefficients: Values, padding: int) -> None:
     """Filter one channel forwards and backwards, in place; runs are continued beyond their ends by turning them over.
 
     values (run, sample, channel, column): runs

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.kind import Saved
 from gaitdisc.saved.provenance import Provenance
 
@@ -152,11 +153,11 @@ class Runs:
     """Measured, simulated and augmented runs of one set of trials."""
 
     trial: NDArray[np.intp]  # (run,), number of the trial
-    time: NDArray[np.float64]  # (run, sample), [s]
-    phase: NDArray[np.float64]  # (run, sample) or empty, share of the stride
-    measured: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
-    simulated: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
-    augmented: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    time: Values  # (run, sample), [s]
+    phase: Values  # (run, sample) or empty, share of the stride
+    measured: Values  # (run, sample, channel), [the channel's unit]
+    simulated: Values  # (run, sample, channel), [the channel's unit]
+    augmented: Values  # (run, sample, channel), [the channel's unit]
     names: tuple[str, ...] = ()  # of all trials of the measured data, by their number
 
     def table(self, channels: tuple[str, ...]) -> dict[str, NDArray[Any]]:
@@ -174,6 +175,11 @@ class Runs:
             for word in ("measured", "simulated", "augmented"):
                 columns[f"{channel}_{word}"] = getattr(self, word)[:, :, number].ravel()
         return columns
+
+
+NO_GAP = GapSize(0.0, 0.0, 0.0)
+_NONE = np.empty((0, 0))
+NO_RUNS = Runs(np.zeros(0, int), _NONE, _NONE, _NONE, _NONE, _NONE)
 
 
 @dataclass(frozen=True)
@@ -217,14 +223,14 @@ class Discovery(Saved, file="discovery.json"):
 
     verdict: str
     sentence: str
-    where: tuple[Whereabouts, ...]
-    effects: tuple[FoundEffect, ...]
-    rivals: tuple[FoundEffect, ...]
-    train: GapSize
-    held_out: GapSize
-    channels: tuple[str, ...]
-    units: tuple[str, ...]
-    runs: Runs
+    where: tuple[Whereabouts, ...] = ()
+    effects: tuple[FoundEffect, ...] = ()
+    rivals: tuple[FoundEffect, ...] = ()
+    train: GapSize = NO_GAP
+    held_out: GapSize = NO_GAP
+    channels: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    runs: Runs = NO_RUNS
     findings: tuple[Finding, ...] = ()
     provenance: Provenance | None = None
     corrections: tuple[Correction, ...] = ()

@@ -12,16 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.fitted import Fitted, start_basis, without
+from gaitdisc.discovery.candidate_model import CandidateModel
+from gaitdisc.discovery.first_states import followed
+from gaitdisc.discovery.fitted import start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
-from gaitdisc.discovery.own_states import followed
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation import Simulation
 
 AT_ONCE = 96
 MOST = 1000  # candidates that are scored on all segments; of more, some segments say which are worth it
@@ -54,9 +55,7 @@ class Scorer:
     """A fitted simulation, linearised, against which candidates are scored."""
 
     shooting: Shooting
-    simulation: Simulation
-    machine: Compiled
-    fit: Fitted
+    model: CandidateModel
     places: tuple[Place, ...]
     rhythm: Rhythm
 
@@ -71,7 +70,7 @@ class Scorer:
         count = len(self.shooting.segments)
         some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
         shooting = replace(self.shooting, segments=self.shooting.segments.among(some))
-        return replace(self, shooting=shooting, fit=self.fit.among(some))
+        return replace(self, shooting=shooting, model=replace(self.model, fit=self.model.fit.among(some)))
 
     def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         basis, known, left = self._explained()
@@ -85,13 +84,13 @@ class Scorer:
                     best[number] = score
         return sorted(best.values(), key=lambda score: -score.gain)
 
-    def left_without_each(self, candidates: tuple[Candidate, ...]) -> NDArray[np.float64]:
+    def left_without_each(self, candidates: tuple[Candidate, ...]) -> Values:
         """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order."""
-        basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
-        left, slopes = self.fit.projected
+        basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
+        left, slopes = self.model.fit.projected
         others = _Others(self.shooting.segments.trial)
-        prior = self.fit.prior
-        weights = np.concatenate([np.zeros(len(self.fit.free) - len(prior.names)), 1 / prior.sd**2])
+        prior = self.model.fit.prior
+        weights = np.concatenate([np.zeros(len(self.model.fit.free) - len(prior.names)), 1 / prior.sd**2])
         known = others.product(slopes, slopes) + np.diag(weights)
         match = others.product(slopes, left[..., None])[..., 0]
         gained = np.zeros(others.count)
@@ -106,20 +105,20 @@ class Scorer:
         square = others.product(left[..., None], left[..., None])[:, 0, 0]
         return (square - gained) / (others.segments * left.shape[1])
 
-    def _explained(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def _explained(self) -> tuple[Values, Values, Values]:
         """Basis of the start states, basis of the constants already in (row, constant), what is left (row,).
 
         After the measured numbers come the rows of the prior, in which no candidate changes anything.
         """
-        basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
-        left, flat = self.fit.stacked
+        basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
+        left, flat = self.model.fit.stacked
         size = np.linalg.norm(flat, axis=0)
         known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
         return basis, known, left - known @ (known.T @ left)
 
-    def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], NDArray[np.float64]]]:
+    def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], Values]]:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
-        line = linearise(self.shooting, self.simulation, self.places, self.fit)
+        line = linearise(self.shooting, self.model.simulation, self.places, self.model.fit)
         roles = sorted({one.role for one in candidates if one.constants})
         along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
@@ -135,12 +134,12 @@ class Scorer:
                 push = self._along([piece for _, pieces in some for piece in pieces])
                 yield [cell for cell, _ in some], self._white(line.of_push(number, push))
         for i, one in enumerate(candidates):
-            late = one.name == "sensor_lag" and "delay(" in dict(self.simulation.observations)[one.place]
+            late = one.name == "sensor_lag" and "delay(" in dict(self.model.simulation.observations)[one.place]
             if one.verdict != "missing_physics" and not late:  # a signal that is late already is not delayed again
                 yield self._signal_columns(line, i, one)
 
     def _cells(
-        self, number: int, candidate: Candidate, along: dict[str, NDArray[np.float64]]
+        self, number: int, candidate: Candidate, along: dict[str, Values]
     ) -> list[tuple[_Cell, tuple[str, ...]]]:
         constants = dict(candidate.constants or {})
         x = along[candidate.role].ravel() if constants else np.zeros(1)
@@ -153,8 +152,8 @@ class Scorer:
         ]
 
     def _with_own_states(
-        self, number: int, candidate: Candidate, along: dict[str, NDArray[np.float64]]
-    ) -> tuple[list[_Cell], NDArray[np.float64]]:
+        self, number: int, candidate: Candidate, along: dict[str, Values]
+    ) -> tuple[list[_Cell], Values]:
         """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
         some = [cell for cell, _ in self._cells(number, candidate, along)]
         machine, values, states = self._extended(candidate, [candidate.idle | cell.constants for cell in some])
@@ -164,27 +163,25 @@ class Scorer:
         push = np.moveaxis(self.shooting.unfiltered(observing, states, values), 0, -2)
         return some, push.reshape(*push.shape[:2], -1)
 
-    def _extended(
-        self, candidate: Candidate, tried: list[dict[str, float]]
-    ) -> tuple[Compiled, NDArray[np.float64], NDArray[np.float64]]:
+    def _extended(self, candidate: Candidate, tried: list[dict[str, float]]) -> tuple[Compiled, Values, Values]:
         """The simulation with a candidate in it, and for each try parameters and states along the run.
 
         Parameters are (version, parameter), states (version, segment, sample, state), the candidate's own last.
         """
-        simulation, names = candidate.in_fit(self.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
+        simulation, names = candidate.in_fit(self.model.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
         machine = compile_simulation(simulation)
         values = np.repeat(machine.defaults[None], len(tried), axis=0)
-        values[:, : len(self.fit.values)] = self.fit.values
+        values[:, : len(self.model.fit.values)] = self.model.fit.values
         for version, slots in enumerate(tried):
             for slot, value in slots.items():
                 values[version, machine.parameters.index(names[slot])] = value
-        states = np.repeat(self.fit.states[None], len(tried), axis=0)
+        states = np.repeat(self.model.fit.states[None], len(tried), axis=0)
         if candidate.states:
             own = followed(self.shooting, simulation, values)[..., -len(candidate.states) :]
             states = np.concatenate([states, np.stack([self.shooting.segments.of(one) for one in own])], axis=-1)
         return machine, values, states
 
-    def _along(self, expressions: list[str]) -> NDArray[np.float64]:
+    def _along(self, expressions: list[str]) -> Values:
         """Return expressions along the run (segment, sample, expression)."""
         segments, drive = self.shooting.segments, self.shooting.measured.drive
         out = np.zeros((len(segments), segments.length, len(expressions)))
@@ -192,22 +189,20 @@ class Scorer:
             mine = np.flatnonzero(segments.trial == trial)
             samples = segments.samples[mine].ravel()
             t = drive.time0[trial] + samples / drive.rate
-            x = self.fit.states[mine].reshape(len(samples), -1)
-            points = Points(t, x, drive.inputs[trial, samples], self.fit.values, rate=drive.rate)
-            values = evaluate_many(self.simulation, expressions, points)
+            x = self.model.fit.states[mine].reshape(len(samples), -1)
+            points = Points(t, x, drive.inputs[trial, samples], self.model.fit.values, rate=drive.rate)
+            values = evaluate_many(self.model.simulation, expressions, points)
             out[mine] = np.moveaxis(values.reshape(len(expressions), len(mine), segments.length), 0, -1)
         return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
 
-    def _white(self, change: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.shooting.whitened(seen_change(self.shooting, self.machine, self.fit, change))
+    def _white(self, change: Values) -> Values:
+        return self.shooting.whitened(seen_change(self.shooting, self.model.machine, self.model.fit, change))
 
-    def _signal_columns(
-        self, line: Linearised, number: int, candidate: Candidate
-    ) -> tuple[list[_Cell], NDArray[np.float64]]:
+    def _signal_columns(self, line: Linearised, number: int, candidate: Candidate) -> tuple[list[_Cell], Values]:
         """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
         (slot, none), late = next(iter(candidate.idle.items())), candidate.is_late
         if candidate.verdict == "wrong_parameter":
-            none = float(self.fit.values[self.machine.parameters.index(candidate.place)])
+            none = float(self.model.fit.values[self.model.machine.parameters.index(candidate.place)])
         either_way = candidate.name == "input_delay"
         tried = delays(self.rhythm, either_way) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
         over = np.ones(len(tried)) if late else tried - none
@@ -220,12 +215,10 @@ class Scorer:
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
 
-    def _seen_over(
-        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64], over: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _seen_over(self, machine: Compiled, states: Values, values: Values, over: Values) -> Values:
         """What is seen to change though no state does (version, segment, sample, channel)."""
         seen = self.shooting.observed(machine, states, values)
-        base = self.shooting.observed(self.machine, self.fit.states[None], self.fit.values[None])
+        base = self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
         return (seen - base) / over[:, None, None, None]
 
 
@@ -245,14 +238,14 @@ class _Others:
         """How many segments the others have (trial,)."""
         return len(self.trial) - np.unique(self.trial, return_counts=True)[1]
 
-    def product(self, one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    def product(self, one: Values, other: Values) -> Values:
         """Products of columns (segment, number, column), summed (trial, column, column)."""
         each = np.swapaxes(one, 1, 2) @ other
         return each.sum(axis=0) - np.stack([each[self.trial == trial].sum(axis=0) for trial in np.unique(self.trial)])
 
 
 def _gains(
-    normal: NDArray[np.float64], match: NDArray[np.float64], some: list[_Cell], candidates: tuple[Candidate, ...]
+    normal: Values, match: Values, some: list[_Cell], candidates: tuple[Candidate, ...]
 ) -> Iterator[tuple[Score, int]]:
     """Yield each cell's score, from the products of the columns with each other and with what is left.
 

@@ -11,15 +11,14 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.recording.arrays import Values
 
 TURNS = 4
 INTEGRATED = 1e-4  # of a channel's spread: how far two integrators of one model may be apart
@@ -64,26 +63,25 @@ class ScoredModel:
         """What kind of explanation each is."""
         return tuple(part.candidate.verdict for part in self.model.parts)
 
-    def under(self, other: ScoredModel, base: Simulation) -> ScoredModel:
+    def under(self, other: ScoredModel) -> ScoredModel:
         """Return the model fitted again under another's noise, so that the two can be compared."""
         if other.shooting is self.shooting:
             return self
-        model = fit_model(other.shooting, base, self.model.parts, self.model.fit.starts, TURNS, like=self.model)
-        return ScoredModel(model, other.shooting, self.gained)
+        return ScoredModel(self.model.refitted(other.shooting, turns=TURNS), other.shooting, self.gained)
 
 
-def scored(shooting: Shooting, base: Simulation, model: CandidateModel, rounds: int = 2) -> ScoredModel:
+def scored(shooting: Shooting, model: CandidateModel, rounds: int = 2) -> ScoredModel:
     """Estimate a model's own noise, and its own past for what comes late, and fit it again under them."""
-    least = max(INTEGRATED, base.inexact) * np.nanstd(shooting.measured.observed, axis=(0, 1))
+    least = max(INTEGRATED, model.base.inexact) * np.nanstd(shooting.measured.observed, axis=(0, 1))
     for _ in range(rounds):
         used = model.fit.starts.shape[1] / model.fit.residual.shape[2]
         noise = noise_of(model.fit.residual, used, least=least, autocorrelation=shooting.filter_autocorrelation)
         shooting = shooting.with_noise(noise).with_past(model.fit.states)
-        model = fit_model(shooting, base, model.parts, model.fit.starts, TURNS, like=model)
+        model = model.refitted(shooting, turns=TURNS)
     return ScoredModel(model, shooting)
 
 
-def leaves(now: ScoredModel, noise: NDArray[np.float64]) -> float:
+def leaves(now: ScoredModel, noise: Values) -> float:
     """Return the mean square of what a model leaves, over the variance of the sensors' noise.
 
     noise (channel,): its standard deviation [the channel's unit]
@@ -91,16 +89,16 @@ def leaves(now: ScoredModel, noise: NDArray[np.float64]) -> float:
     return float(np.nanmean((now.model.fit.residual / noise) ** 2))
 
 
-def compared(models: list[ScoredModel], base: Simulation) -> list[ScoredModel]:
+def compared(models: list[ScoredModel]) -> list[ScoredModel]:
     """Put models under one noise: what the best of them leaves.
 
     models: of the same segments; those under the noise of the first stay as they are
     """
-    models = [one.under(models[0], base) for one in models]
+    models = [one.under(models[0]) for one in models]
     for _ in range(len(models)):
         best = min(range(len(models)), key=lambda number: models[number].bic)
-        own = replace(scored(models[best].shooting, base, models[best].model), gained=models[best].gained)
-        models = [own if number == best else one.under(own, base) for number, one in enumerate(models)]
+        own = replace(scored(models[best].shooting, models[best].model), gained=models[best].gained)
+        models = [own if number == best else one.under(own) for number, one in enumerate(models)]
         if min(range(len(models)), key=lambda number: models[number].bic) == best:
             break
     return models

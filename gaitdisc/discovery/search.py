@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Explanations, Part, fit_model
+from gaitdisc.discovery.candidate_model import CandidateModel, Explanations, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
@@ -63,13 +63,12 @@ class Search:
         if not tried:
             return []
         tried = list(likeliest.values())[:most]
-        before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)], self.base)
+        before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)])
         return [before, *(replace(one, gained=before.bic - one.bic) for one in more)]
 
     def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> CandidateModel:
         """Fit a model with one explanation more to the same runs."""
-        parts = (*now.model.parts, part)
-        return fit_model(now.shooting, self.base, parts, now.model.fit.starts, turns, NEARLY, now.model)
+        return now.model.refitted(now.shooting, (*now.model.parts, part), turns=turns, enough=NEARLY)
 
     def far_off(self, now: ScoredModel) -> list[CandidateModel]:
         """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
@@ -80,7 +79,7 @@ class Search:
             begun = [self.with_part(now, Part(one, {"value": one.value * factor}), FEW_TURNS) for factor in DECADES]
             best = min(begun, key=lambda each: each.fit.misfit if np.isfinite(each.fit.misfit) else np.inf)
             if best.fit.misfit < now.model.fit.misfit:
-                found.append(fit_model(now.shooting, self.base, best.parts, best.fit.starts, TURNS, NEARLY, now.model))
+                found.append(now.model.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
         return found
 
     def _reported(self, worth: list[Score]) -> Iterator[Score]:
@@ -96,7 +95,7 @@ class Search:
 
     def scorer(self, shooting: Shooting, model: CandidateModel) -> Scorer:
         """Return what scores further explanations beside a model, to first order."""
-        return Scorer(shooting, model.simulation, model.machine, model.fit, self.places, self.rhythm)
+        return Scorer(shooting, model, self.places, self.rhythm)
 
     def open_beside(self, model: CandidateModel) -> tuple[Candidate, ...]:
         """Return the explanations that are not in a model."""
@@ -166,8 +165,7 @@ class Search:
 
     def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
         """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
-        model = fit_model(now.shooting, self.base, parts, now.model.fit.starts, TURNS, like=now.model)
-        return ScoredModel(model, now.shooting)
+        return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
 
 
 def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:

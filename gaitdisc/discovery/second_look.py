@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
@@ -90,7 +90,7 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     if not tried:
         return verdict
     now = ScoredModel(min(tried, key=lambda one: one.bic), found.shooting, found.gained)
-    _, now = compared([found, now], search.base)
+    _, now = compared([found, now])
     proof = held_out_proof(case, as_read, now)
     if not proof_of(case, found, now, now).bears_out or not proof.bears_out:
         return verdict
@@ -136,7 +136,7 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
     if verdict.word == "unnamed" or not grows_along_runs(case, found):
         return verdict
     whole = fit_whole_runs(case, found)
-    whole = scored(whole.shooting, search.base, whole.model)
+    whole = scored(whole.shooting, whole.model)
     own_error = case.scale.excess(whole.model.fit) < CRITERIA.model_error
     if own_error or case.leaves_noise(whole):
         return verdict
@@ -192,18 +192,17 @@ def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate)
         return None
     parts = [*fewer.model.parts]
     parts.insert(number, Part(scores[0].candidate, scores[0].values))
-    model = fit_model(now.shooting, search.base, tuple(parts), now.model.fit.starts, TURNS, like=fewer.model)
+    model = fewer.model.refitted(now.shooting, tuple(parts), now.model.fit.starts, TURNS)
     return ScoredModel(model, now.shooting, now.gained) if search.sensible(model) else None
 
 
 def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
     """Whether data show that a general shape explains more than its relative."""
-    first, second = compared([relative, general], case.search.base)
+    first, second = compared([relative, general])
     if case.leaves_noise(second):
         return first.bic - second.bic > CRITERIA.margin
     proof = proof_of(case, first, second, second)
     if proof.bears_out:
         return True
-    scale, base = case.scale, case.search.base
-    left = [cross_validated(scale, one.shooting, base, one.model.parts, one.model) for one in (first, second)]
+    left = [cross_validated(case.scale, one, one.model.parts) for one in (first, second)]
     return proof.test.fall > 0 and errs_more(*left) < ALPHA

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
-from gaitdisc.simulation.drive import Rows
+from gaitdisc.recording.arrays import Values
+from gaitdisc.simulation.drive import Drive, Rows
 
 
 @dataclass(frozen=True)
@@ -28,14 +29,14 @@ class Segments:
     def __len__(self) -> int:
         return len(self.begin)
 
-    def of(self, records: NDArray[np.float64]) -> NDArray[np.float64]:
+    def of(self, records: Values) -> Values:
         """Return the segments of records (segment, sample, ...).
 
         records (trial, sample, ...): of every trial
         """
         return records[self.trial[:, None], self.samples]
 
-    def put(self, records: NDArray[np.float64], runs: NDArray[np.float64]) -> NDArray[np.float64]:
+    def put(self, records: Values, runs: Values) -> Values:
         """Return records (trial, sample, ...) with runs in their places; of two that overlap, the one that is compared.
 
         records (trial, sample, ...): of every trial
@@ -81,13 +82,17 @@ class Segments:
         """Number, within its trial, of every sample (segment, sample)."""
         return self.begin[:, None] + np.arange(self.length)
 
+    def times(self, drive: Drive) -> Values:
+        """Time of every sample (segment, sample) [s]."""
+        return drive.time0[self.trial][:, None] + self.samples / drive.rate
+
     @property
     def steps(self) -> Segments:
         """Every step of every segment as a segment of its own."""
         steps = self.length - 1
         return Segments(np.repeat(self.trial, steps), self.samples[:, :-1].ravel(), 2)
 
-    def rows(self, starts: NDArray[np.float64], values: NDArray[np.float64]) -> Rows:
+    def rows(self, starts: Values, values: Values) -> Rows:
         """Return what it takes to run several versions of a simulation over all segments, version by version.
 
         starts (version, segment, state): start states

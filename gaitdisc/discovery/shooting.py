@@ -17,6 +17,7 @@ from gaitdisc.discovery.fitted import Fitted, Prior
 from gaitdisc.discovery.noise import MOST_LAGS, Noise
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import Segments
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.measured import Measured
 
@@ -25,7 +26,7 @@ MOST_DAMPING = 1e6
 NUDGE = 1e-5
 STUCK = 5.0  # times the median misfit of a segment
 FREED = 0.5  # of their misfit, which another start must leave at most
-FEW_TURNS = 6
+TURNS, FEW_TURNS = 12, 6
 ENOUGH = 1e-2
 
 
@@ -38,13 +39,13 @@ class Shooting:
     noise: Noise
     substeps: int = 2
     # (trial, sample, state) or None, states before a segment begins, for what comes late
-    past: NDArray[np.float64] | None = None
+    past: Values | None = None
     prior: Prior = field(default_factory=Prior)  # of the parameters that have bounds and are fitted
     record_filter: RecordFilter | None = None
     nudge: float = NUDGE  # of states and constants, as a share of their size, for slopes
 
     @cached_property
-    def seen(self) -> NDArray[np.float64]:
+    def seen(self) -> Values:
         """The measurement in each segment, where it is compared (segment, sample, channel)."""
         return self.segments.of(self.measured.observed)[:, self.segments.compared]
 
@@ -54,15 +55,13 @@ class Shooting:
         return np.isfinite(self.seen)
 
     @cached_property
-    def filter_autocorrelation(self) -> NDArray[np.float64] | None:
+    def filter_autocorrelation(self) -> Values | None:
         """Autocorrelation of what the record's filter leaves of white noise (lag, channel); None without a filter."""
         return (
             self.record_filter.autocorrelation(MOST_LAGS) if self.record_filter and self.record_filter.margin else None
         )
 
-    def run(
-        self, machine: Compiled, starts: NDArray[np.float64], values: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def run(self, machine: Compiled, starts: Values, values: Values) -> tuple[Values, Values]:
         """Run a simulation over all segments, several versions at once.
 
         starts (version, segment, state): start states
@@ -75,9 +74,7 @@ class Shooting:
         states = states.reshape(*starts.shape[:2], self.segments.length, -1)
         return states, self.observed(machine, states, values)
 
-    def landed(
-        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def landed(self, machine: Compiled, states: Values, values: Values) -> Values:
         """Run every step of every segment by itself, and return where it lands (version, segment, step, state).
 
         states (version, segment, step, state): where each step starts
@@ -87,9 +84,7 @@ class Shooting:
         landed, _ = machine.run(self.measured.drive, rows, 1, substeps=self.substeps, past=self.past)
         return landed[:, 1].reshape(states.shape)
 
-    def observed(
-        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def observed(self, machine: Compiled, states: Values, values: Values) -> Values:
         """Return what would be recorded along given states, where it is compared (version, segment, sample, channel).
 
         states (version, segment, sample, state): its states
@@ -97,7 +92,7 @@ class Shooting:
         """
         return self.filtered(self.unfiltered(machine, states, values), 2)
 
-    def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    def filtered(self, observed: Values, axis: int) -> Values:
         """Return channels as they come out of the filter that the record went through, where they are compared.
 
         observed (..., sample, channel, ...): channels of whole segments
@@ -105,9 +100,7 @@ class Shooting:
         recorded = self.record_filter.filtered(observed, axis) if self.record_filter else observed
         return recorded[(slice(None),) * axis + (self.segments.compared,)]
 
-    def unfiltered(
-        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def unfiltered(self, machine: Compiled, states: Values, values: Values) -> Values:
         """Return what the sensors see along given states, before any filter (version, segment, sample, channel).
 
         states (version, segment, sample, state): its states
@@ -117,7 +110,7 @@ class Shooting:
         seen = machine.observe(self.measured.drive, rows, states.reshape(-1, *states.shape[2:]), past=self.past)
         return seen.reshape(*states.shape[:3], -1)
 
-    def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+    def whitened(self, residual: Values) -> Values:
         """Return residuals whitened and flat (segment, sample times channel, ...).
 
         What is not finite counts as none, and so does what was not measured.
@@ -129,9 +122,7 @@ class Shooting:
         white = self.noise.whitened(residual, None if self.known.all() else self.known)
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
-    def at(
-        self, machine: Compiled, free: tuple[str, ...], values: NDArray[np.float64], starts: NDArray[np.float64]
-    ) -> Fitted:
+    def at(self, machine: Compiled, free: tuple[str, ...], values: Values, starts: Values) -> Fitted:
         """Return the fit at given constants and start states, with its slopes.
 
         values (parameter,): all parameters
@@ -153,15 +144,15 @@ class Shooting:
         white[failed] = np.inf
         change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
         slopes, prior = self.whitened(change), self.prior.among(free)
-        return Fitted(free, values, starts, states[0], residual, white, slopes, prior)
+        return Fitted(free, values, starts, states[0], residual, white=white, slopes=slopes, prior=prior)
 
     def fitted(
         self,
         machine: Compiled,
         free: tuple[str, ...],
-        values: NDArray[np.float64],
-        starts: NDArray[np.float64],
-        turns: int = 12,
+        values: Values,
+        starts: Values,
+        turns: int = TURNS,
         enough: float = ENOUGH,
     ) -> Fitted:
         """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).
@@ -194,9 +185,7 @@ class Shooting:
                 break
         return now
 
-    def _begun_elsewhere(
-        self, machine: Compiled, now: Fitted, starts: NDArray[np.float64]
-    ) -> NDArray[np.float64] | None:
+    def _begun_elsewhere(self, machine: Compiled, now: Fitted, starts: Values) -> Values | None:
         """Return better start states (segment, state) where a few segments fit far worse than most.
 
         A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own. Tried are the start that the
@@ -213,7 +202,7 @@ class Shooting:
             best = best.where(fit.misfits < best.misfits, fit)
         return best.starts if best.misfits[stuck].sum() < FREED * now.misfits[stuck].sum() else None
 
-    def with_past(self, states: NDArray[np.float64]) -> Shooting:
+    def with_past(self, states: Values) -> Shooting:
         """Return the same segments with a run's states as the past of what comes late.
 
         states (segment, sample, state): a fitted run; states that effects bring along, after the others, are left out
@@ -227,9 +216,7 @@ class Shooting:
         return replace(self, noise=noise)
 
 
-def _step(
-    now: Fitted, machine: Compiled, damping: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _step(now: Fitted, machine: Compiled, damping: Values) -> tuple[Values, Values]:
     """Return (values, starts) one damped Gauss-Newton step on."""
     n = now.starts.shape[1]
     shape, change = now.slopes[..., :n], now.slopes[..., n:]
@@ -247,7 +234,7 @@ def _step(
     return values, now.starts + move / np.where(size > 0, size, 1.0)[:, 0]
 
 
-def _move(now: Fitted, damping: float) -> NDArray[np.float64]:
+def _move(now: Fitted, damping: float) -> Values:
     """Return the damped step of the constants (free,); one that would leave its bounds stops there."""
     left, flat = now.stacked
     prior, first = now.prior, len(now.free) - len(now.prior.names)

@@ -13,7 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Values, runs
 from gaitdisc.simulation.measured import Measured
 
 KIND = "spike"
@@ -49,7 +49,7 @@ def without_spikes(measured: Measured) -> Measured:
     return replace(measured, observed=observed, findings=(*measured.findings, *findings))
 
 
-def spiked(record: NDArray[np.float64]) -> NDArray[np.bool_]:
+def spiked(record: Values) -> NDArray[np.bool_]:
     """Mark the samples of a channel that leap away from what lies before and after them, and back.
 
     Far is eight robust standard deviations of a sample from the middle of its neighbours, four median steps around it,
@@ -92,19 +92,19 @@ def spiked(record: NDArray[np.float64]) -> NDArray[np.bool_]:
     return marks
 
 
-def _has_shoulder(x: NDArray[np.float64], begin: int, end: int, least: float) -> bool:
+def _has_shoulder(x: Values, begin: int, end: int, least: float) -> bool:
     """Whether the sample before or after a leap is on its way there: the record turns towards the leap by `least`."""
     up = np.sign(x[begin] - x[begin - 1])
     turns = [np.diff(x[side], 2) for side in (slice(max(begin - 3, 0), begin), slice(end, end + 3))]
     return any(bool((up * turn > least).any()) for turn in turns)
 
 
-def _continued(x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _continued(x: Values) -> Values:
     """A record continued at either end along the median line of its samples there, which no spike of theirs moves."""
     return np.concatenate([_line(x[:ENDS][::-1])[::-1], x, _line(x[-ENDS:])])
 
 
-def _line(x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _line(x: Values) -> Values:
     """The samples after some, on their line of median slope (Theil 1950)."""
     later, earlier = np.tril_indices(len(x), -1)
     slope = float(np.median((x[later] - x[earlier]) / (later - earlier)))
@@ -129,7 +129,7 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
     what = "spikes of one to three samples: " + "; ".join(said[:LISTED]) + more
     spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]
-    return Finding("warning", KIND, measured.source, what, spoils, name, tuple(spans) if len(said) == 1 else ())
+    return Finding("warning", KIND, measured.source, what, spoils, name, spans=tuple(spans) if len(said) == 1 else ())
 
 
 def _beside(measured: Measured, marks: NDArray[np.bool_], trial: int, channel: int, first: int) -> str:

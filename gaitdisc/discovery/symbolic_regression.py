@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import Part
@@ -26,6 +25,7 @@ from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMP = Shape("bump", ("exp(-((x - c)/w)**2)",), {"c": "quantiles of x", "w": "half widths of x"})
@@ -61,15 +61,14 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     if verdict.word != UNNAMED or len(shape.model.parts) != 1 or not verdict.proof:
         return verdict
     search, scale = case.search, case.scale
-    plain = cross_validated(scale, shape.shooting, search.base, (), shape.model)
+    plain = cross_validated(scale, shape, ())
     if not np.isfinite(plain.gap):
         return verdict
-    readings = [
-        cross_validated(scale, shape.shooting, search.base, (part,), plain.model) for part in _readings(search, shape)
-    ]
+    begun = ScoredModel(plain.model, shape.shooting)
+    readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
     readings = [one for one in readings if search.sensible(one.model)]
     for one in sorted(readings, key=lambda one: cost_of(one, plain)):
-        found = scored(shape.shooting, search.base, one.model)
+        found = scored(shape.shooting, one.model)
         proof = held_out_proof(case, as_read, found)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
             reads_as = effect_of(search, one.model.parts[0].candidate)
@@ -90,7 +89,7 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     twice = len(set(named.labels)) < len(named.labels)
     if case.leaves_noise(named) and not twice:
         return verdict
-    shape = fitted_shape(as_read, case.search, case.scale)
+    shape = fitted_shape(case, as_read)
     if shape is None:
         return verdict
     proof = held_out_proof(case, as_read, shape)
@@ -169,7 +168,7 @@ class _Curve:
                     break
 
     @cached_property
-    def _regression(self) -> tuple[list[Piece], NDArray[np.float64], NDArray[np.float64]]:
+    def _regression(self) -> tuple[list[Piece], Values, Values]:
         """Pieces that vary along the runs, their values (sample, piece), and the curve's (sample,)."""
         points = self._points
         along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
@@ -186,12 +185,12 @@ class _Curve:
         shooting, known = self.shape.shooting, len(self.search.base.states)
         segments, drive = shooting.segments, shooting.measured.drive
         states = self.shape.model.fit.states[..., :known].reshape(-1, known)
-        time = (drive.time0[segments.trial][:, None] + segments.samples / drive.rate).ravel()
+        time = segments.times(drive).ravel()
         some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))
         inputs = segments.of(drive.inputs).reshape(len(states), -1)
         return Points(time[some], states[some], inputs[some])
 
-    def _pieces(self, along: NDArray[np.float64]) -> Iterator[Piece]:
+    def _pieces(self, along: Values) -> Iterator[Piece]:
         """Pieces over the position, over its rate, over both, and products of one and the other."""
         rate = self.motion[1]
         angle = any(one.motions[0] == self.motion and one.angle for one in self.search.places)
@@ -210,14 +209,14 @@ class _Curve:
                 product = Shape("", (f"{_factor(one.pieces[0])}*{_factor(other.pieces[0])}",), one.constants)
                 yield from self._at(product, along)
 
-    def _at(self, shape: Shape, along: NDArray[np.float64]) -> Iterator[Piece]:
+    def _at(self, shape: Shape, along: Values) -> Iterator[Piece]:
         names = {"x": self.motion[0], "v": self.motion[1]} | {slot: f"_{slot}" for slot in shape.constants}
         (text,) = shape.written(names)
         for values in cells(dict(shape.constants), along, self.search.rhythm):
             yield Piece(text, dict(shape.constants), values)
 
 
-def _best_pairs(gram: NDArray[np.float64], match: NDArray[np.float64]) -> list[tuple[int, int]]:
+def _best_pairs(gram: Values, match: Values) -> list[tuple[int, ...]]:
     """Pairs of unit columns, what they explain together the most first."""
     apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
     explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
@@ -226,9 +225,7 @@ def _best_pairs(gram: NDArray[np.float64], match: NDArray[np.float64]) -> list[t
     return list(zip(first[order].tolist(), second[order].tolist(), strict=True))
 
 
-def _best_triples(
-    gram: NDArray[np.float64], match: NDArray[np.float64], pairs: list[tuple[int, int]]
-) -> list[tuple[int, int, int]]:
+def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
     """Pairs with a third column beside them, what they explain together the most first."""
     found = []
     for pair in pairs:

@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.discovery.effect_words import amount
@@ -18,9 +17,9 @@ from gaitdisc.engines.tracked_files import TrackedMotion, check_loads, tracked_m
 from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.derivatives import differentiated
 
-Values = NDArray[np.float64]
 DRAWS, SEED, NOISE_DEG = 4, 0, 0.3
 MM = 1 / 300  # [m] of a translation, that go with a degree of an angle
 OTHER_MOTION = 0.15  # of the weight

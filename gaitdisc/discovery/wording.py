@@ -14,6 +14,7 @@ from gaitdisc.discovery.effect_words import (
     brief_text,
     estimate_text,
     outside_text,
+    shown_channel,
     shown_unit,
     spoken,
     with_unit,
@@ -101,21 +102,32 @@ def _nothing(discovery: Discovery) -> str:
                 "along a run."
             )
         return (
-            "No effect is named: simulation and data differ by more than the sensors' noise, and no tested "
-            "explanation is significant."
+            "No effect is named: simulation and data differ by more than the sensors' noise, and no tested explanation "
+            f"meets the criteria for a name.{_removes_most(discovery)}"
         )
     pieces = discovery.held_out.pieces
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} independent samples)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
-            f"No effect is named, because several effects act at a time: {for_what} would explain most, but less than "
-            "half of the held-out error. Trials in which fewer effects act can distinguish them."
+            f"No effect is named: {for_what} would explain most, but less than half of the held-out error. Several "
+            "effects may act at a time; trials in which fewer effects act can distinguish them."
         )
     return (
         f"No effect is named: the training data indicate {for_what}, but the held-out data do not support it{tested}. "
         "More trials of varied movement can decide."
     )
+
+
+def _removes_most(discovery: Discovery) -> str:
+    """Say which of the listed explanations removes most of the held-out error beyond chance."""
+    for one in discovery.explanations:
+        size = one.held_out
+        if size and size.p < size.alpha and size.unexplained < 1:
+            effects = " and ".join(f"{spoken(each.name)} {at_place(each.kind, each.place)}" for each in one.effects)
+            closed = f"{100 * (1 - size.unexplained):.0f} % of the squared held-out error above the noise"
+            return f" Of those listed, {effects} removes most: {closed}. New trials can test it."
+    return ""
 
 
 def may_be_left(error: float, size: GapSize) -> bool:
@@ -225,22 +237,21 @@ def _shown(discovery: Discovery) -> str:
     sizes = discovery.held_out.channels
     if not sizes:
         return ""
-    units = dict(zip(discovery.channels, discovery.units, strict=True))
     channel = discovery.held_out.ranked[0]
-    unit, factor = shown_unit(units[channel])
+    unit, factor = shown_channel(discovery, channel)
     floor = factor * sizes[channel][2]
     of = f" of {channel}" if len(sizes) > 1 else ""
     noise = f"noise floor {amount(floor, floor / 10)}"
     if discovery.verdict in ("no_gap", "unexplained", "process_noise", "wrong_initial_condition"):
         before = with_unit(amount(factor * sizes[channel][0], floor / 10), unit)
         return f"Held-out error{of}: {before} ({noise})."
-    worse = [name for name in sizes if name != channel and _goes(sizes[name], units[name]).startswith("rises")]
-    others = "".join(f"; that of {name} {_goes(sizes[name], units[name])}" for name in worse)
+    worse = [name for name in sizes if name != channel and _goes(discovery, name).startswith("rises")]
+    others = "".join(f"; that of {name} {_goes(discovery, name)}" for name in worse)
     size = discovery.held_out
     few = 0 < size.pieces < FEW and size.after <= size.before
     tested = f", p = {_chance(size.p)} over {size.pieces} independent samples" if few else ""
     return (
-        f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{tested}){others}."
+        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}."
         f"{_unexplained(discovery.held_out)}"
     )
 
@@ -265,9 +276,9 @@ def _moved(discovery: Discovery) -> str:
     return f"Changed within their bounds: {', '.join(said)}."
 
 
-def _goes(size: tuple[float, float, float], channel_unit: str) -> str:
+def _goes(discovery: Discovery, channel: str) -> str:
     """Say whether an error falls, rises or does not change, to the digits that the noise leaves worth writing."""
-    unit, factor = shown_unit(channel_unit)
+    size, (unit, factor) = discovery.held_out.channels[channel], shown_channel(discovery, channel)
     step = factor * size[2] / 10
     before, after = (amount(factor * one, step) for one in size[:2])
     if before == after:

@@ -105,9 +105,9 @@ class C3DReader:
             reader, (points, analog), more = self._raw(path, header, layout)
         findings += [*doubts, *more]
         labels = LabelMap(channels)
-        streams, surfaces, seen = _streams(points, analog, layout, parameters, labels, header.file)
+        streams, surfaces, seen = _streams(points, analog, layout, parameters, labels)
         first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
-        events, more = file_events(parameters, layout.frames, rate_hz, first, header.file)
+        events, more = file_events(parameters, layout.frames, rate_hz, first)
         analog_channels = analog_labels(parameters, layout.channels)
         all_labels = [text for one in analog_channels for text in (one.label, one.description)]
         all_labels += point_names(parameters, layout.points)
@@ -160,19 +160,19 @@ def _streams(
     layout: C3DLayout,
     parameters: C3DParameters,
     labels: LabelMap,
-    file: str,
 ) -> tuple[Streams, tuple[Surface, ...], list[Finding]]:
-    unscaled, seen = unscaled_channels(parameters, layout.channels, file)
+    unscaled, seen = unscaled_channels(parameters, layout.channels)
     raw[:, sorted(unscaled)] = np.nan
+    file = parameters.file
     findings = [*seen, *_made_finite(points, "coordinates of points", file), *_made_finite(raw, "analog values", file)]
-    streams, unit, doubts = point_streams(points, parameters, labels, file)
-    plates, described = force_plates(parameters, layout.channels, unit, file, unscaled)
-    forces, columns, of_plates = plate_streams(raw, plates, parameters, unit, file)
+    streams, unit, doubts = point_streams(points, parameters, labels)
+    plates, described = force_plates(parameters, layout.channels, unit, unscaled)
+    forces, columns, of_plates = plate_streams(raw, plates, parameters, unit)
     if "moments" in streams:
         loads = plate_loads(forces, max(layout.samples_per_frame, 1))
         streams["moments"], more = house_kinetics(streams["moments"], loads, body_mass(parameters), file)
         of_plates = [*of_plates, *more]
-    analog, of_analog = analog_streams(raw, parameters, columns, labels, file)
+    analog, of_analog = analog_streams(raw, parameters, columns, labels)
     for key, part in (*forces.items(), *analog.items()):
         add_part(streams, key, part)
     surfaces = tuple(plate.surface for plate in plates if columns.issuperset(plate.columns))
@@ -389,7 +389,7 @@ def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
             raise ReadError("the scales of a C3D file must be finite and not 0", found, _REMEDY)
 
 
-def unscaled_channels(parameters: C3DParameters, channels: int, file: str) -> tuple[frozenset[int], list[Finding]]:
+def unscaled_channels(parameters: C3DParameters, channels: int) -> tuple[frozenset[int], list[Finding]]:
     """Analog channels whose own scale or offset cannot be used: their numbers are missing, the others stand."""
     labels = [*parameters.texts("ANALOG", "LABELS"), *[""] * channels]
     bad: dict[int, str] = {}
@@ -401,4 +401,5 @@ def unscaled_channels(parameters: C3DParameters, channels: int, file: str) -> tu
         return frozenset(), []
     several = f", and {len(bad) - 4} more channels" if len(bad) > 4 else ""
     what = f"{'; '.join(list(bad.values())[:4])}{several}; treated as missing"
-    return frozenset(bad), [Finding("warning", "scale", file, what, "these channels; export the trial again")]
+    doubt = Finding("warning", "scale", parameters.file, what, "these channels; export the trial again")
+    return frozenset(bad), [doubt]

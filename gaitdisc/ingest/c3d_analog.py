@@ -87,7 +87,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
 
 
 def analog_streams(
-    rows: NDArray[np.float64], parameters: C3DParameters, plate_channels: set[int], labels: LabelMap, file: str
+    rows: NDArray[np.float64], parameters: C3DParameters, plate_channels: set[int], labels: LabelMap
 ) -> tuple[Streams, list[Finding]]:
     """Streams `emg`, `signals`, mapped `forces` of rows (sample, channel) in the file's units, without plates."""
     analog = analog_labels(parameters, rows.shape[1])
@@ -99,7 +99,7 @@ def analog_streams(
     for one in analog:
         name = mapped[one.number]
         if name is not None:
-            channel, unit = _mapped_channel(name, one, file)
+            channel, unit = _mapped_channel(name, one, parameters.file)
             stream = stream_of(channel)
             chosen.append((stream if stream in ("emg", "forces") else "signals", one, channel, unit))
     for one, name in zip(emg, emg_names(emg), strict=True):
@@ -120,7 +120,7 @@ def analog_streams(
                 if unit != channel.unit:
                     values[:, column] = convert(values[:, column], unit, channel.unit)
             streams[stream] = (values, tuple(channel for _, _, channel, _ in group))
-    return streams, _doubts(emg, others, file)
+    return streams, _doubts(emg, others, parameters.file)
 
 
 def _mapped_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, str]:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.stated_units import LEG_MOMENT
 from gaitdisc.recording import Finding
-from gaitdisc.recording.trial import LENGTHS_M, BodyMeasures
+from gaitdisc.recording.trial import LENGTHS_M, MASS_KG, BodyMeasures
 
 Kinetics = tuple[NDArray[np.float64], tuple[Channel, ...]]
 
@@ -21,7 +22,6 @@ LOADED_N = 100.0  # a plate that carries a foot
 LOADED_PER_KG = 2.0  # a reaction force that is no noise, in N/kg; in N it is that all the more
 STEADY = 0.05  # spread of the ratio of plate to reaction force over a step that both saw
 AGREES = 0.05  # of a mass
-HEAVIEST_KG, LIGHTEST_KG = 300.0, 5.0
 PER_KG_AT_MOST = {"force": 40.0, "moment": 10.0}  # N/kg, four body weights; N m/kg: no joint of a walking leg
 PUSH_OFF = {"N m/kg": 0.4, "N m": 12.0}  # least ankle moment of a push-off; standing has less
 ONE_SIDED = 2.0  # impulse of the ankle's larger side over that of the other
@@ -29,7 +29,6 @@ _PER_KG = {"N": "N/kg", "N m": "N m/kg", "W": "W/kg"}
 _REACTION = re.compile(r"[LR]GroundReactionForce\.[xyz]")
 _NORMALISED = re.compile(r"[LR]NormalisedGRF\.[xyz]")
 _ANKLE = re.compile(r"ankle_angle_[rl]_moment")
-_LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 _OF_GROUND = re.compile(r"[LR]?Ground")
 GROUPS = ("PROCESSING", "SUBJECTS", "SUBJECT")
 OF_THE_BODY = {
@@ -55,7 +54,7 @@ def body_mass(parameters: C3DParameters) -> float | None:
     """Body mass that the file states [kg], or None."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECT", "WEIGHT")):
         mass = parameters.number(group, name)
-        if mass is not None and LIGHTEST_KG <= mass <= HEAVIEST_KG:
+        if mass is not None and MASS_KG[0] <= mass <= MASS_KG[1]:
             return mass
     return None
 
@@ -86,7 +85,7 @@ def _in_true_unit(
 ) -> tuple[Kinetics, list[Finding]]:
     values, channels = kinetics
     reaction = _by_plates(values, channels, plates_n) or _by_size(values, channels, _REACTION, "force")
-    joints = _by_size(values, channels, _LEG, "moment")
+    joints = _by_size(values, channels, LEG_MOMENT, "moment")
     shown = reaction if reaction.per_kg is not None else joints
     findings = []
     wrong = [c.name for c in channels if c.unit in _PER_KG]
@@ -134,7 +133,7 @@ def _by_plates(
             words = f"plate {place} carries {plate[at]:.0f} N when {side}GroundReactionForce is {foot[at]:.4g}"
             if abs(ratio - 1) <= AGREES:
                 return Evidence(False, words, True)
-            if LIGHTEST_KG <= ratio <= HEAVIEST_KG:
+            if MASS_KG[0] <= ratio <= MASS_KG[1]:
                 return Evidence(True, words, True, float(ratio))
     return None
 
@@ -192,8 +191,7 @@ def _push_off(values: NDArray[np.float64], channels: tuple[Channel, ...]) -> tup
 
 def read_body_measures(path: Path | str) -> BodyMeasures:
     """Measures of the person in PROCESSING, SUBJECTS or SUBJECT; none where absent, zero, or not in mm, m or cm."""
-    path = Path(path)
-    return body_measures_of(read_c3d_parameters(path, read_c3d_header(path)), path.name)
+    return body_measures_of(read_c3d_parameters(path, read_c3d_header(path)))
 
 
 def body_measures_in(path: Path) -> BodyMeasures:
@@ -201,14 +199,14 @@ def body_measures_in(path: Path) -> BodyMeasures:
     return read_body_measures(path) if path.suffix.lower() == ".c3d" else BodyMeasures()
 
 
-def body_measures_of(parameters: C3DParameters, file: str) -> BodyMeasures:
+def body_measures_of(parameters: C3DParameters) -> BodyMeasures:
     """Measures of the person that stand in parameters."""
     whole = {name: _length(parameters, name, keys) for name, keys in OF_THE_BODY.items()}
     sided = {}
     for name, keys in OF_A_SIDE.items():
         lengths = {side: _length(parameters, name, [f"{side.upper()}{key}" for key in keys]) for side in "lr"}
         sided[name] = {side: length for side, length in lengths.items() if length is not None}
-    return BodyMeasures(body_mass(parameters), **whole, **sided, source=file)
+    return BodyMeasures(body_mass(parameters), **whole, **sided, source=parameters.file)
 
 
 def _length(parameters: C3DParameters, name: str, keys: Sequence[str]) -> float | None:

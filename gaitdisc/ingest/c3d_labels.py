@@ -121,7 +121,7 @@ def event_kind(label: str, context: str) -> tuple[str, str]:
 
 
 def file_events(
-    parameters: C3DParameters, frames: int, rate_hz: float, first_frame: int, file: str
+    parameters: C3DParameters, frames: int, rate_hz: float, first_frame: int
 ) -> tuple[tuple[Event, ...], list[Finding]]:
     """Events of a file on the recordings' clock, on which the first frame is at 0 s.
 
@@ -141,7 +141,7 @@ def file_events(
     lost = (first_frame - 1) / rate_hz
     end = (frames - 1) / rate_hz
     margin = 0.5 / rate_hz
-    findings = []
+    findings, file = [], parameters.file
     on_file = seconds - lost
     if not np.any(_within(on_file, end, margin)) and np.all(_within(seconds, end, margin)):
         on_file = seconds

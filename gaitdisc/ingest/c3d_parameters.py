@@ -144,7 +144,7 @@ def _first_bytes(path: Path) -> tuple[bytes, int]:
 
 @dataclass(frozen=True)
 class C3DParameters:
-    """Parameters by group and name.
+    """Parameters of a file by group and name.
 
     >>> C3DParameters({("POINT", "USED"): np.array([-1])}).count("POINT", "USED")
     65535
@@ -153,6 +153,7 @@ class C3DParameters:
     # mapping of (str, str) to tuple of str or ndarray, texts without trailing blanks; numbers in the file's dimensions,
     # first index fastest in the file
     values: Mapping[tuple[str, str], Value]
+    file: str = ""  # name of the file without its folder
 
     def texts(self, group: str, name: str) -> tuple[str, ...]:
         """Texts of a parameter, with those of `NAME2`, `NAME3`, ... that carry on where 255 are not enough."""
@@ -217,7 +218,7 @@ def read_c3d_parameters(path: str | Path, header: C3DHeader) -> C3DParameters:
     values = {(names.get(group, f"#{group}"), name): value for group, name, value in reversed(entries)}
     if not {group for group, _ in values} & {"POINT", "ANALOG"}:
         raise _broken(header, "it has neither the group POINT nor the group ANALOG")
-    return C3DParameters(values)
+    return C3DParameters(values, header.file)
 
 
 def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, bytes]]:

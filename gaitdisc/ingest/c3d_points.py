@@ -45,7 +45,6 @@ MODEL_OUTPUTS = (
     ModelOutput("POWERS", "power", "moments", "POWER_UNITS", "W"),
     ModelOutput("SCALARS", "signal", "kinematics", "SCALAR_UNITS", "mm"),
 )
-_INNER = {"angle": "deg", "force": "N", "moment": "N m", "power": "W"}
 
 
 def point_names(parameters: C3DParameters, count: int) -> list[str]:
@@ -54,9 +53,9 @@ def point_names(parameters: C3DParameters, count: int) -> list[str]:
     return made_unique([*labels, *[""] * (count - len(labels))], "point")
 
 
-def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: str) -> tuple[str, list[Finding]]:
+def length_unit(parameters: C3DParameters, places: NDArray[np.float64]) -> tuple[str, list[Finding]]:
     """Unit of markers as stated, or by places (frame, coordinate) of some thousand frames where nothing is stated."""
-    far = distance_from_origin(places)
+    far, file = distance_from_origin(places), parameters.file
     text = parameters.text("POINT", "UNITS")
     if text:
         unit = parsed_unit(text)
@@ -78,14 +77,14 @@ def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: st
 
 
 def point_streams(
-    rows: NDArray[np.float64], parameters: C3DParameters, labels: LabelMap, file: str
+    rows: NDArray[np.float64], parameters: C3DParameters, labels: LabelMap
 ) -> tuple[Streams, str, list[Finding]]:
     """Streams `markers`, `kinematics` and `moments` of the points.
 
     rows (frame, 3 * point): in the file's units, NaN where a point was not seen
     returns streams dict of str to (values, channels): in m, deg, N, N m and W; only those that the file has
     """
-    names = point_names(parameters, rows.shape[1] // 3)
+    names, file = point_names(parameters, rows.shape[1] // 3), parameters.file
     kinds = _kinds(names, parameters)
     plain, suffixed = _without_suffix(names, kinds, file)
     findings: list[Finding] = []
@@ -103,7 +102,7 @@ def point_streams(
     if unseen.any():
         what = f"{int(unseen.sum())} marker positions were exactly (0, 0, 0) and are treated as missing"
         findings.append(Finding("note", "zero places", file, what, ""))
-    unit, doubts = length_unit(parameters, markers, file)
+    unit, doubts = length_unit(parameters, markers)
     streams: Streams = {}
     if places:
         renamed = [(labels.name(names[point]) or names[point]) for point in places]
@@ -113,7 +112,7 @@ def point_streams(
         points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
         if points:
             named = [(names[at], plain[at]) for at in points]
-            part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels, file)
+            part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels)
             add_part(streams, kind.stream, part)
             findings += more
     return streams, unit, findings + doubts
@@ -162,13 +161,12 @@ def _model_part(
     kind: ModelOutput,
     parameters: C3DParameters,
     labels: LabelMap,
-    file: str,
 ) -> tuple[Part, list[Finding]]:
-    text = parameters.text("POINT", kind.units)
+    text, file = parameters.text("POINT", kind.units), parameters.file
     unit = parsed_unit(text) if text else kind.usual
     findings = []
     inner = inner_unit(unit) if unit else "1"
-    if unit is None or (kind.quantity in _INNER and inner.removesuffix("/kg") != _INNER[kind.quantity]):
+    if unit is None or (kind.quantity != "signal" and inner.removesuffix("/kg") != inner_unit(kind.usual)):
         what = f"POINT:{kind.units} is {text!r}, which is not a unit of {kind.group.lower()}; "
         what += "the numbers are kept without a unit"
         findings.append(Finding("warning", "unit", file, what, f"the {kind.group.lower()}; correct the parameter"))
@@ -229,7 +227,7 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
     names = [without_prefix(label) for label in parameters.texts("ROTATION", "LABELS")[:used]]
     names += [f"segment_{number}" for number in range(len(names) + 1, used + 1)]
     rate_hz = parameters.number("ROTATION", "RATE") or ratio * (parameters.number("POINT", "RATE") or header.rate_hz)
-    unit, _ = length_unit(parameters, poses[:, :, :3, 3].reshape(frames, -1), header.file)
+    unit, _ = length_unit(parameters, poses[:, :, :3, 3].reshape(frames, -1))
     columns, channels = [], []
     for place, name in enumerate(re.sub(r"(?i)_4x4$", "", name) for name in names):
         columns += [convert(poses[:, place, :3, 3], unit, "m"), poses[:, place, :3, :3].reshape(frames, 9)]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, folded_label, hint_nearest, side_of, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.recording import Finding, Recording, Source, Trial
-from gaitdisc.units import convert, inner_unit, known_units, parsed_unit
+from gaitdisc.units import convert, inner_unit, known_units, offset_words, parsed_unit
 
 # quantity -> units it may have inside; the first one is usual, the others are normalised by mass or by a maximum
 _UNITS_OF = {
@@ -27,6 +27,7 @@ _UNITS_OF = {
     "emg": ("V", "1", "%"),
 }
 _CLOCK = " @ "
+RATE_WORDS = {"/s": "speed", "/s2": "accel"}  # how OpenSim calls the derivatives of a coordinate
 SLOWEST_S = 0.2  # between samples: people make up to 2.5 steps a second, which fewer than 5 Hz cannot show (Nyquist)
 FEW = 50  # samples, of which fewer are no recording of a walk
 _STREAM = {
@@ -97,15 +98,24 @@ def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
     return alike[0] if len(alike) == 1 and folded_label(label) else None
 
 
+def read_label(label: str, channels: Mapping[str, str] | None) -> tuple[str, str | None, bool]:
+    """Name and unit of a column, by the study's `[channels]` or else by its label; whether the study names it."""
+    plain, unit = split_unit(label)
+    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    if not said:
+        return plain, unit, False
+    name, said_unit = split_unit(said)
+    return name, said_unit or unit, True
+
+
 def named_channel(name: str) -> Channel:
     """Channel of a name: that of the vocabulary, or one whose quantity the name shows.
 
     >>> named_channel("emg_gracilis_r").quantity, named_channel("RHEE.x").quantity, named_channel("trigger").quantity
     ('emg', 'marker', 'signal')
     """
-    known = next((channel for channel in vocabulary().channels if channel.name == name), None)
-    if known:
-        return known
+    if name in vocabulary().by_name:
+        return vocabulary().by_name[name]
     if name.startswith("emg_"):
         return Channel(name, "emg", "V", side_of(name))
     if re.fullmatch(r".+\.[xyz]", name):
@@ -138,13 +148,13 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
     if unit is None:
         raise UnitError(
             f"{file}: the unit of column {label!r} must be in the list of units",
-            f"found {unit_text!r}" + hint_nearest(base, known_units()),
+            f"found {unit_text!r}" + (offset_words(base) or hint_nearest(base, known_units())),
             f"Use one of: {', '.join(known_units())}.",
         )
     inner = inner_unit(unit)
     allowed = _UNITS_OF.get(channel.quantity)
     if rate and channel.quantity != "signal":
-        channel = replace(channel, name=f"{channel.name}{'/accel' if rate == '/s2' else '/speed'}", quantity="signal")
+        channel = replace(channel, name=f"{channel.name}/{RATE_WORDS[rate]}", quantity="signal")
         allowed = None
     if allowed and inner not in allowed:
         kind = "EMG" if channel.quantity == "emg" else channel.quantity.replace("_", " ")
@@ -160,13 +170,11 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
 
 def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
     """Column of a label, by the study's `[channels]` or the vocabulary."""
-    plain, unit = split_unit(label)
-    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    plain = split_unit(label)[0]
+    name, unit, said = read_label(label, channels)
     alias = None if said else vocabulary().named(plain)
-    name, said_unit = split_unit(said) if said else (plain, None)
-    channel, unit = named_channel(name), said_unit or unit
-    own = any(name == known.name for known in vocabulary().channels)
-    if unit is None and not own:
+    channel = alias or named_channel(name)
+    if unit is None and name not in vocabulary().by_name:
         seems = f"; it seems to be {alias.name}" if alias else ""
         raise UnitError(
             f"{file}: column {label!r} must have a unit",
@@ -174,7 +182,7 @@ def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Colu
             f'Write \'{plain} [unit]\' in the header, or "{plain}" = "{alias.name if alias else "name"} [unit]" '
             "in the study's [channels].",
         )
-    return column_in_unit(label, alias or channel, unit or channel.unit, file)
+    return column_in_unit(label, channel, unit or channel.unit, file)
 
 
 def stream_of(channel: Channel) -> str:

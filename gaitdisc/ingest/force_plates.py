@@ -106,7 +106,7 @@ def centre_of_pressure(force: NDArray[np.float64], moment: NDArray[np.float64]) 
 
 
 def force_plates(
-    parameters: C3DParameters, channels: int, length_unit: str, file: str, unscaled: frozenset[int] = frozenset()
+    parameters: C3DParameters, channels: int, length_unit: str, unscaled: frozenset[int] = frozenset()
 ) -> tuple[list[ForcePlate], list[Finding]]:
     """Plates that the group FORCE_PLATFORM describes, and why others cannot be used.
 
@@ -121,7 +121,7 @@ def force_plates(
     corners = _last_axis(parameters.numbers("FORCE_PLATFORM", "CORNERS"), 2)
     origins = _last_axis(parameters.numbers("FORCE_PLATFORM", "ORIGIN"), 1)
     matrices = _last_axis(parameters.numbers("FORCE_PLATFORM", "CAL_MATRIX"), 2)
-    plates, findings = [], []
+    plates, findings, file = [], [], parameters.file
     for place in range(min(used, 64)):
         kind = int(kinds[place]) if place < len(kinds) and np.isfinite(kinds[place]) else 0
         wanted = _CHANNELS_OF_TYPE.get(kind, 0)
@@ -155,10 +155,10 @@ def force_plates(
         if why:
             what = f"force plate {place + 1} {why}; its channels remain signals"
             findings.append(Finding("warning", "force plate", file, what, "its ground forces; correct FORCE_PLATFORM"))
-    return plates, findings or _undescribed(parameters, used, max(len(kinds), len(columns), len(corners)), file)
+    return plates, findings or _undescribed(parameters, used, max(len(kinds), len(columns), len(corners)))
 
 
-def _undescribed(parameters: C3DParameters, used: int, described: int, file: str) -> list[Finding]:
+def _undescribed(parameters: C3DParameters, used: int, described: int) -> list[Finding]:
     """Say where a file holds more plates than FORCE_PLATFORM:USED counts: one wrong bit drops all of their forces."""
     named = zip(parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS"), strict=False)
     forces = [label for label, unit in named if unit.strip() == "N" and re.search(r"(?i)f[-_. ]?[xyz]", label)]
@@ -168,11 +168,12 @@ def _undescribed(parameters: C3DParameters, used: int, described: int, file: str
         what = f"no force plate is described, but {len(forces)} channels are forces in N, such as {forces[0].strip()!r}"
     else:
         return []
-    return [Finding("warning", "force plate", file, what, "the excluded ground forces; correct FORCE_PLATFORM")]
+    spoils = "the excluded ground forces; correct FORCE_PLATFORM"
+    return [Finding("warning", "force plate", parameters.file, what, spoils)]
 
 
 def plate_streams(
-    rows: NDArray[np.float64], plates: list[ForcePlate], parameters: C3DParameters, length_unit: str, file: str
+    rows: NDArray[np.float64], plates: list[ForcePlate], parameters: C3DParameters, length_unit: str
 ) -> tuple[Streams, set[int], list[Finding]]:
     """Stream `forces` of the plates: ground on foot, vertical positive up.
 
@@ -185,13 +186,13 @@ def plate_streams(
     rows (sample, channel): analog channels in the file's units
     """
     findings: list[Finding] = []
-    wrenches, measured = [], []
+    wrenches, measured, file = [], [], parameters.file
     for plate in plates:
-        units, doubts = _units(plate, parameters, length_unit, file)
+        units, doubts = _units(plate, parameters, length_unit)
         findings += doubts
         if not units:
             continue
-        values, doubts = _zeroed(rows[:, list(plate.columns)], units, plate, parameters, file)
+        values, doubts = _zeroed(rows[:, list(plate.columns)], units, plate, parameters)
         findings += doubts
         placed, doubts = _with_origin(plate, values, units, file)
         findings += doubts
@@ -236,15 +237,13 @@ def _last_axis(numbers: NDArray[np.float64], inner: int) -> list[NDArray[np.floa
     return [numbers[..., place] for place in range(numbers.shape[-1])] if numbers.ndim == inner + 1 else []
 
 
-def _units(
-    plate: ForcePlate, parameters: C3DParameters, length_unit: str, file: str
-) -> tuple[tuple[str, ...], list[Finding]]:
+def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tuple[tuple[str, ...], list[Finding]]:
     moment = {"m": "N m", "cm": "N cm", "mm": "N mm"}[length_unit]
     usual = {1: ("N",) * 3 + (length_unit,) * 2 + (moment,), 3: ("N",) * 8}.get(plate.kind, ("N",) * 3 + (moment,) * 3)
     if plate.kind == 4:
         return usual, []
     texts = [*parameters.texts("ANALOG", "UNITS"), *[""] * (max(plate.columns) + 1)]
-    found = []
+    found, file = [], parameters.file
     for column, expected in zip(plate.columns, usual, strict=True):
         text = texts[column].strip()
         unit = parsed_unit(text) if text else expected
@@ -260,7 +259,7 @@ def _units(
 
 
 def _zeroed(
-    values: NDArray[np.float64], units: tuple[str, ...], plate: ForcePlate, parameters: C3DParameters, file: str
+    values: NDArray[np.float64], units: tuple[str, ...], plate: ForcePlate, parameters: C3DParameters
 ) -> tuple[NDArray[np.float64], list[Finding]]:
     """Channels of a plate without their mean over FORCE_PLATFORM:ZERO, unless the plate was loaded then."""
     span = parameters.numbers("FORCE_PLATFORM", "ZERO").ravel()[:2]
@@ -271,7 +270,8 @@ def _zeroed(
     load = float(np.abs(plate.wrench(offset[None], units)[0][0, 2]))
     if load > CLEAR_LOAD_N:
         what = f"force plate {plate.number} carries {load:.0f} N in samples {first + 1} to {last}, its zero level"
-        return values, [Finding("note", "plate zero", file, what, "the offset of the plate, which is not removed")]
+        spoils = "the offset of the plate, which is not removed"
+        return values, [Finding("note", "plate zero", parameters.file, what, spoils)]
     return values - offset, []
 
 
@@ -308,8 +308,8 @@ def _exchanged(measured: Sequence[tuple[ForcePlate, NDArray[np.float64], tuple[s
         if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
             what = (
                 f"force plates {one.number} and {other.number} are exchanged: the centre of pressure is outside each "
+                f"in {astray:.0%} of the loaded samples, but inside once their channels are exchanged"
             )
-            what += f"in {astray:.0%} of the loaded samples, but inside once their channels are exchanged"
             spoils = "the assignment of feet to plates, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))
     return findings

@@ -31,18 +31,8 @@ from gaitdisc.ingest.people_table import (
     walk_word,
 )
 from gaitdisc.ingest.reading import ENDINGS, read_trial
-from gaitdisc.ingest.study import (
-    ANGLES,
-    FUNCTIONAL,
-    OUTPUTS,
-    STATIC,
-    UNKNOWN,
-    Conditions,
-    Models,
-    Participant,
-    PlannedTrial,
-    Study,
-)
+from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, Models
 from gaitdisc.recording import Recording, Trial
 
 if TYPE_CHECKING:
@@ -366,9 +356,8 @@ def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
     angles = tuple(name for name in ANGLES if name in shared) or tuple(shared)
     absent = [name for name in ANGLES if name not in shared]
     _note(notes, "excluded because some trials lack them; they vary: ", absent)
-    known = {channel.name for channel in vocabulary().channels}
     more = [name for name in shared if name not in angles]
-    named = [name for name in more if name in known]
+    named = [name for name in more if name in vocabulary().by_name]
     others = [f"{len(more) - len(named)} from the files"] if len(more) > len(named) else []
     _note(notes, "not used by the response models; add them to angles if you need them: ", [*named, *others])
     if not angles:
@@ -394,7 +383,7 @@ def _shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...
     if len(streams) < len(found):
         notes.append(f"only {len(streams)} of {len(found)} trials have EMG, so it is not among the inputs")
         return ()
-    known = {channel.name for channel in vocabulary().channels}
+    known = vocabulary().by_name
     shared = tuple(n for n in streams[0] if all(n in other for other in streams) and n in known)
     notes.append(f"EMG among the inputs: {', '.join(shared) or 'none with a known name; map the labels in [channels]'}")
     return shared

@@ -14,7 +14,7 @@ from typing import Literal
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.recording.trial import LENGTHS_M, MASS_KG
+from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG
 from gaitdisc.spreadsheet import unquoted
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")
@@ -27,7 +27,6 @@ _LABELS = {
     "height": "heightm height heightcm heightmm stature staturem staturecm staturemm bodyheight",
     "age": "age ageyears ageyear ageyr ageyrs agey age_in_years age_in_y age_in_yr",
 }
-AGE_YEARS = (1, 120)
 Sex = Literal["", "f", "m"]
 _MISSING = ("", "n/a", "na", "nan", "none", "null", "-", "unknown")
 _SEX: dict[str, Sex] = {
@@ -129,7 +128,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
 def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) -> Measured:
     """What all rows of a person say; where two differ nothing is taken."""
     values: dict[str, float | str | None] = {}
-    for name, empty in (("mass_kg", None), ("height_m", None), ("sex", ""), ("age_years", None)):
+    for name, empty in vars(Measured()).items():
         said = list(dict.fromkeys(getattr(one, name) for one in rows if getattr(one, name) != empty))
         values[name] = said[0] if len(said) == 1 else empty
         if len(said) > 1:

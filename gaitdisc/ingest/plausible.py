@@ -109,7 +109,6 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
 
     returns findings: one for each channel or marker, with its first such stretch
     """
-    words = {channel.name for channel in vocabulary().channels}
     kept: dict[str, Recording] = {}
     findings: list[Finding] = []
     for key, recording in streams.items():
@@ -118,7 +117,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
         for place, channel in enumerate(recording.channels):
             if channel.quantity == "marker" or key == "forces":
                 groups.setdefault(re.sub("[._][^._]*$", "", channel.name), []).append(place)
-            elif channel.name in words and channel.quantity in JOINTS and LEGS.match(channel.name):
+            elif channel.name in vocabulary().by_name and channel.quantity in JOINTS and LEGS.match(channel.name):
                 groups[channel.name] = [place]
         for columns in map(np.array, groups.values()):
             load = [int(at) for at in columns if recording.channels[at].quantity == "vertical_force"]

@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
-from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import MEASURES, Participant, PlannedTrial, Study
 from gaitdisc.recording import Finding, Recording, Trial
 
 Result = TypeVar("Result")
@@ -158,7 +158,7 @@ def public_settings(study: Study, include: set[str] | None = None) -> dict[str, 
     elif settings.get("kinematics", {}).get("marker_set", "").endswith(".toml"):
         settings["kinematics"]["marker_set"] = "a file of the laboratory"
     for participant in settings.get("participants", ()):
-        for measured in ("mass_kg", "height_m", "sex", "age_years"):  # of the person, and no setting
+        for measured in MEASURES:  # of the person, and no setting
             del participant[measured]
         for trial in participant["trials"]:
             trial["files"] = len(trial["files"])

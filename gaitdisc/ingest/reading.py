@@ -186,7 +186,6 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
     first, second = one.source, other.source
     names, readers = f"{first.file} + {second.file}", f"{first.reader} + {second.reader}"
     source = Source(names, f"{first.sha256}+{second.sha256}", readers)
-    assert one.suspect is not None and other.suspect is not None  # set by Recording
     return Recording(
         one.time,
         np.hstack([one.values, other.values]),

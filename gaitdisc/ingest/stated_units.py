@@ -25,7 +25,7 @@ MOMENT_NM = (0.4, 6.0)  # peak of hip, knee and ankle in N m/kg; a child of 15 k
 STANCE_S = (0.15, 3.0)  # a plate is loaded for as long as a step lasts; drift is longer, noise shorter
 SHARE = 0.5  # of the peak: above it while loaded
 EMPTY = 0.1  # of the peak: below it while the foot swings
-_LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
+LEG_MOMENT = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 
 
 def plausible_unit(
@@ -136,7 +136,7 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
             continue
         recording = streams[key]
         meant = [c.name for c in recording.channels if (c.quantity, c.unit) == (quantity, unit)]
-        meant = [name for name in meant if key == "forces" or _LEG.fullmatch(name)]
+        meant = [name for name in meant if key == "forces" or LEG_MOMENT.fullmatch(name)]
         sizes = {name: np.abs(recording[name][np.isfinite(recording[name])]) for name in meant}
         peaks = {name: float(np.quantile(size, 0.999)) if size.size else 0.0 for name, size in sizes.items()}
         most = max(peaks, key=lambda name: peaks[name], default="")

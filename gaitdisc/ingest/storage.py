@@ -26,11 +26,12 @@ from gaitdisc.channel import (
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells
 from gaitdisc.ingest.columns import (
+    RATE_WORDS,
     Column,
     check_written_names,
     column_in_unit,
-    mapped_label,
     named_channel,
+    read_label,
     sorted_trial,
     split_unit,
 )
@@ -53,7 +54,6 @@ _RATES = {
 }
 # What OpenSim's analyses write of muscles under the names of the muscles, which elsewhere are those of EMG
 _OF_ACTUATORS = {"actuation_force": "N", "actuation_power": "W", "forcereporter": "N"}
-_RATE_WORD = {"/s": "speed", "/s2": "accel"}
 
 
 def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) -> Trial:
@@ -99,7 +99,6 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
     path = Path(path)
     check_written_names(recording.names, path.name)
     angles = any(channel.quantity in ("angle", "translation") for channel in recording.channels)
-    known = {channel.name: channel for channel in vocabulary().channels}
     header = [
         "Coordinates" if angles else "gaitdisc",
         "version=1",
@@ -109,7 +108,7 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
         *(
             f"column {number}={channel.quantity} [{channel.unit}] {channel.side}".rstrip()
             for number, channel in enumerate(recording.channels, 1)
-            if known.get(channel.name) != channel or channel.quantity == "emg"
+            if vocabulary().by_name.get(channel.name) != channel or channel.quantity == "emg"
         ),
         "endheader",
         "\t".join(["time", *recording.names]),
@@ -239,17 +238,16 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     of_emg = "emg" in words or "electromyo" in words or muscles > len(known) / 2
     columns = []
     for number, label in enumerate(header.labels[1:], 1):
-        plain, unit = split_unit(label)
-        said = mapped_label(label, channels) or mapped_label(plain, channels)
-        if said:
-            column = _mapped(label, said, unit, header.title, file)
+        name, unit, is_mapped = read_label(label, channels)
+        if is_mapped:
+            column = _mapped(label, name, unit, header.title, file)
         elif number in header.own:
             quantity, own_unit, side = header.own[number]
             # the label is the name to the letter here, brackets and all: the header states the unit
             channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(label)
             column = column_in_unit(label, channel, own_unit, file)
         else:
-            column = _known(label, plain, header.title, of_emg)
+            column = _known(label, name, header.title, of_emg)
             column = column_in_unit(label, column.channel, unit, file) if unit else column
         columns.append(column)
     return columns
@@ -272,10 +270,9 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     return findings
 
 
-def _mapped(label: str, said: str, unit: str | None, title: str, file: str) -> Column:
+def _mapped(label: str, name: str, unit: str | None, title: str, file: str) -> Column:
     """Column as the study's `[channels]` has it."""
-    name, said_unit = split_unit(said)
-    channel, unit = named_channel(name), said_unit or unit
+    channel = named_channel(name)
     if channel.quantity == "emg" and unit is None:
         return Column(label, replace(channel, unit="1"), "1")
     if channel.quantity != "signal" or unit:
@@ -286,10 +283,10 @@ def _mapped(label: str, said: str, unit: str | None, title: str, file: str) -> C
 def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
     last = path_label(plain)
     stem, _, kind = last.partition("/")
-    rate = {"speed": "/s", "accel": "/s2"}.get(kind) or _RATES.get(title.lower(), "")
+    rate = next((unit for unit, word in RATE_WORDS.items() if word == kind), _RATES.get(title.lower(), ""))
     channel = vocabulary().named(stem if kind else plain)
     if channel and rate and channel.quantity in ("angle", "translation"):
-        name = f"{channel.name}/{_RATE_WORD[rate]}"
+        name = f"{channel.name}/{RATE_WORDS[rate]}"
         return Column(label, Channel(name, "signal", channel.unit + rate, channel.side), channel.unit + rate)
     if channel and channel.quantity == "emg":
         unit = _OF_ACTUATORS.get(title.lower())

@@ -2,42 +2,43 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.study_rules import (
+from gaitdisc.ingest.study_settings import (
+    Filters,
+    HeldOut,
+    Kinematics,
+    Models,
+    Positive,
+    Quality,
+    StrideRules,
+    StudyPart,
+    Treadmill,
+    Word,
     check_channels,
-    check_conditions,
-    check_participants,
-    check_sessions,
     check_variables,
     refuse,
 )
+from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG
 
+MEASURES = ("mass_kg", "height_m", "sex", "age_years")  # of a person, in tables of people too
 UNKNOWN = "unknown"  # condition of a trial that is listed but not used
 STATIC = "static"  # condition of a trial in which the person stands
 FUNCTIONAL = "functional"  # condition of a trial in which the legs are circled about the hips
-ANGLES = tuple(
-    f"{angle}_{side}"
-    for side in "rl"
-    for angle in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
-)
-OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
+_DATE = re.compile(r"(?<!\d)(?:\d{1,4}[-_./ ]\d{1,2}[-_./ ]\d{1,4}|\d{6}|\d{8}|(?:19|20)\d{2})(?!\d)")
 
-Positive = Annotated[float, Field(gt=0)]
-Word = Annotated[str, Field(min_length=1, max_length=40)]
 FileName = Annotated[str, Field(min_length=1)]
 Pseudonym = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,16}$")]
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-class Conditions(_Part):
+class Conditions(StudyPart):
     """The conditions, in the laboratory's own words."""
 
     nominal: Word = Field(
@@ -69,7 +70,7 @@ class Conditions(_Part):
         return self.nominal, self.device
 
 
-class PlannedTrial(_Part):
+class PlannedTrial(StudyPart):
     """One walk: the files that hold it, and what the files do not say."""
 
     condition: Word = Field(
@@ -93,7 +94,7 @@ class PlannedTrial(_Part):
         return self
 
 
-class Participant(_Part):
+class Participant(StudyPart):
     """A person, known by a pseudonym only."""
 
     id: Pseudonym = Field(description="pseudonym: letters, digits, _ and -, at most 16")
@@ -103,16 +104,16 @@ class Participant(_Part):
     group: Annotated[str, Field(max_length=40)] = Field(
         default="", description="group of this person, such as control; empty if there are none"
     )
-    mass_kg: Annotated[float, Field(ge=5, le=300)] | None = Field(
+    mass_kg: Annotated[float, Field(ge=MASS_KG[0], le=MASS_KG[1])] | None = Field(
         default=None, description="body mass [kg], if the C3D files state none or a wrong one"
     )
-    height_m: Annotated[float, Field(ge=0.4, le=2.5)] | None = Field(
+    height_m: Annotated[float, Field(ge=LENGTHS_M["height_m"][0], le=LENGTHS_M["height_m"][1])] | None = Field(
         default=None, description="stature [m], if the C3D files state none or a wrong one"
     )
     sex: Literal["", "f", "m"] = Field(
         default="", description="f or m, for the inertia of the segments; if empty, the mean of both"
     )
-    age_years: Annotated[int, Field(ge=1, le=120)] | None = Field(
+    age_years: Annotated[int, Field(ge=AGE_YEARS[0], le=AGE_YEARS[1])] | None = Field(
         default=None, description="age in whole years, to choose controls of similar age; never a date of birth"
     )
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
@@ -133,113 +134,7 @@ class Participant(_Part):
         return " ".join(part for part in (self.id, planned.session or "", planned.condition, number) if part)
 
 
-class Treadmill(_Part):
-    """The belt, where strides are found from markers."""
-
-    speed_m_per_s: Annotated[float, Field(ge=0)] = Field(description="belt speed [m/s]")
-    direction: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(
-        default="+x", description="direction of walking, in the laboratory's axes"
-    )
-
-
-class Filters(_Part):
-    """Filters; the defaults are those of section 4.2.1."""
-
-    kinematics_hz: Positive = Field(default=6.0, description="low-pass of the joint angles [Hz]")
-    emg_highpass_hz: Positive = Field(default=40.0, description="high-pass of the EMG before it is rectified [Hz]")
-    emg_lowpass_hz: Positive = Field(default=10.0, description="low-pass of the rectified EMG [Hz]")
-    order: Literal[2, 4, 6, 8] = Field(
-        default=4, description="order of one pass of the Butterworth filters, which run forwards and backwards"
-    )
-    gap_s: Annotated[float, Field(ge=0)] = Field(default=0.1, description="longest gap that is filled [s]")
-
-
-class Kinematics(_Part):
-    """Where joint angles come from."""
-
-    angles: Literal["file", "markers"] | None = Field(
-        default=None,
-        description="file: as in the file; markers: computed; by default as in the file, if it has any",
-    )
-    marker_set: str = Field(
-        default="",
-        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; default: by labels",
-    )
-    hip: Literal["davis", "harrington"] | None = Field(
-        default=None, description="hip joint centre: davis or harrington; by default as in the marker set"
-    )
-    joints: Literal["free", "held", "planar"] | None = Field(
-        default=None, description="free, held or planar; by default as in the marker set"
-    )
-
-
-class StrideRules(_Part):
-    """How strides are cut."""
-
-    detector: Literal["auto", "force", "markers", "angles", "events"] = Field(
-        default="auto", description="detector of initial contact: auto, force, markers, angles or events"
-    )
-    side: Literal["r", "l"] = Field(default="r", description="the foot whose contacts begin the strides")
-    min_s: Positive = Field(default=0.4, description="shortest stride [s]")
-    max_s: Positive = Field(default=2.5, description="longest stride [s]")
-    ground: Literal["auto", "treadmill", "overground"] = Field(
-        default="auto", description="where people walk: auto (by the path of the pelvis), treadmill or overground"
-    )
-
-    @model_validator(mode="after")
-    def _check(self) -> StrideRules:
-        if self.min_s >= self.max_s:
-            found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
-            refuse(("min_s",), "be shorter than max_s", found, "Exchange or widen them.")
-        return self
-
-
-class Models(_Part):
-    """What the models see and predict; the defaults are those of section 4.2.2."""
-
-    angles: tuple[Word, ...] = Field(default=ANGLES, min_length=1, description="joint angles among the inputs")
-    emg: tuple[Word, ...] = Field(default=(), description="EMG among the inputs")
-    outputs: tuple[Word, ...] = Field(
-        default=OUTPUTS, min_length=1, description="variables whose second derivative is predicted"
-    )
-    seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of all random numbers")
-
-
-class HeldOut(_Part):
-    """The last part of each trial, which no model sees: 30 of 240 s in section 4.2.2."""
-
-    share: Annotated[float, Field(gt=0, lt=1)] | None = Field(
-        default=0.125, description="fraction of the trial, its last part"
-    )
-    seconds: Positive | None = Field(default=None, description="or its length [s]; write one of the two")
-
-    @model_validator(mode="after")
-    def _check(self) -> HeldOut:
-        both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
-        if both or (self.seconds is None and self.share is None):
-            refuse(("seconds",), "replace 'share'", "both are there" if both else "none is", "Write one.")
-        return self
-
-    def length_s(self, duration_s: float) -> float:
-        """Return the length of the held-out part of a trial that lasts `duration_s` [s]."""
-        return self.seconds if self.seconds is not None else (self.share or 0.0) * duration_s
-
-
-class Quality(_Part):
-    """What a trial must have to be used."""
-
-    min_strides: Annotated[int, Field(ge=1)] = Field(
-        default=10, description="fewest complete strides of a walk on a treadmill, or of one that models are fitted to"
-    )
-    min_cycles: Annotated[int, Field(ge=1)] = Field(
-        default=1, description="fewest cycles over ground, pooled over the trials of a person, session and condition"
-    )
-    late_change: Literal["refuse", "report"] = Field(
-        default="refuse", description="how to treat a trial whose gait changes late: refuse or report"
-    )
-
-
-class Study(_Part):
+class Study(StudyPart):
     """A study; frozen, with every default of the dissertation.
 
     >>> study = Study(conditions=Conditions(nominal="natural", device="exo"), participants=(Participant(id="P01"),))
@@ -271,9 +166,9 @@ class Study(_Part):
 
     @model_validator(mode="after")
     def _check(self) -> Study:
-        check_conditions(self.conditions, UNKNOWN)
+        check_conditions(self.conditions)
         check_sessions(self)
-        check_participants(self, (UNKNOWN, STATIC, FUNCTIONAL))
+        check_participants(self)
         check_channels(self.channels)
         check_variables(self.models, self.channels)
         return self
@@ -340,3 +235,54 @@ class Study(_Part):
                 f"{len(missing)} missing: {', '.join(missing)}",
                 "Correct the names in [[participants.trials]], or copy the files there.",
             )
+
+
+def check_conditions(conditions: Conditions) -> None:
+    """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition."""
+    words = conditions.words
+    if len(set(words)) < len(words) or UNKNOWN in words:
+        found = f"found {' and '.join(map(repr, words))}"
+        needed = "be two different words" if len(words) == 2 else "be different words"
+        name = "Name the two conditions." if len(words) == 2 else "Name each condition once."
+        refuse(("conditions",), f"{needed}, neither of them {UNKNOWN!r}", found, name)
+    if conditions.unnamed is not None and conditions.unnamed not in words:
+        found = f"found {conditions.unnamed!r}"
+        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Write one of them.")
+
+
+def check_sessions(study: Study) -> None:
+    """Refuse sessions that are dates or stand twice, and trials of a session that the study does not list."""
+    for i, word in enumerate(study.sessions):
+        if _DATE.search(word):
+            remedy = 'Write words in the order of the dates, such as sessions = ["before", "after"].'
+            refuse(("sessions", i), "not be a date, because a date can identify a person", f"found {word!r}", remedy)
+        if study.sessions.index(word) != i:
+            refuse(("sessions", i), "list each session once", f"{word!r} occurs twice", "Remove one.")
+    for i, participant in enumerate(study.participants):
+        for j, trial in enumerate(participant.trials):
+            if trial.session is not None and trial.session not in study.sessions:
+                remedy = did_you_mean(trial.session, study.sessions, f"Add it: sessions = [{trial.session!r}].")
+                listed = ", ".join(map(repr, study.sessions)) or "none"
+                place = ("participants", i, "trials", j, "session")
+                refuse(place, f"be a session that the study lists ({listed})", f"found {trial.session!r}", remedy)
+
+
+def check_participants(study: Study) -> None:
+    """Refuse conditions that no trial can have, pseudonyms that occur twice, and names that no file can have."""
+    words = study.conditions.words
+    known = (*words, UNKNOWN, STATIC, FUNCTIONAL)
+    ids = Counter(each.id.lower() for each in study.participants)
+    for i, participant in enumerate(study.participants):
+        if ids[participant.id.lower()] > 1:
+            found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
+            place = ("participants", i, "id")
+            refuse(place, "be used for one person only", found, "List all trials under one pseudonym.")
+        for j, trial in enumerate(participant.trials):
+            if trial.condition not in known:
+                remedy = did_you_mean(trial.condition, known, f"Use one of them, or {UNKNOWN!r}.")
+                place = ("participants", i, "trials", j, "condition")
+                refuse(place, " or ".join(map(repr, words)), f"found {trial.condition!r}", remedy)
+            for k, file in enumerate(trial.files):
+                if "\0" in file:
+                    place = ("participants", i, "trials", j, "files", k)
+                    refuse(place, "be a name without a NUL character", f"found {file!r}", "Correct the name.")

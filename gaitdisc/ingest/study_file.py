@@ -12,10 +12,11 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Kinematics, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import FUNCTIONAL, MEASURES, STATIC, UNKNOWN, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_settings import Kinematics
 from gaitdisc.toml_text import parsed_toml, quoted
 from gaitdisc.whole_file import write_whole
 
@@ -42,21 +43,22 @@ _TOP = """\
 # A study of gaitdisc. Every setting stands here with its default; paths are relative to this file.
 # Participants have pseudonyms only; whoever keeps the key keeps it elsewhere.
 """
-MEASURES = ("mass_kg", "height_m", "sex", "age_years", "group")
-_KINDS = {
+_KINDS = {  # kind of a finding of pydantic, or how it begins -> what a value must, and what to do
+    "finite_number": ("be a finite number", "Write a number."),
+    "too_short": ("not be empty", "Fill it in, or remove the key."),
+    "too_long": ("have fewer entries", "Remove some."),
+    "string_pattern": (
+        "be a pseudonym: letters, digits, _ and -, at most 16",
+        "Use for example P01, and keep names out of the study.",
+    ),
+    "string_too_short": ("not be empty", "Fill it in, or remove the key."),
+    "string_too_long": ("be shorter", "Use at most 40 characters."),
     "float": ("be a number", "Write it without quotes, for example 6.0."),
     "int": ("be a whole number", "Write it without quotes and without a point, for example 4."),
     "string": ("be text", 'Write it in quotes: "...".'),
     "tuple": ("be a list", "Write it in brackets: [...]."),
     "model": ("be a table", "Write its keys under a header in brackets."),
     "dict": ("be a table", "Write its keys under a header in brackets."),
-}
-_OTHERS = {
-    "finite_number": ("be a finite number", "Write a number."),
-    "too_short": ("not be empty", "Fill it in, or remove the key."),
-    "too_long": ("have fewer entries", "Remove some."),
-    "string_too_short": ("not be empty", "Fill it in, or remove the key."),
-    "string_too_long": ("be shorter", "Use at most 40 characters."),
 }
 _LIMITS = {
     "greater_than": ("above", "gt"),
@@ -123,7 +125,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
         parts.append(f"# {about}\n[{key}]\n{pairs}")
     explained = False  # each key is explained where it stands first
     for participant in study.participants:
-        measured = tuple(name for name in ("mass_kg", "height_m", "sex", "age_years") if getattr(participant, name))
+        measured = tuple(name for name in MEASURES if getattr(participant, name))
         text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), explained)}"
         for trial in participant.trials:
             files = tuple(_moved(file, study.folder, folder) for file in trial.files)
@@ -165,11 +167,6 @@ def _moved(file: str, old: Path, new: Path | None) -> str:
     if new is None or Path(file).is_absolute() or old.resolve() == new.resolve():
         return file
     return Path(os.path.relpath((old / file).resolve(), new.resolve())).as_posix()
-
-
-def study_schema() -> Mapping[str, Any]:
-    """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`."""
-    return Study.model_json_schema()
 
 
 def grown_study(study: Study, draft: Study) -> Study:
@@ -218,7 +215,7 @@ def _grown(person: Participant, drafted: Participant, new: list[PlannedTrial], s
         held = {_place(study, file) for file in trials[place].files}
         more = tuple(file for where, file in files.items() if where not in held)
         trials[place] = trials[place].model_copy(update={"files": (*trials[place].files, *more)})
-    measures = {name: getattr(person, name) or getattr(drafted, name) for name in MEASURES}
+    measures = {name: getattr(person, name) or getattr(drafted, name) for name in (*MEASURES, "group")}
     return person.model_copy(update={"trials": tuple(trials), **measures})
 
 
@@ -252,9 +249,8 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
     if kind == "extra_forbidden":
         owner = _part(place[:-1], model)
         keys = list(owner.model_fields) if owner else []
-        nearest = nearest_word(str(place[-1]), keys)
         needed = f"the keys of {_table(place[:-1])} must be among {', '.join(keys)}"
-        return (needed, f"{place[-1]!r} is unknown", f"Did you mean {nearest!r}?" if nearest else "Remove it.")
+        return needed, f"{place[-1]!r} is unknown", did_you_mean(str(place[-1]), keys, "Remove it.")
     if kind == "missing" and isinstance(place[-1], int):
         return f"{_named(place[:-1])} must have at least {place[-1] + 1} entries", f"found {place[-1]}", "Add one."
     if kind == "missing":
@@ -271,22 +267,14 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
 
 def _wanted(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str, str]:
     """What a value must be, and what to do about it."""
-    wanted, remedy = "", "Correct it."
     if kind in _LIMITS:
         word, key = _LIMITS[kind]
-        wanted, remedy = f"be {word} {context[key]:g}", "Correct the number."
-    elif kind == "literal_error":
+        return f"be {word} {context[key]:g}", "Correct the number."
+    if kind == "literal_error":
         words = str(context["expected"])
-        nearest = nearest_word(str(given), [word.strip(" '") for word in words.replace(" or ", ",").split(",")])
-        wanted, remedy = f"be one of {words}", f"Did you mean {nearest!r}?" if nearest else "Choose one of them."
-    elif kind == "string_pattern_mismatch":
-        wanted = "be a pseudonym: letters, digits, _ and -, at most 16"
-        remedy = "Use for example P01, and keep names out of the study."
-    elif kind in _OTHERS:
-        wanted, remedy = _OTHERS[kind]
-    else:
-        wanted, remedy = next((words for key, words in _KINDS.items() if kind.startswith(key)), (wanted, remedy))
-    return wanted, remedy
+        listed = [word.strip(" '") for word in words.replace(" or ", ",").split(",")]
+        return f"be one of {words}", did_you_mean(str(given), listed, "Choose one of them.")
+    return next((words for key, words in _KINDS.items() if kind.startswith(key)), ("", "Correct it."))
 
 
 def _named(place: Place) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Cells, Form, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import Column, check_written_names, column_of, mapped_label, sorted_trial, split_unit
+from gaitdisc.ingest.columns import Column, check_written_names, column_of, read_label, sorted_trial, split_unit
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
 from gaitdisc.recording import Finding, Recording, Source, Trial
@@ -135,10 +135,7 @@ def write_table(recording: Recording, path: Path | str) -> Path:
 
 
 def _time_unit(label: str, channels: Mapping[str, str] | None = None) -> str | None:
-    plain, unit = split_unit(label)
-    said = mapped_label(label, channels) or mapped_label(plain, channels)
-    name, said_unit = split_unit(said) if said else (plain, None)
-    unit = said_unit or unit
+    name, unit, _ = read_label(label, channels)
     if name.lower() not in _TIME_UNIT:
         return None
     return _TIME_UNIT[name.lower()] if unit is None else unit if unit in ("s", "ms") else None

@@ -82,20 +82,19 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
-    request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects), alpha)
+    request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects), alpha, progress or LOG.info)
     if isinstance(model, Path | str) and names_engine(model):
-        return _of_engine(Path(model), data, request, progress or LOG.info)
+        return _of_engine(Path(model), data, request)
     simulation = model_of(model)
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
         files[Path(model)] = "simulation"
-    report = progress or LOG.info
     if isinstance(simulation, PythonSimulation) and simulation.manner:
-        report(simulation.manner)
-    return discovered(simulation, measured, request, files, report)
+        request.progress(simulation.manner)
+    return discovered(simulation, measured, request, files)
 
 
-def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str], None]) -> tuple[Discovery, Simulation]:
+def _of_engine(model: Path, data: Any, request: Request) -> tuple[Discovery, Simulation]:
     from gaitdisc.discovery.discover_engine import discover_engine, measured_of_file
     from gaitdisc.engines.tracked_mapping import read_tracked
 
@@ -109,14 +108,14 @@ def _of_engine(model: Path, data: Any, request: Request, report: Callable[[str],
             )
         from gaitdisc.discovery.discover_tracked import discover_tracked
 
-        answered = discover_tracked(walk, Path(data), request, report)
+        answered = discover_tracked(walk, Path(data), request)
         return answered.found, answered.augmented
 
     def read(mapping: Simulation) -> Measured:
         return measured_of_file(Path(data), mapping) if isinstance(data, Path | str) else _measured(data, mapping)[0]
 
     files = {Path(data): "measured table"} if isinstance(data, Path | str) else {}
-    answer = discover_engine(model, read, request, files, report)
+    answer = discover_engine(model, read, request, files)
     return answer.found, answer.augmented
 
 

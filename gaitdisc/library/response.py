@@ -7,7 +7,8 @@ from dataclasses import asdict, replace
 
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.public_words import public_settings
-from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
+from gaitdisc.ingest.study import Conditions, Participant, Study
+from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, HeldOut, Models
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.pooled_cycles import WALK
@@ -82,12 +83,8 @@ def fit_response(
     inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
     models = Models(angles=inputs, emg=several(emg), outputs=several(outputs), seed=seed)
     person = trials[WITH].subject or trials[WITHOUT].subject or "P01"
-    study = Study(
-        conditions=Conditions(nominal=WITHOUT, device=WITH),
-        models=models,
-        held_out=HeldOut(share=held_out_share),
-        participants=(Participant(id=person),),
-    )
+    conditions, held_out = Conditions(nominal=WITHOUT, device=WITH), HeldOut(share=held_out_share)
+    study = Study(conditions=conditions, models=models, held_out=held_out, participants=(Participant(id=person),))
     walks = {word: processed(trial, study) for word, trial in trials.items()}
     settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)
     response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null, banded=True)

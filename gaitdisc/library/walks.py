@@ -45,7 +45,7 @@ def recording_of(signal: Recording | Trial | pd.DataFrame, kind: Kind | None = N
             "Read a file with gaitdisc.read first, or put arrays into a DataFrame.",
         )
     columns = frame_columns(signal)
-    known = {} if kind else {channel.name: channel for channel in vocabulary().channels}
+    known = {} if kind else vocabulary().by_name
     channels = tuple(known.get(label) or Channel(label, *(kind or PLAIN)) for label in columns.labels)
     return Recording(columns.time, columns.values, channels)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
 from gaitdisc.ingest.study import Filters, Participant, PlannedTrial, Study
 from gaitdisc.processing.contact_choice import chosen_contacts
@@ -165,7 +165,7 @@ def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     recording = trial.stream(key)
     missing = [name for name in names if name not in recording.names]
     if missing:
-        nearest = vocabulary().nearest(missing[0], among=recording.names)
+        nearest = nearest_word(missing[0], recording.names)
         said = "".join(f"; excluded: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import hint_nearest
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding, Samples, Trajectory
 
@@ -77,9 +77,8 @@ def _check_outputs(trajectory: Trajectory, outputs: Sequence[str], walk: str) ->
         )
     for name in outputs:
         if name not in trajectory.names:
-            nearest = vocabulary().nearest(name, among=trajectory.names)
             raise ChannelError(
                 f"{name!r}, whose acceleration is predicted, must be among the channels",
-                f"{walk} has {len(trajectory.names)} channels" + (f", the nearest is {nearest!r}" if nearest else ""),
+                f"{walk} has {len(trajectory.names)} channels{hint_nearest(name, trajectory.names)}",
                 "Correct the study's outputs, or map the channel in [channels].",
             )

@@ -1,4 +1,4 @@
-"""Read-only arrays and mappings, means of those with gaps, runs of samples, how long numbers remember themselves."""
+"""Read-only arrays and mappings, means of those with gaps, robust spread, runs of samples, autocorrelation."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
+
+Values = NDArray[np.float64]
 
 
 def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
@@ -57,6 +59,11 @@ def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:
     count = known.sum(axis=0)
     total = np.where(known, values, 0.0).sum(axis=0)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def robust_sd(values: NDArray[np.float64]) -> float:
+    """Standard deviation by the median absolute deviation: that of normal numbers, whatever a few others are."""
+    return 1.4826 * float(np.median(np.abs(values - np.median(values))))
 
 
 def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:

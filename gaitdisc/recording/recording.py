@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import read_only
@@ -73,7 +73,7 @@ class Recording:
     subject: str = ""
     condition: str = ""
     source: Source = field(default_factory=Source)
-    suspect: NDArray[np.bool_] | None = None
+    suspect: NDArray[np.bool_] = None  # pyright: ignore[reportAssignmentType]  # never none once it is made
 
     def __post_init__(self) -> None:
         """Check shapes and the time base once; nothing below checks them again."""
@@ -145,7 +145,7 @@ class Recording:
             )
         if name not in self.names:
             axes = [own for own in self.names if own.rpartition(".")[0] == name]
-            nearest = None if axes else vocabulary().nearest(name, among=self.names)
+            nearest = None if axes else nearest_word(name, self.names)
             there = f"{', '.join(self.names[:SHOWN])}{', ...' * (len(self.names) > SHOWN)}" or "none"
             hint = f"the marker is {', '.join(axes)}" if axes else f"the nearest is {nearest!r}" if nearest else there
             raise ChannelError(
@@ -174,7 +174,7 @@ class Recording:
             self,
             values=self.values[:, columns],
             channels=tuple(self.channels[column] for column in columns),
-            suspect=self._suspect()[:, columns],
+            suspect=self.suspect[:, columns],
         )
 
     def selected_by(self, wanted: Callable[[Channel], bool]) -> Recording:
@@ -197,7 +197,7 @@ class Recording:
         """
         first, last = np.searchsorted(self.time, [start_s - 1e-9, end_s - 1e-9])
         rows = slice(int(first), int(last))
-        return replace(self, time=self.time[rows], values=self.values[rows], suspect=self._suspect()[rows])
+        return replace(self, time=self.time[rows], values=self.values[rows], suspect=self.suspect[rows])
 
     def with_values(self, values: NDArray[np.float64], suspect: NDArray[np.bool_] | None = None) -> Recording:
         """Recording with other values on the same time base and channels.
@@ -209,7 +209,7 @@ class Recording:
         suspect : ndarray of bool (time, channel), optional
             Marks that are added to the existing ones.
         """
-        marks = self._suspect() if suspect is None else self._suspect() | suspect
+        marks = self.suspect if suspect is None else self.suspect | suspect
         return replace(self, values=values, suspect=marks)
 
     def __repr__(self) -> str:
@@ -258,10 +258,6 @@ class Recording:
             dims=("time", "channel"),
             attrs={"subject": self.subject, "condition": self.condition},
         )
-
-    def _suspect(self) -> NDArray[np.bool_]:
-        assert self.suspect is not None  # set in __post_init__
-        return self.suspect
 
 
 def several(names: str | Sequence[str]) -> tuple[str, ...]:

@@ -179,9 +179,8 @@ def _of_table(table: Any) -> Recording:
             "Give one stream of a trial, for instance trial.stream('kinematics'), or rename the column of times "
             "to 'time'.",
         )
-    known = {channel.name: channel for channel in vocabulary().channels}
     names = [name for name in table.columns if name != "time"]
-    channels = [known.get(str(name)) or Channel(str(name), "signal", "1") for name in names]
+    channels = [vocabulary().by_name.get(str(name)) or Channel(str(name), "signal", "1") for name in names]
     return Recording(table["time"].to_numpy(float), table[names].to_numpy(float), tuple(channels))
 
 

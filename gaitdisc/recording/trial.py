@@ -24,7 +24,7 @@ LENGTHS_M = {
     "knee_width_m": (0.03, 0.25),
     "ankle_width_m": (0.02, 0.15),
 }
-MASS_KG = (5.0, 300.0)
+MASS_KG, AGE_YEARS = (5.0, 300.0), (1, 120)
 LEG_OF_STATURE = 0.530  # greater trochanter over ground, Winter (2009), figure 4.1
 
 

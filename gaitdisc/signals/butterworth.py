@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.errors import SamplingError
@@ -20,6 +19,7 @@ from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 from gaitdisc.signals.gaps import MAX_SPLINE_S, filled
+from gaitdisc.words import counted
 
 KINEMATICS_HZ = 6.0
 EDGE_PERIODS = 1.8  # of the cut-off: 0.3 s at 6 Hz; measured in docs/derivatives.md
@@ -83,8 +83,8 @@ def short_run_findings(
         for start, end in runs(np.isfinite(bridged.values[:, column])):
             short[start:end] = end - start < need
         if short.any():
-            what = f"{len(runs(short))} segment(s) between gaps shorter than {need} samples "
-            what += f"({need / recording.rate_hz:.3f} s)"
+            segments, least_s = counted(len(runs(short)), "segment"), need / recording.rate_hz
+            what = f"{segments} between gaps with fewer than {need} samples ({least_s:.3f} s)"
             spoils = f"these segments: a filter of {cutoff_hz:g} Hz needs {need} samples; they are excluded"
             spans = spans_s(recording.time, short)
             findings.append(Finding("warning", "short run", file, what, spoils, channel=channel.name, spans=spans))
@@ -118,7 +118,11 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
     edge = math.ceil(EDGE_PERIODS / cutoff_hz * rate)
     values = np.full(recording.values.shape, np.nan)
     marks = np.array(bridged.suspect)
-    for (start, end), columns in _shared_runs(np.isfinite(bridged.values)).items():
+    shared: dict[tuple[int, int], list[int]] = {}  # columns whose runs begin and end together are filtered in one call
+    for column, known in enumerate(np.isfinite(bridged.values).T):
+        for start, end in runs(known).tolist():
+            shared.setdefault((start, end), []).append(column)
+    for (start, end), columns in shared.items():
         if end - start < need:
             continue
         x = bridged.values[start:end, columns]
@@ -130,12 +134,3 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
         marks[max(start, end - edge) : end, columns] = True
     smooth = recording.with_values(values, marks)
     return wrapped(smooth, recording) if kind == "lowpass" else smooth
-
-
-def _shared_runs(known: NDArray[np.bool_]) -> dict[tuple[int, int], list[int]]:
-    """Runs of known samples, each with its columns: what begins and ends together is filtered in one call."""
-    found: dict[tuple[int, int], list[int]] = {}
-    for column in range(known.shape[1]):
-        for start, end in runs(known[:, column]):
-            found.setdefault((int(start), int(end)), []).append(column)
-    return found

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import runs, spans_s
+from gaitdisc.recording.arrays import robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
+from gaitdisc.words import counted
 
 CLIPPED_SHARE = 1e-3
 FEWEST_CLIPPED = 5
@@ -107,7 +108,6 @@ def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.bool_]) -> Finding:
     channel, x = recording.channels[column], recording.values[:, column]
-    places = len(runs(marks))
     seconds = marks.sum() / recording.rate_hz
     stops = " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))
     words = {
@@ -115,7 +115,7 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
         "jump": ("jumps from one sample to the next", "velocity and acceleration there"),
     }
     what, spoils = words[kind]
-    where = f"in {places} place{'s' if places > 1 else ''}, {seconds:.2f} s in all"
+    where = f"in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
     spans = spans_s(recording.time, marks)
     return Finding("warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans=spans)
 
@@ -233,11 +233,10 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
     kinematics: joint angles [deg]
     """
     findings, file = [], kinematics.source.file
-    spoils = "velocity and acceleration there; widen the range of the coordinate in the model and repeat the inverse "
-    spoils += "kinematics"
+    spoils = "velocity and acceleration there; widen the coordinate's range in the model and repeat inverse kinematics"
     for plateau in plateaus(kinematics):
-        what = f"stops at {plateau.limit:.1f} deg in {len(runs(plateau.marks))} places, "
-        what += f"{100 * plateau.marks.mean():.0f} % of the samples"
+        places, percent = len(runs(plateau.marks)), 100 * plateau.marks.mean()
+        what = f"stops at {plateau.limit:.1f} deg in {places} places, in {percent:.0f} % of the samples"
         spans = spans_s(kinematics.time, plateau.marks)
         findings.append(Finding("warning", "plateau", file, what, spoils=spoils, channel=plateau.channel, spans=spans))
     return findings
@@ -270,9 +269,8 @@ def _dwells(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_] | None:
     for start, end in spans:
         marks[start:end] = True
     highest = np.array([x[start:end].max() for start, end in spans])
-    spread = 1.4826 * float(np.median(np.abs(highest - np.median(highest))))
     sine = 2 / np.pi * float(np.arcsin(np.sqrt(BAND_SHARE)))
-    if marks.mean() < DWELL_TIMES * sine or spread > SPREAD_SHARE * reach:
+    if marks.mean() < DWELL_TIMES * sine or robust_sd(highest) > SPREAD_SHARE * reach:
         return None
     corners = [_corner(x, start + int(np.argmax(x[start:end])), reach) for start, end in spans]
     return marks if np.median(corners) >= CORNER else None

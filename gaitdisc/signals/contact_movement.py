@@ -24,9 +24,8 @@ from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
 from gaitdisc.signals.gaps import filled, without_spikes
-from gaitdisc.signals.strides import stride_period
+from gaitdisc.signals.strides import MIN_S, stride_period
 
-SHORTEST_STRIDE_S = 0.4
 FEWEST_SWING = 0.5  # of the usual excursion of the heel
 SMOOTH_HZ = 10.0
 CYCLE_CUTOFF = 1.7  # of the stride frequency: leaves one hip peak a stride
@@ -66,7 +65,7 @@ def marker_contacts(
             )
         step = (markers.time[-1] - markers.time[0]) / (len(markers.time) - 1)
         known = np.where(np.isfinite(ahead), ahead, -np.inf)
-        peaks, _ = find_peaks(known, distance=max(1, round(SHORTEST_STRIDE_S / step)))
+        peaks, _ = find_peaks(known, distance=max(1, round(MIN_S / step)))
         swings = [peak for peak in peaks if _prominent(ahead, peak, FEWEST_SWING * swing)]
         times = np.array([markers.time[peak] + step * _vertex(ahead, peak) for peak in swings])
         times = _of_each_step(markers.time, swung, direction, times)
@@ -82,7 +81,7 @@ def _of_each_step(
     if direction.headings is None:
         return times
     step = (time[-1] - time[0]) / (len(time) - 1)
-    reach = round(SHORTEST_STRIDE_S / 2 / step)
+    reach = round(MIN_S / 2 / step)
     found = []
     for at in times:
         middle = round((at - time[0]) / step)
@@ -105,6 +104,7 @@ def _prominent(x: NDArray[np.float64], peak: int, prominence: float) -> bool:
 
 
 def _vertex(x: NDArray[np.float64], peak: int) -> float:
+    """How far beside a peak the parabola through it and its neighbours is highest [samples]."""
     left, centre, right = x[peak - 1 : peak + 2]
     bend = left - 2 * centre + right
     return float(np.clip(0.5 * (left - right) / bend, -0.5, 0.5)) if np.isfinite(bend) and bend < 0 else 0.0
@@ -167,8 +167,7 @@ def _cycles(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], floa
 def _terminal_extensions(
     kinematics: Recording, knee: str, peaks: NDArray[np.float64], period: float
 ) -> NDArray[np.float64]:
-    smooth = lowpassed(kinematics.selected([knee]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
-    x, time = smooth.values[:, 0], smooth.time
+    time, x = _smooth(kinematics, knee)
     found = []
     for peak in peaks:
         first, last = np.searchsorted(time, [peak - BEFORE_HIP_PEAK * period, peak + 0.1 * period])
@@ -184,8 +183,7 @@ def _terminal_extensions(
 
 
 def _hip_peaks(kinematics: Recording, hip: str, peaks: NDArray[np.float64], period: float) -> NDArray[np.float64]:
-    smooth = lowpassed(kinematics.selected([hip]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
-    x, time = smooth.values[:, 0], smooth.time
+    time, x = _smooth(kinematics, hip)
     found = []
     for peak in peaks:
         first, last = np.searchsorted(time, [peak - 0.25 * period, peak + 0.25 * period])
@@ -235,8 +233,14 @@ def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[tuple[fl
     kinematics: with the ankle, dorsiflexion positive [deg]
     windows sequence of (float, float): from `stance_windows` [s]
     """
-    smooth = lowpassed(kinematics.selected([ankle]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
-    return _lowest_in(windows, smooth.time, lambda _: smooth.values[:, 0])
+    time, x = _smooth(kinematics, ankle)
+    return _lowest_in(windows, time, lambda _: x)
+
+
+def _smooth(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times of one angle, and the angle without what is faster than a step."""
+    smooth = lowpassed(kinematics.selected([name]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
+    return smooth.time, smooth.values[:, 0]
 
 
 def _lowest_in(
@@ -261,7 +265,4 @@ def _lowest(time: NDArray[np.float64], x: NDArray[np.float64]) -> float:
     low = int(np.argmin(x))
     if low in (0, len(x) - 1):
         return float("nan")
-    left, centre, right = x[low - 1 : low + 2]
-    bend = left - 2 * centre + right
-    share = 0.5 * (left - right) / bend if bend > 0 else 0.0
-    return float(time[low] + share * (time[1] - time[0]))
+    return float(time[low] + _vertex(-x, low) * (time[1] - time[0]))

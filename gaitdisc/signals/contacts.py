@@ -126,11 +126,9 @@ class Contacts:
         back = np.abs(apart).argmin(axis=0)
         rows = np.flatnonzero((back[nearest] == np.arange(len(self))) & (np.abs(apart).min(axis=1) <= within_s))
         columns = nearest[rows]
-        lone_own = np.delete(self.time, rows)
-        lone_other = np.delete(other.time, columns)
-        return Agreement(
-            apart[rows, columns], _covered(lone_own, other, within_s), _covered(lone_other, self, within_s)
-        )
+        missed = _covered(np.delete(self.time, rows), other, within_s)
+        extra = _covered(np.delete(other.time, columns), self, within_s)
+        return Agreement(apart[rows, columns], missed, extra)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,9 +147,8 @@ class Agreement:
     @property
     def iqr_ms(self) -> float:
         """Interquartile range of the differences [ms]; NaN without pairs."""
-        return (
-            float(1e3 * np.subtract(*np.percentile(self.difference_s, [75, 25]))) if len(self.difference_s) else np.nan
-        )
+        apart = self.difference_s
+        return float(1e3 * np.subtract(*np.percentile(apart, [75, 25]))) if len(apart) else float("nan")
 
     def line(self) -> str:
         """Return the comparison as one line of text."""
@@ -169,7 +166,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
 
     >>> r = Contacts(np.array([0.0, 1.0, 2.0, 3.0]), "r", "force")
     >>> print(order_findings(r, Contacts(np.array([0.5, 2.5]), "l", "force"))[0].what)
-    1 of 3 strides of side r without one contact of side l inside: at 1.00 s
+    1 of 3 strides of side r without exactly one contact of side l: at 1.00 s
     """
     findings = []
     for one, other in ((right, left), (left, right)):
@@ -181,8 +178,10 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
                 wrong.append((float(start), float(end)))
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
-            what = f"{len(wrong)} of {len(one) - 1} strides of side {one.side} without one contact of side "
-            what += f"{other.side} inside: at {at} s"
+            what = (
+                f"{len(wrong)} of {len(one) - 1} strides of side {one.side} without exactly one contact of side "
+                f"{other.side}: at {at} s"
+            )
             spoils = "these strides: a contact was missed, or a foot stepped on the other plate or belt"
             findings.append(Finding("warning", "crossover", file, what, spoils, spans=tuple(wrong)))
     return findings

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import spans_s
+from gaitdisc.recording.arrays import robust_sd, spans_s
 from gaitdisc.signals.butterworth import highpassed, lowpassed
 
 HIGHPASS_HZ = 40.0
@@ -65,23 +65,18 @@ def enveloped(
             f"{file} has {emg.rate_hz:g}",
             "Export the raw EMG at its full rate (usually 1000 Hz). If it is an envelope already, state this in [emg].",
         )
-    _check_raw(emg, file)
-    fast = highpassed(emg, highpass_hz, order)
-    return lowpassed(fast.with_values(np.abs(fast.values)), lowpass_hz, order)
-
-
-def _check_raw(emg: Recording, file: str) -> None:
-    """Refuse what never falls below zero: rectified or an envelope, whose high-pass would be its noise."""
     for column, channel in enumerate(emg.channels):
         x = emg.values[:, column]
         x = x[np.isfinite(x)]
-        if len(x) > 100 and x.min() >= 0 and x.std() > 0 and np.median(x) > 0:
+        if len(x) > 100 and x.min() >= 0 and x.std() > 0 and np.median(x) > 0:  # its high-pass would be noise
             raise SamplingError(
                 "raw EMG must oscillate about zero",
                 f"{file}, {channel.name}: all {len(x)} samples lie between {x.min():.3g} and {x.max():.3g} "
                 f"{channel.unit}, none below zero",
                 "The signal is rectified or an envelope. State this in [emg], or export the raw signal.",
             )
+    fast = highpassed(emg, highpass_hz, order)
+    return lowpassed(fast.with_values(np.abs(fast.values)), lowpass_hz, order)
 
 
 @dataclass(frozen=True)
@@ -161,28 +156,29 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         size = f"standard deviation {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
         at_rails = f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}"
         clipped = at_rail.mean() >= CLIPPED_SHARE
-        silent = 1.4826 * float(np.median(np.abs(known - np.median(known)))) / limit.volts
+        silent = robust_sd(known) / limit.volts
         if clipped and silent < SILENT_SHARE <= share:
-            kind, severity = "dead", "refused"
-            what = f"{at_rails}; between them is only noise "
-            what += f"(robust standard deviation {1e3 * silent * limit.volts:.3g} mV)"
+            noise_mv = 1e3 * silent * limit.volts
+            kind = "dead"
+            what = f"{at_rails}; between them is only noise (robust standard deviation {noise_mv:.3g} mV)"
         elif share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
-            limit_share = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
-            bursts = "" if share < DEAD_SHARE else " or bursts"
-            kind, severity = "dead", "refused"
-            what = f"{size} {rail}; a connected channel has at least {100 * limit_share:g} %{bursts}"
+            least, bursts = (DEAD_SHARE, "") if share < DEAD_SHARE else (WEAK_SHARE, " or bursts")
+            kind = "dead"
+            what = f"{size} {rail}; a connected channel has at least {100 * least:g} %{bursts}"
         elif share > UNPLUGGED_SHARE:
-            kind, severity, what = "unplugged", "refused", f"{size} {rail}; no muscle exceeds 50 %"
+            kind = "unplugged"
+            what = f"{size} {rail}; no muscle exceeds 50 %"
         elif at_rail.mean() >= RAILS_SHARE and burst_ratio(x, emg.rate_hz) < FLAT_BURST:
-            kind, severity = "unplugged", "refused"
+            kind = "unplugged"
             what = f"{at_rails}, without bursts between them"
         elif clipped:
-            kind, severity = "clipped", "warning"
+            kind = "clipped"
             what = at_rails
         else:
             continue
         spoils = "the peaks of the envelope there" if kind == "clipped" else "the channel, which is excluded"
         spans = spans_s(emg.time, at_rail) if kind == "clipped" else ()
+        severity = "warning" if kind == "clipped" else "refused"
         findings.append(Finding(severity, kind, emg.source.file, what, spoils, channel=channel.name, spans=spans))
     return findings
 
@@ -210,13 +206,12 @@ def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
     return float(np.percentile(trusted, 99) / np.median(trusted)) if len(trusted) else 0.0
 
 
-def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ...]:
+def live_channels(emg: Recording) -> tuple[str, ...]:
     """Names of the channels that carry a muscle's signal, in order.
 
     emg: raw EMG, as digitised [V]
-    range_v: range of the amplifier [V]
     """
-    lost = {finding.channel for finding in emg_findings(emg, range_v) if finding.severity == "refused"}
+    lost = {finding.channel for finding in emg_findings(emg) if finding.severity == "refused"}
     empty = {name for name in emg.names if not np.isfinite(emg[name]).any()}
     return tuple(name for name in emg.names if name not in lost | empty)
 
@@ -264,8 +259,10 @@ def other_unit_findings(
     how, looks, stated = f"{ratio:.0f} times stronger", "mV", "V"
     if ratio < 1:
         how, looks, stated = f"{1 / ratio:.0f} times weaker", "V", "mV"
-    what = f"EMG is {how} than in {other} (median of {len(common)} channels). The numbers look like {looks}, but "
-    what += f"{stated} is stated; or those of {other} look like {stated}, but {looks} is stated"
+    what = (
+        f"EMG is {how} than in {other} (median of {len(common)} channels). The numbers look like {looks}, but {stated} "
+        f"is stated; or those of {other} look like {stated}, but {looks} is stated"
+    )
     return [Finding("warning", "EMG unit", trial, what, "EMG; state the unit in [channels], or export the file again")]
 
 

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import runs, spans_s
+from gaitdisc.recording.arrays import robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
+from gaitdisc.words import counted
 
 MAX_SPLINE_S = 0.1
 MAX_TEMPLATE_S = 0.2
@@ -73,10 +74,9 @@ def filled(
     return wrapped(recording.with_values(values, marks), given)
 
 
-def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[Finding]:
+def gap_findings(recording: Recording) -> list[Finding]:
     """Say which channels have gaps, and which of these can be filled.
 
-    max_gap_s: longest gap that is filled [s]
     returns: a note where all gaps are short, a warning where some are not or the channel is empty; one for the three
         coordinates of a marker
     """
@@ -89,10 +89,10 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
             continue
         longest = max(end - start for start, end in spans)
         missing = sum(end - start for start, end in spans)
-        fits = longest <= max_gap_s + 1e-9  # at an end too: a recording that begins so much later lacks nothing
-        what = f"{len(spans)} gap{'s' if len(spans) > 1 else ''}, {missing:.3f} s of {recording.duration_s:.2f} s, "
-        what += f"the longest {longest:.3f} s"
-        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {max_gap_s:g} s; these are excluded"
+        fits = longest <= MAX_SPLINE_S + 1e-9  # at an end too: a recording that begins so much later lacks nothing
+        gaps = counted(len(spans), "gap")
+        what = f"{gaps}, {missing:.3f} s of {recording.duration_s:.2f} s, the longest {longest:.3f} s"
+        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {MAX_SPLINE_S:g} s; these are excluded"
         if fits:
             spoils = "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
         name = channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name
@@ -170,7 +170,7 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
             least = max(
                 LEAST_SHARE * float(np.subtract(*np.percentile(x[known], [99, 1]))), LEAST.get(channel.unit, 0.0)
             )
-            spread = 1.4826 * float(np.median(np.abs(size - np.median(size)))) if len(size) else 0.0
+            spread = robust_sd(size) if len(size) else 0.0
             middle = np.full(len(x), np.nan)  # the running median, where its window is whole
             if len(x) > 2 * half:
                 middle[half : len(x) - half] = np.median(sliding_window_view(x, 2 * half + 1), axis=1)
@@ -200,10 +200,12 @@ def spike_findings(recording: Recording) -> list[Finding]:
         low, high = np.nanpercentile(rest, [1, 99])
         outside = np.where(here, np.abs(x - (low + high) / 2), 0.0)
         at = int(np.argmax(outside))
-        places, known = len(runs(here)), np.flatnonzero(np.isfinite(rest))
+        known, places = np.flatnonzero(np.isfinite(rest)), counted(len(runs(here)), "place")
         beside = rest[known[np.abs(known - at).argmin()]]
-        what = f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) next to {beside:.4g} "
-        what += f"{channel.unit}; {places} place{'s' if places > 1 else ''} in all"
+        what = (
+            f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) next to {beside:.4g} "
+            f"{channel.unit}; {places} in all"
+        )
         spoils = "nothing: removed before the filter, interpolated where short, and marked"
         file, spans = recording.source.file, spans_s(recording.time, here)
         findings.append(Finding("warning", "spike", file, what=what, spoils=spoils, channel=channel.name, spans=spans))

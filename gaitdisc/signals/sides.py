@@ -103,16 +103,17 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     right = np.cross(ahead, up)
     right /= np.maximum(np.linalg.norm(right, axis=1, keepdims=True), 1e-9)
     across = {pelvis[:2]: _aside(right_front - left_front, right)}
-    across |= {
-        pair: _aside(marker_position(markers, pair[0]) - marker_position(markers, pair[1]), right) for pair in pairs
-    }
+    for pair in pairs:
+        across[pair] = _aside(marker_position(markers, pair[0]) - marker_position(markers, pair[1]), right)
     wrong = [pair for pair, metres in across.items() if metres < -ASIDE_M]
     legs = [pair for pair in wrong if pair in pairs]
     if pelvis[:2] not in wrong and len(legs) < FEWEST:
         return []
     said = ", ".join(f"{pair[0]} is {-100 * across[pair]:.0f} cm to the left of {pair[1]}" for pair in wrong[:3])
-    what = f"left and right are exchanged in the labels of {len(wrong)} of {len(across)} pairs, "
-    what += f"or the frame is mirrored: {said}"
+    what = (
+        f"left and right are exchanged in the labels of {len(wrong)} of {len(across)} pairs, or the frame is mirrored: "
+        f"{said}"
+    )
     spoils = "every side; correct the labels"
     return [Finding("warning", "sides", markers.source.file, what, spoils, ", ".join(wrong[0]))]
 
@@ -140,8 +141,10 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
     if len(towards) < 2 or len(away) < 2:
         return []
     size = 1e3 * float(np.median(np.concatenate(list(towards.values()))))
-    what = f"left and right are exchanged in all angles, or pelvis_tz points to the left: the pelvis is {-size:.0f} "
-    what += "mm nearer to the swing foot than to the stance foot (median of the strides)"
+    what = (
+        f"left and right are exchanged in all angles, or pelvis_tz points to the left: the pelvis is {-size:.0f} mm "
+        "nearer to the swing foot than to the stance foot (median of the strides)"
+    )
     return [Finding("warning", "sides", kinematics.source.file, what, "every side; correct the labels", "pelvis_tz")]
 
 
@@ -167,8 +170,10 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
     if set(found) != {"l", "r"} or min(found.values()) < BENT_MORE_DEG:
         return []
     said = " and ".join(f"knee_angle_{side} {more:+.0f} deg" for side, more in sorted(found.items()))
-    what = "left and right are exchanged in the forces or in the angles: each knee bends more under its own force "
-    what += f"than in the air ({said})"
+    what = (
+        "left and right are exchanged in the forces or in the angles: each knee bends more under its own force than in "
+        f"the air ({said})"
+    )
     file = f"{forces.source.file}, {kinematics.source.file}"
     return [Finding("warning", "sides", file, what, "every side; exchange the forces or the angles")]
 

@@ -16,7 +16,7 @@ from scipy.signal import lfilter
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import robust_sd, runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8
@@ -71,8 +71,7 @@ def outlying(recording: Recording, strides: Strides) -> NDArray[np.bool_]:
             continue
         logs = np.log(d[known])
         middle = float(np.median(logs))
-        spread = 1.4826 * float(np.median(np.abs(logs - middle)))
-        far[known, column] = (logs > middle + OUTLYING * spread) & (logs > middle + np.log(FEWEST_TIMES))
+        far[known, column] = (logs > middle + OUTLYING * robust_sd(logs)) & (logs > middle + np.log(FEWEST_TIMES))
     return far
 
 
@@ -86,9 +85,10 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
             continue
         worst = rows[np.argmax(distance[rows, column])]
         times = distance[worst, column] / np.nanmedian(distance[:, column])
-        what = f"{len(rows)} of {len(strides)} strides of side {strides.side}, the worst at "
-        what += f"{strides.start[worst]:.2f} s: {distance[worst, column]:.3g} {channel.unit} from the median "
-        what += f"curve, {times:.1f} times the usual distance"
+        what = (
+            f"{len(rows)} of {len(strides)} strides of side {strides.side}, the worst at {strides.start[worst]:.2f} s: "
+            f"{distance[worst, column]:.3g} {channel.unit} from the median curve, {times:.1f} times the usual distance"
+        )
         spoils = "means and models that include these strides"
         spans = tuple((float(strides.start[k]), float(strides.end[k])) for k in rows)
         file = recording.source.file
@@ -119,8 +119,8 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
         times = distance[k] / usual
         column = int(np.argmax(np.where(far[k], times, 0.0)))
         more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
-        reason = f"outlying: {recording.names[column]}{more} {times[column]:.1f} times the usual distance "
-        reason += "from the median"
+        name = recording.names[column]
+        reason = f"outlying: {name}{more} {times[column]:.1f} times the usual distance from the median"
         dropped.append(DroppedStride(float(strides.start[k]), float(strides.end[k]), reason))
     return replace(strides, start=strides.start[~out], end=strides.end[~out], dropped=(*strides.dropped, *dropped))
 
@@ -187,27 +187,29 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     )
 
 
-def late_change_findings(recording: Recording, strides: Strides, alpha: float = ALPHA, seed: int = 0) -> list[Finding]:
+def late_change_findings(recording: Recording, strides: Strides) -> list[Finding]:
     """Say whether gait changes late in a trial.
 
-    returns: a warning where p is `alpha` or less and the shift is one stride-to-stride standard deviation or more, a
+    returns: a warning where p is 0.01 or less and the shift is one stride-to-stride standard deviation or more, a
         note where the trial has too few strides to say. Its kind is `late change` from 2.5 standard deviations on,
         `drift` below: people drift slowly, by more than series that forget from stride to stride would, and p says
         that they do (studies/results/chapter4.md), but it is the same gait
     """
     file = recording.source.file
     try:
-        change = late_change(recording, strides, seed)
+        change = late_change(recording, strides)
     except StrideError as error:
         return [Finding("note", "late change", file, f"not tested: {error.found}", "")]
-    if change.p > alpha or change.size_sd < LEAST_SD:
+    if change.p > ALPHA or change.size_sd < LEAST_SD:
         return []
     largest = sorted(change.shifts, key=lambda name: -change.shifts[name])[:3]
     units = {channel.name: channel.unit for channel in recording.channels}
     moved = ", ".join(f"{name} by {change.shifts[name]:.2g} {units[name]}" for name in largest)
     kind, spans = "late change" if change.size_sd >= CHANGE_SD else "drift", ((change.time, float(strides.end[-1])),)
-    what = f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} "
-    what += f"stride-to-stride SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"
+    what = (
+        f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} stride-to-stride "
+        f"SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"
+    )
     spoils = "a model trained before the change and tested after it; exclude the trial, or cut it there"
     return [Finding("warning", kind, file, what, spoils, spans=spans)]
 

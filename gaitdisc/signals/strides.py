@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import robust_sd, runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import filled
+from gaitdisc.words import counted
 
-MIN_S, MAX_S = 0.4, 2.5
+MIN_S, MAX_S = 0.4, 2.5  # of a stride in walking and running
 OUTLIER_SD = 6.0
 OUTLIER_SHARE = 0.15  # of the median; the larger of both limits counts
 
@@ -68,7 +69,7 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
     """
     plausible = (duration >= min_s) & (duration <= max_s)
     median = float(np.median(duration[plausible])) if plausible.any() else float("nan")
-    spread = 1.4826 * float(np.median(np.abs(duration[plausible] - median))) if plausible.any() else float("nan")
+    spread = robust_sd(duration[plausible]) if plausible.any() else float("nan")
     limit = max(OUTLIER_SD * spread, OUTLIER_SHARE * median) if plausible.sum() >= 4 else float("inf")
     reasons = []
     for length in duration:
@@ -120,7 +121,6 @@ FEWEST_STRIDES = 3
 LEAST_REGULARITY = 0.72
 LEAST_COVERAGE = 0.6
 LEAST_KNEE_DEG = 25.0
-SHORTEST_STRIDE_S, LONGEST_STRIDE_S = 0.4, 2.5
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ def verify_walking(
     found = measured_walking(kinematics, strides)
     fails = []
     if found.strides < fewest:
-        fails.append(f"{found.strides} stride{'s' if found.strides != 1 else ''}, but {fewest} are needed")
+        fails.append(f"{counted(found.strides, 'stride')}, but {fewest} are needed")
     if found.coverage < least_coverage:
         fails.append(f"strides cover {100 * found.coverage:.0f} % of {kinematics.duration_s:.1f} s")
     if found.regularity < LEAST_REGULARITY:
@@ -184,19 +184,17 @@ def verify_walking(
     if found.knee_deg < LEAST_KNEE_DEG:
         fails.append(f"the range of a knee is at most {found.knee_deg:.0f} deg")
     if fails:
-        least = "1 stride" if fewest == 1 else f"{fewest} strides"
         raise StrideError(
-            f"a walk must have at least {least} over {100 * least_coverage:.0f} % of the trial, a stride-to-stride "
-            f"correlation of at least {LEAST_REGULARITY:g}, and a range of one knee of {LEAST_KNEE_DEG:g} deg or more",
+            f"a walk must have at least {counted(fewest, 'stride')} over {100 * least_coverage:.0f} % of the trial, a "
+            f"stride-to-stride correlation of at least {LEAST_REGULARITY:g}, and a range of one knee of "
+            f"{LEAST_KNEE_DEG:g} deg or more",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Remove calibration and range-of-motion trials from the study, or cut the trial to its walking part.",
         )
     return found
 
 
-def stride_period(
-    x: NDArray[np.float64], rate_hz: float, shortest_s: float = SHORTEST_STRIDE_S, longest_s: float = LONGEST_STRIDE_S
-) -> tuple[float, float]:
+def stride_period(x: NDArray[np.float64], rate_hz: float) -> tuple[float, float]:
     """Period at which an angle repeats, and how well.
 
     The autocorrelation is that of the two overlapping parts (each lag has its own means and variances), so a perfectly
@@ -204,7 +202,6 @@ def stride_period(
     one is the period.
 
     x (time,): NaN allowed; lags use the pairs that are there
-    shortest_s, longest_s: range searched [s]
     returns period_s, regularity: NaN and 0 where nothing repeats or the recording is shorter than 1.7 strides.
         Regularity is the correlation at the period, -1 to 1
 
@@ -213,8 +210,8 @@ def stride_period(
     >>> round(period, 2), round(regularity, 2)
     (1.0, 1.0)
     """
-    first = max(1, round(shortest_s * rate_hz))
-    last = min(round(longest_s * rate_hz), int(0.6 * len(x)))
+    first = max(1, round(MIN_S * rate_hz))
+    last = min(round(MAX_S * rate_hz), int(0.6 * len(x)))
     if last <= first + 1 or np.isfinite(x).sum() < first:
         return float("nan"), 0.0
     lags = np.arange(first - 1, last + 2)

@@ -7,15 +7,11 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parsed, unknown_name
-from gaitdisc.simulation.parts import Input, Sensor, Term
+from gaitdisc.simulation.parts import Input, Parts, Sensor, Term
 from gaitdisc.simulation.refusal import SimulationError
-
-if TYPE_CHECKING:
-    from gaitdisc.simulation.simulation import Simulation
 
 MOST_PARTS = 500  # states, inputs, parameters, ports, definitions and effects together
 MOST_CHARACTERS = 200_000  # of all expressions
@@ -23,7 +19,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 _KEYWORDS = frozenset(keyword.kwlist)
 
 
-def check(simulation: Simulation) -> None:
+def check(simulation: Parts) -> None:
     """Refuse a simulation whose parts do not hold together."""
     _check_size(simulation)
     _check_names(simulation)
@@ -35,7 +31,7 @@ def check(simulation: Simulation) -> None:
     _check_sensors(simulation)
 
 
-def _check_size(simulation: Simulation) -> None:
+def _check_size(simulation: Parts) -> None:
     if not simulation.states:
         raise SimulationError("a simulation must have at least one state", "there is none", "Add [states.<name>].")
     parts = sum(
@@ -49,8 +45,7 @@ def _check_size(simulation: Simulation) -> None:
             f"this one has {parts}",
             "Write a model of this size as a PythonSimulation.",
         )
-    lines = (*simulation.definitions, *simulation.equations, *simulation.observations)
-    characters = sum(len(text) for _, text in lines) + sum(len(each.term) for each in simulation.effects)
+    characters = sum(len(text) for _, text in simulation.expressions())
     if characters > MOST_CHARACTERS:
         raise SimulationError(
             f"the expressions of a simulation may have at most {MOST_CHARACTERS} characters in total",
@@ -59,7 +54,7 @@ def _check_size(simulation: Simulation) -> None:
         )
 
 
-def _check_names(simulation: Simulation) -> None:
+def _check_names(simulation: Parts) -> None:
     owner: dict[str, str] = {}
     for section, name in _named(simulation):
         if not _NAME.match(name) or name in _KEYWORDS:
@@ -92,7 +87,7 @@ def _check_names(simulation: Simulation) -> None:
         )
 
 
-def _named(simulation: Simulation) -> Iterator[tuple[str, str]]:
+def _named(simulation: Parts) -> Iterator[tuple[str, str]]:
     for section in ("states", "inputs", "parameters", "ports"):
         for part in getattr(simulation, section):
             yield section, part.name
@@ -100,7 +95,7 @@ def _named(simulation: Simulation) -> Iterator[tuple[str, str]]:
         yield "definitions", name
 
 
-def _check_numbers(simulation: Simulation) -> None:
+def _check_numbers(simulation: Parts) -> None:
     for parameter in simulation.parameters:
         place = ("parameters", parameter.name)
         bounds = [bound for bound in (parameter.low, parameter.high) if bound is not None]
@@ -119,7 +114,7 @@ def _check_numbers(simulation: Simulation) -> None:
             )
 
 
-def _check_equations(simulation: Simulation) -> None:
+def _check_equations(simulation: Parts) -> None:
     states = [state.name for state in simulation.states]
     given = [name for name, _ in simulation.equations]
     for name in given:
@@ -137,32 +132,24 @@ def _check_equations(simulation: Simulation) -> None:
             )
 
 
-def _check_expressions(simulation: Simulation) -> None:
-    signals = simulation.signals
-    parameters = tuple(parameter.name for parameter in simulation.parameters)
-    plain = (*signals, *parameters, "t")
+def _check_expressions(simulation: Parts) -> None:
     ports = tuple(port.name for port in simulation.ports)
+    plain = (*simulation.signals, *(parameter.name for parameter in simulation.parameters), "t")
     known = (*plain, *ports)
-    for name, text in simulation.definitions:
-        _check_text(text, known, simulation, ("definitions", name))
-        known = (*known, name)
-    for name, text in simulation.equations:
-        _check_text(text, known, simulation, ("equations", name))
-    for name, text in simulation.observations:
-        _check_text(text, known, simulation, ("observations", name))
-    for number, term in enumerate(simulation.effects):
-        _check_place(term, ports, tuple(state.name for state in simulation.states), number)
-        _check_text(term.term, plain if term.kind == "port" else known, simulation, ("effects", str(number)))
+    for place, text in simulation.expressions():
+        section, name = place
+        term = simulation.effects[int(name)] if section == "effects" else None
+        if term is not None:
+            _check_place(term, ports, tuple(state.name for state in simulation.states), place)
+        try:
+            check_expression(text, plain if term is not None and term.kind == "port" else known, simulation)
+        except SimulationError as error:
+            raise error.at(*place) from None
+        if section == "definitions":
+            known = (*known, name)
 
 
-def _check_text(text: str, known: tuple[str, ...], simulation: Simulation, place: tuple[str, ...]) -> None:
-    try:
-        check_expression(text, known, simulation)
-    except SimulationError as error:
-        raise error.at(*place) from None
-
-
-def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) -> Tree:
+def check_expression(text: str, known: tuple[str, ...], simulation: Parts) -> Tree:
     """Tree of an expression whose names all have values.
 
     simulation: whose states and inputs may be delayed, by its parameters
@@ -200,8 +187,7 @@ def _parts_of(text: str) -> tuple[Tree, tuple[str, ...], tuple[Operation, ...]]:
     return tree, tuple(dict.fromkeys(names(tree))), tuple(delays(tree))
 
 
-def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], number: int) -> None:
-    place = ("effects", str(number))
+def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], place: tuple[str, ...]) -> None:
     if term.kind not in ("port", "equation"):
         raise SimulationError(
             "an effect must act at a port or in an equation", f"found {term.kind!r}", "Name one of them.", place
@@ -216,7 +202,7 @@ def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], number
         )
 
 
-def _check_ports(simulation: Simulation) -> None:
+def _check_ports(simulation: Parts) -> None:
     lines = (*simulation.definitions, *simulation.equations)
     used = {name for _, text in lines for name in names(parsed(text))}
     for port in simulation.ports:
@@ -229,7 +215,7 @@ def _check_ports(simulation: Simulation) -> None:
             )
 
 
-def _check_sensors(simulation: Simulation) -> None:
+def _check_sensors(simulation: Parts) -> None:
     observed = [name for name, _ in simulation.observations]
     for sensor in simulation.sensors:
         place = ("observations", sensor.channel)
@@ -241,7 +227,7 @@ def _check_sensors(simulation: Simulation) -> None:
         _check_positive(sensor, {"sd": sensor.unit or "the column's unit", "lowpass": "Hz"}, place)
 
 
-def _check_inputs(simulation: Simulation) -> None:
+def _check_inputs(simulation: Parts) -> None:
     for one in simulation.inputs:
         place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
         _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)

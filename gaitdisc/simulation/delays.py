@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -47,7 +45,10 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
     """
     values = simulation.values()
     inputs = tuple(each.name for each in simulation.inputs)
-    for place, text in _expressions(simulation):
+    lines = [*simulation.expressions()]
+    if isinstance(simulation, PythonSimulation):
+        lines += [(("inputs", name), text) for name, text in simulation.replaced]
+    for place, text in lines:
         try:
             refuse_delays_of(parsed(text), values, inputs, shortest_s, trial)
         except SimulationError as error:
@@ -85,14 +86,3 @@ def refuse_delays_of(
                 said,
                 "Write the delay in seconds, or remove the trial." if trial else "Write the delay in seconds.",
             )
-
-
-def _expressions(simulation: Simulation | PythonSimulation) -> Iterator[tuple[tuple[str, str], str]]:
-    for section in ("definitions", "equations", "observations"):
-        for name, text in getattr(simulation, section):
-            yield (section, name), text
-    for number, effect in enumerate(simulation.effects):
-        yield ("effects", str(number)), effect.term
-    if isinstance(simulation, PythonSimulation):
-        for name, text in simulation.replaced:
-            yield ("inputs", name), text

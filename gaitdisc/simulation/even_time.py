@@ -150,11 +150,17 @@ def _along(
     for column, turns in enumerate(wraps):
         known = np.isfinite(values[:, column])
         if known.sum() > 1:
-            there = np.unwrap(values[known, column], period=1.0) if turns else values[known, column]
-            whole = np.interp(time, time[known], there)
+            whole = _between(time, known, values[:, column], turns)
             at = whole - late_s * np.gradient(whole, time)
             out[:, column] = np.where(known, at % 1.0 if turns else at, np.nan)
     return out
+
+
+def _between(
+    at: NDArray[np.float64], known: NDArray[np.bool_], values: NDArray[np.float64], turns: bool
+) -> NDArray[np.float64]:
+    """Values at all places, linear between those that are known; of what wraps at 1 without its wraps."""
+    return np.interp(at, at[known], np.unwrap(values[known], period=1.0) if turns else values[known])
 
 
 def _roughness(values: NDArray[np.float64], like: NDArray[np.float64]) -> float:
@@ -182,9 +188,7 @@ def _bridged(
                 f"value from t = {trial.time[first]:.4g} s on",
                 "Split the trial there into two, or fill the gap first.",
             )
-        known, at = ~empty, np.arange(len(empty))
-        values = np.unwrap(filled[known, column], period=1.0) if name == "phase" else filled[known, column]
-        whole = np.interp(at, at[known], values)
+        whole = _between(np.arange(len(empty), dtype=float), ~empty, filled[:, column], name == "phase")
         filled[:, column] = whole % 1.0 if name == "phase" else whole
         what = f"trial {trial.name!r}: {int(empty.sum())} samples are missing, at most {longest / rate:.3g} s in a row"
         findings.append(Finding("warning", "bridged", source, what, "the simulated motion there", name))

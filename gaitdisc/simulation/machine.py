@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from gaitdisc.simulation.operations import BLOCK, compiled, execute
-from gaitdisc.simulation.program import BOUND
 
+BOUND = 1e6  # a state beyond has diverged
 derive = execute  # what a block's derivatives are computed by
 
 

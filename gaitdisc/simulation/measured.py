@@ -13,6 +13,7 @@ from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.even_time import SHORTEST, TrialColumns, clock_findings, on_even_time
+from gaitdisc.words import counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,21 +64,7 @@ class Measured:
         longest = int(self.samples[which].max())
         drive = Drive(self.rate, self.drive.time0[which], self.drive.inputs[which, :longest], self.drive.samples[which])
         names = tuple(self.trials[trial] for trial in which)
-        return Measured(drive, self.observed[which, :longest], names, self.channels, self.findings, self.source)
-
-    def between(self, first: int, end: int) -> Measured:
-        """Samples first to end of every trial that has them all."""
-        which = np.flatnonzero(self.samples >= end)
-        if first < 0 or end <= first or not which.size:
-            raise SamplingError(
-                f"samples {first} to {end} of a trial are required",
-                f"the longest has {int(self.samples.max())}",
-                "Use fewer samples.",
-            )
-        time0 = self.drive.time0[which] + first / self.rate
-        drive = Drive(self.rate, time0, self.drive.inputs[which, first:end], np.full(len(which), end - first))
-        names = tuple(self.trials[trial] for trial in which)
-        return Measured(drive, self.observed[which, first:end], names, self.channels, self.findings, self.source)
+        return replace(self, drive=drive, observed=self.observed[which, :longest], trials=names)
 
 
 def measured_of_trials(
@@ -87,13 +74,17 @@ def measured_of_trials(
     source: str,
     findings: Sequence[Finding] = (),
 ) -> Measured:
-    """Measured trials, checked."""
+    """Measured trials, checked; one that is too short is left out with a finding where there are others."""
     if not trials:
         raise SamplingError(
-            f"a trial needs {SHORTEST} samples",
-            f"{source} has no rows",
-            "Export it again with its samples.",
+            f"a trial needs {SHORTEST} samples", f"{source} has no rows", "Export it again with its samples."
         )
+    short = [trial for trial in trials if len(trial.time) < SHORTEST]
+    if 0 < len(short) < len(trials):
+        listed = ", ".join(f"{trial.name!r} ({len(trial.time)})" for trial in short)
+        too_few = f"{counted(len(short), 'trial')} with fewer than {SHORTEST} samples: {listed}"
+        findings = [*findings, Finding("warning", "short trial", source, too_few, "these trials, which are excluded")]
+        trials = [trial for trial in trials if trial not in short]
     even = [on_even_time(trial, tuple(inputs), source) for trial in trials]
     trials, rates = [one for one, _, _ in even], [rate for _, rate, _ in even]
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
@@ -113,15 +104,9 @@ def measured_of_trials(
     seen += clock_findings(trials, rates[0], source)
     seen += [*_empty(trials, channels, source), *_constant(trials, inputs, channels, source)]
     if len(trials) == 1:
-        seen.append(
-            Finding(
-                "warning",
-                "one trial",
-                source,
-                f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)",
-                "the test on other trials: only a later part of this trial can be held out; record a second one",
-            )
-        )
+        what = f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)"
+        spoils = "the test on other trials: only a later part of this trial can be held out; record a second one"
+        seen.append(Finding("warning", "one trial", source, what, spoils))
     return Measured(drive, observed, tuple(trial.name for trial in trials), tuple(channels), tuple(seen), source)
 
 

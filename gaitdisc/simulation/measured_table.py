@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.units import unit_factor
+from gaitdisc.units import offset_words, unit_factor
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,11 +56,8 @@ def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) 
     parts = []
     for name in order:
         rows = np.flatnonzero(trial == name)
-        stacked = [
-            np.column_stack([numbers[each][rows] for each in names] or [np.empty((len(rows), 0))])
-            for names in (inputs, channels)
-        ]
-        parts.append(TrialColumns(str(name), numbers["time"][rows], stacked[0], stacked[1]))
+        own = {each: values[rows] for each, values in numbers.items()}
+        parts.append(_columns(str(name), own["time"], own, inputs, channels))
     return measured_of_trials(parts, inputs, channels, source, _left_out(simulation, columns, channels, source))
 
 
@@ -75,7 +72,7 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
     channels = _channels(simulation, recordings[0].names, recordings[0].source.file or "recording 1")
     for number, recording in enumerate(recordings, 1):
         name = recording.source.file or f"recording {number}"
-        columns = []
+        numbers = {}
         for wanted in dict.fromkeys((*inputs, *channels)):
             if wanted not in recording.names:
                 raise _missing(wanted, recording.names, name)
@@ -86,14 +83,21 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
                 findings[f"{name} {wanted}"] = Finding(
                     "warning", "suspect", name, what, "everything that depends on them", wanted
                 )
-            columns.append((wanted, values))
-        by_name = dict(columns)
-        stacked = [
-            np.column_stack([by_name[each] for each in names] or [np.empty((len(recording.time), 0))])
-            for names in (inputs, channels)
-        ]
-        parts.append(TrialColumns(name, np.array(recording.time), stacked[0], stacked[1]))
+            numbers[wanted] = values
+        parts.append(_columns(name, np.array(recording.time), numbers, inputs, channels))
     return measured_of_trials(parts, inputs, channels, parts[0].name, list(findings.values()))
+
+
+def _columns(
+    name: str,
+    time: NDArray[np.float64],
+    numbers: Mapping[str, NDArray[np.float64]],
+    inputs: Sequence[str],
+    channels: Sequence[str],
+) -> TrialColumns:
+    none = np.empty((len(time), 0))
+    driving, observed = (np.column_stack([numbers[each] for each in names] or [none]) for names in (inputs, channels))
+    return TrialColumns(name, time, driving, observed)
 
 
 def _table(path: Path) -> pd.DataFrame:
@@ -258,7 +262,7 @@ def _converted(
     if np.isnan(factor):
         raise UnitError(
             f"{name!r} must have a unit of the same kind as {to!r} in the simulation",
-            f"{file} has it in {channel.unit!r}",
+            f"{file} has it in {channel.unit!r}{offset_words(channel.unit, to or '')}",
             "Correct the unit in the simulation file or in the study.",
         )
     return recording[name] if factor == 1.0 else recording[name] * factor

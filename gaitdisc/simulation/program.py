@@ -18,7 +18,6 @@ CODES = {
     "store": 0, "+": 1, "-": 2, "*": 3, "/": 4, "**": 5, "neg": 6, "sin": 7, "cos": 8, "tan": 9, "tanh": 10, "exp": 11,
     "log": 12, "sqrt": 13, "abs": 14, "max": 15, "min": 16, "step": 17, "where": 18, "atan": 19,
 }  # fmt: skip
-BOUND = 1e6  # a state beyond has diverged
 ROUNDED = 0.02  # sign(a) is tanh(a/0.02), so that a fixed step can cross zero
 _MOST_PRODUCTS = 8  # x**n is written as products up to this power
 _COMMUTES = frozenset(["+", "*", "max", "min"])

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.simulation.parts import Input, Parameter, Port, State
+from gaitdisc.simulation.parts import Input, Lines, Parameter, Port, State
 from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.simulation import Lines, Simulation
+from gaitdisc.simulation.simulation import Simulation
 
 RightHandSide = Callable[..., NDArray[np.float64]]
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
-from gaitdisc.simulation.program import BOUND, at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.program import at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.python_simulation import PythonSimulation, called
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
@@ -101,7 +101,7 @@ class PythonCompiled(Compiled):
         def derive(code: NDArray[np.uint64], registers: Any, rates: Any, width: np.uint64) -> None:
             machine.execute(code, registers, feeds.reshape(-1), width)
             x = registers.reshape(-1, lanes)[1 : 1 + n].T
-            x = np.where(np.abs(x) < BOUND, x, np.nan)  # nobody's function is made for what has run away
+            x = np.where(np.abs(x) < machine.BOUND, x, np.nan)  # nobody's function is made for what has run away
             rates.reshape(n, lanes)[:] = called(self.model, x, feeds.T, values).T
 
         block = machine.integrate_block.py_func

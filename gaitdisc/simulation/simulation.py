@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gaitdisc.notebook import html_of
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parsed, substituted, written
-from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
+from gaitdisc.simulation.parts import Lines, Parameter, Parts, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
-
-Lines = tuple[tuple[str, str], ...]  # name, expression
 
 
 @dataclass(frozen=True)
-class Simulation:
+class Simulation(Parts):
     """A dynamical system as in a simulation file; immutable, and checked when it is created.
 
     Parameters
@@ -65,21 +62,6 @@ class Simulation:
     '-0.4*v'
     """
 
-    title: str
-    states: tuple[State, ...]
-    inputs: tuple[Input, ...] = ()
-    parameters: tuple[Parameter, ...] = ()
-    ports: tuple[Port, ...] = ()
-    definitions: Lines = ()
-    equations: Lines = ()
-    observations: Lines = ()
-    effects: tuple[Term, ...] = ()
-    sensors: tuple[Sensor, ...] = ()
-    source: Path | None = field(default=None, compare=False)
-    layout: str = field(default="", compare=False, repr=False)
-    model: str = ""
-    inexact: float = field(default=0.0, repr=False)
-
     def __post_init__(self) -> None:
         """Make every part a tuple, and refuse what does not hold together."""
         for part in ("states", "inputs", "parameters", "ports", "effects", "sensors"):
@@ -103,16 +85,6 @@ class Simulation:
         rows += [(each.name, f"{each.value:g} {each.unit}") for each in self.parameters]
         rows += [(f"at {each.place}", each.term) for each in self.effects]
         return html_of(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
-
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """Names of the states and inputs, which vary in time and can be delayed."""
-        return (*(state.name for state in self.states), *(each.name for each in self.inputs))
-
-    @property
-    def driving(self) -> tuple[Input, ...]:
-        """The inputs that were measured."""
-        return tuple(each for each in self.inputs if not each.computed)
 
     def values(self) -> dict[str, float]:
         """Parameters by name."""

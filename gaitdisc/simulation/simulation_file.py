@@ -120,7 +120,7 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         raise SimulationError("effects must be tables", "they have another form", "Write [[effects]].", ("effects",))
     observed = {n: (e, _sensor(n, e)) if isinstance(e, dict) else (e, None) for n, e in said["observations"].items()}
     said["observations"] = {n: e["expression"] if sensor else e for n, (e, sensor) in observed.items()}
-    lines = {
+    lines: dict[str, Any] = {
         section: tuple((name, _expression(value, (section, name))) for name, value in said[section].items())
         for section in _EXPRESSIONS
     }
@@ -136,13 +136,8 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         lines["equations"] = any_equations(parts["states"], (*parts["inputs"], *parts["parameters"], *parts["ports"]))
     return Simulation(
         _text(table, "title", ()),
-        states=parts["states"],
-        inputs=parts["inputs"],
-        parameters=parts["parameters"],
-        ports=parts["ports"],
-        definitions=lines["definitions"],
-        equations=lines["equations"],
-        observations=lines["observations"],
+        **parts,
+        **lines,
         effects=tuple(_effect(entry, number) for number, entry in enumerate(effects)),
         sensors=tuple(sensor for _, sensor in observed.values() if sensor),
         source=source,

@@ -10,7 +10,7 @@ from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.units import Powers, dimension_of, unit_factor, unit_words
+from gaitdisc.units import Powers, dimension_of, offset_words, unit_factor, unit_words
 
 _SAME = frozenset(["+", "-", "max", "min"])
 _CHOSEN = {"neg": 0, "abs": 0, "delay": 0, "where": 1}  # which argument's unit it has
@@ -36,11 +36,11 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     if all(part.unit == "1" for part in parts):
         return ()
     file = simulation.source.name if simulation.source else simulation.title
-    findings = [
-        Finding("note", "unit", file, f"{part.unit!r} is not a known unit", "the check of units in sums", part.name)
-        for part in parts
-        if dimension_of(part.unit) is None and not getattr(part, "computed", False)
-    ]
+    findings = []
+    for part in parts:
+        if dimension_of(part.unit) is None and not getattr(part, "computed", False):
+            what = f"{part.unit!r} is not a known unit{offset_words(part.unit)}"
+            findings.append(Finding("note", "unit", file, what, "the check of units in sums", part.name))
 
     def report(what: str) -> None:
         findings.append(Finding("warning", "unit", file, what, "the numbers there, if the units are right"))

@@ -33,17 +33,6 @@ def step_levels(tests: int, alpha: float = 0.05) -> NDArray[np.float64]:
     return -np.expm1(np.log1p(-alpha) / np.arange(tests, 0, -1))
 
 
-def largest_family(p: float, alpha: float = 0.05) -> int:
-    """Most tests a family may have so that one test with this p can still be rejected.
-
-    p: for example the smallest that the number of participants allows
-
-    >>> largest_family(2 / 2**11), largest_family(2 / 2**8)
-    (52, 6)
-    """
-    return int(np.floor(np.log1p(-alpha) / np.log1p(-p)))
-
-
 def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     """Correct a family of tests by Holm's step-down procedure with Sidak's levels.
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import trapezoid
 
 from gaitdisc.errors import ShapeError
 
@@ -118,23 +117,6 @@ def simulate_null(filtered: Filtered, samples: int, walks: int = 40, seed: int =
     middle = slice(edge, len(x) - edge)
     reached = [_linear_r2(x[middle, k], xdot[middle, k], xddot[middle, k]) for k in range(walks)]
     return BandLimitNull(float(np.mean(reached)), float(np.std(reached, ddof=1) / np.sqrt(walks)))
-
-
-def analytic_null(frequency_hz: NDArray[np.float64], gain: NDArray[np.float64]) -> float:
-    """Squared correlation of x and x'' for white noise through a linear filter, m2^2 / (m0 m4).
-
-    m_k is the k-th moment of the power that the filter lets through; x' adds nothing, for it does not correlate with
-    x'' in stationary noise.
-
-    frequency_hz (frequency,) [Hz]: rising, from 0 to where nothing passes
-    gain (frequency,): amplitude gain of the whole filter: of both passes where it runs forward and back
-
-    >>> f = np.linspace(0, 6, 1001)
-    >>> round(analytic_null(f, np.ones_like(f)), 4)  # flat: 5/9
-    0.5556
-    """
-    m0, m2, m4 = (trapezoid(frequency_hz**power * gain**2, frequency_hz) for power in (0, 2, 4))
-    return float(m2**2 / (m0 * m4))
 
 
 def _linear_r2(x: NDArray[np.float64], xdot: NDArray[np.float64], xddot: NDArray[np.float64]) -> float:

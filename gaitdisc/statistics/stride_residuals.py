@@ -82,12 +82,6 @@ class StrideMean:
         lowest = np.min(self.mean, axis=0, where=there, initial=np.inf)
         return np.where(there.any(axis=0), highest - lowest, np.nan)
 
-    @property
-    def share_beyond_zero(self) -> NDArray[np.float64]:
-        """Share of the stride in which the interval excludes zero, (column,); 1 - level of it by chance alone."""
-        beyond = np.where((self.low > 0) | (self.high < 0), 1.0, 0.0)
-        return mean_where_known(np.where(np.isfinite(self.mean), beyond, np.nan))
-
 
 def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> StrideMean:
     """Mean of curves over strides; strides are the units, and neighbours in time are not independent.

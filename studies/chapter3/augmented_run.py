@@ -199,11 +199,11 @@ class AugmentedRun:
 
 
 def with_learned_rates(
-    known: Rates, learned: Model, start: NDArray[np.float64], time: NDArray[np.float64], step_s: float | None = None
+    known: Rates, learned: Model, start: NDArray[np.float64], time: NDArray[np.float64]
 ) -> AugmentedRun:
     """Integrate f + delta_f (Eq. 3.4)."""
     dt = float(time[1] - time[0])
-    longest = step_s or (LEARNED_STEP_S if isinstance(known, KnownRates) else LONGEST_STEP_S)
+    longest = LEARNED_STEP_S if isinstance(known, KnownRates) else LONGEST_STEP_S
     substeps = max(1, int(np.ceil(dt / longest - 1e-9)))
     h = dt / substeps
     halves = time[0] + 0.5 * h * np.arange(2 * substeps * (len(time) - 1) + 1)

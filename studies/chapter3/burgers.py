@@ -115,12 +115,12 @@ def recorded_field(system: System, conditions: Conditions) -> Record:
     return replace(record, filtered=smoothed_in_space(record.filtered)) if conditions.noise else record
 
 
-def local_cell(record: Record, method: Method, settings: MethodSettings | None = None) -> DiscrepancyCell:
+def local_cell(record: Record, method: Method) -> DiscrepancyCell:
     """Learn the missing rate of a field as a function of the field at a point, and test the augmented model."""
 
     def fit() -> LocalField:
         seed = record.conditions.seed
-        return fit_local_field(error_samples(record, "dynamics"), method, settings or MethodSettings(), seed)
+        return fit_local_field(error_samples(record, "dynamics"), method, MethodSettings(), seed)
 
     return cell_by(record, method, "dynamics", "at each point", fit)
 

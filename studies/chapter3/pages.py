@@ -279,10 +279,9 @@ def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
         rows.append((
             variant, approach, METHOD_WORDS[method], f"{noise:g}", f"{len(found)}",
             *(_cell(each, len(found)) for each in parts),
-            *(_median([p.valid_s("augmented") for p in each], "{:.1f}") for each in parts[1:]),
-            _median([p.valid_s("known") for p in parts[2]], "{:.1f}"),
-            f"{np.median([c.fit_s for c in found]):.1f}", f"{np.median([c.run_s for c in found]):.1f}",
-            _found(found),
+            *(_median([p.valid_s("augmented") for p in each]) for each in parts[1:]),
+            _median([p.valid_s("known") for p in parts[2]]),
+            _median([c.fit_s for c in found]), _median([c.run_s for c in found]), _found(found),
         ))  # fmt: skip
     columns = (
         "variant", "approach", "method", "noise", "n", "reconstruction, true start [%]",
@@ -304,15 +303,20 @@ def _cell(parts: list[PartAccuracy], seeds: int) -> str:
     """Say median and range over the seeds, by channel; when it diverged, and in how many seeds, instead of a number."""
     if not parts:
         return "not fitted"
-    diverged = [part.diverged_s for part in parts if part.diverged_s is not None]
-    if diverged:
-        return f"diverged at t = {min(diverged):.2f} s" + (f" ({len(diverged)} of {seeds} seeds)" * (seeds > 1))
+    if diverged := diverged_words(parts, seeds):
+        return diverged
     accuracy = np.array([part.accuracy() for part in parts])
     many = accuracy.shape[1] > MOST_CHANNELS
     columns = [np.median(accuracy, axis=1)] if many else list(accuracy.T)
     said = "; ".join(spread_words(column) for column in columns)
     said += f" (median of {accuracy.shape[1]})" if many else ""
     return said if len(parts) == seeds else f"{said} ({len(parts)} of {seeds} seeds)"
+
+
+def diverged_words(parts: Sequence[PartAccuracy], seeds: int = 1) -> str:
+    """Say when the first of some runs diverged, and of how many seeds; nothing where none did."""
+    lost = [part.diverged_s for part in parts if part.diverged_s is not None]
+    return f"diverged at t = {min(lost):.2f} s" + f" ({len(lost)} of {seeds} seeds)" * (seeds > 1) if lost else ""
 
 
 def spread_words(values: NDArray[np.float64]) -> str:
@@ -324,8 +328,8 @@ def spread_words(values: NDArray[np.float64]) -> str:
     return middle if len(values) == 1 else f"{middle} [{low}, {high}]"
 
 
-def _median(values: list[float], form: str) -> str:
-    return form.format(float(np.median(values))) if values else ""
+def _median(seconds: list[float]) -> str:
+    return f"{np.median(seconds):.1f}" if seconds else ""
 
 
 def _found(cells: list[DiscrepancyCell]) -> str:
@@ -346,7 +350,7 @@ def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> T
     return words_table(name, caption, ("where", "dissertation", "ours"), statements)
 
 
-def naming_table(namings: Sequence[Naming], name: str) -> Table:
+def naming_table(namings: Sequence[Naming]) -> Table:
     """What each tool answers, a row a case and noise."""
     table = namings_table(namings)
     tools = [tool for tool in TOOL_WORDS if tool in set(table["tool"])]
@@ -360,7 +364,7 @@ def naming_table(namings: Sequence[Naming], name: str) -> Table:
         "curve: how far it is from what is missing, along the record without noise (first seed)."
     )
     columns = ("case", "hidden", "noise", *(TOOL_WORDS[tool] for tool in tools))
-    return Table(name, caption, columns, tuple(rows), table)
+    return Table("names", caption, columns, tuple(rows), table)
 
 
 def _answers(found: pd.DataFrame) -> str:
@@ -478,9 +482,8 @@ def horizon_words(cells: Cells) -> str:
         some = []
         for cell in (c for c in found if c.approach == "dynamics" and c.parts and not c.noise):
             part = cell.parts[FORECAST]
-            lost = f"diverged at t = {part.diverged_s:.2f} s" if part.diverged_s is not None else ""
             changes = part.change([each for each in SAID_WITHIN_S if each <= part.time[-1]])
-            within = "/".join(f"{each:.0f}" if np.isfinite(each) else lost for each in changes)
+            within = "/".join(f"{each:.0f}" if np.isfinite(each) else diverged_words([part]) for each in changes)
             some.append(f"{METHOD_WORDS[cell.method]} {within}")
         said.append(f"{variant}: {', '.join(some)}")
     return f"[%] from the estimated start, within {'; '.join(map('{:g}'.format, SAID_WITHIN_S))} s; " + "; ".join(said)
@@ -503,11 +506,10 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
     if not fitted:
         return "not fitted" if cells else ""
     words = []
-    for part in (FORECAST, ORACLE, RECONSTRUCTION):
-        lost = [t for c in fitted if (t := c.parts[part].diverged_s) is not None]
-        said = spread_words(np.array([np.median(c.parts[part].accuracy()) for c in fitted]))
-        some = f" ({len(lost)} of {len(cells)} seeds)" * (len(cells) > 1)
-        words.append(f"diverged at t = {min(lost):.2f} s{some}" if lost else said)
+    for name in (FORECAST, ORACLE, RECONSTRUCTION):
+        parts = [cell.parts[name] for cell in fitted]
+        said = spread_words(np.array([np.median(part.accuracy()) for part in parts]))
+        words.append(diverged_words(parts, len(cells)) or said)
     return f"{words[0]} ({words[1]}; {words[2]})"
 
 

@@ -172,7 +172,7 @@ def _triangle(samples: Samples, powers: NDArray[np.int64]) -> Rows:
     return in_axes((products(samples.x, powers), samples.y), powers, samples)
 
 
-def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S) -> Sindy:
+def fit_weak_sindy(samples: Samples, degree: int = 3) -> Sindy:
     """Fit polynomial terms to rates that were never computed: both sides are averaged over windows first.
 
     The samples' outputs are what the inputs' rates are known to be; the terms are what the rates lack. Multiplied by a
@@ -183,7 +183,7 @@ def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S
         the last 15 % of the windows.
     """
     powers = library(len(samples.inputs), degree)
-    tests, slopes = _test_functions(samples.time, window_s, len(powers))
+    tests, slopes = _test_functions(samples.time, len(powers))
     columns = tests @ products(samples.x, powers)
     y = -slopes @ samples.x - tests @ samples.y
     triangle, sizes = in_axes((columns, y), powers, samples), sizes_of(columns, y)
@@ -195,18 +195,16 @@ def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S
     return Sindy(samples.inputs, samples.outputs, powers, found * sizes[1] / sizes[0][:, None], threshold)
 
 
-def _test_functions(
-    time: NDArray[np.float64], window_s: float, terms: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _test_functions(time: NDArray[np.float64], terms: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Test functions and their slopes, each with the weights of the trapezoidal rule, (window, sample)."""
     dt = float(time[1] - time[0])
-    half = max(round(window_s / dt / 2), 4)
+    half = max(round(WINDOW_S / dt / 2), 4)
     step = max(2 * half // OVERLAP, 1)
     centres = np.arange(half, len(time) - half, step)
     least = 2 * (terms + OVERLAP)
     if len(centres) < least:
         raise TrainingError(
-            f"the weak form of {terms} terms needs {least} windows of {window_s:g} s",
+            f"the weak form of {terms} terms needs {least} windows of {WINDOW_S:g} s",
             f"the record of {len(time)} samples holds {len(centres)}",
             "Record longer, shorten the windows, or lower the degree.",
         )

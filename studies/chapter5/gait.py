@@ -270,7 +270,7 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
 
 
 @in_style
-def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
+def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
     """One panel a disturbance, one line a model.
 
     found: disturbance, level, model, rmse_deg
@@ -292,7 +292,7 @@ def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
         f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is "
         f"given which are lost."
     )
-    return Figure(name, caption, f"Error of {listed(models)} against noise and missing readings.", found, drawn)
+    return Figure("disturbed", caption, f"Error of {listed(models)} against noise and missing readings.", found, drawn)
 
 
 def _look(model: str) -> dict[str, Any]:

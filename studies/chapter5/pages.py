@@ -251,7 +251,7 @@ def _span(values: NDArray[np.float64]) -> tuple[float, float]:
 
 
 @in_style
-def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
+def flow_figure(numbers: pd.DataFrame, power: float) -> Figure:
     """Mean spectrum beside the slope of -5/3, and dissipation beside the power that is put in."""
     drawn, ((left, right),) = panels(1, 2, 2.2, Room(across=0.8, top=0.3))
     shells = [column for column in numbers.columns if SHELL.fullmatch(column)]
@@ -277,4 +277,4 @@ def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
         f"{middle['re_lambda']:.1f}, largest wavenumber times Kolmogorov's length {middle['kmax_eta']:.2f}, turnover "
         f"{middle['turnover']:.2f}; dissipation {middle['dissipation']:.4f}, power {power:g}."
     )
-    return Figure(name, caption, "Spectrum of energy, and dissipation over time", numbers, drawn)
+    return Figure("flow", caption, "Spectrum of energy, and dissipation over time", numbers, drawn)

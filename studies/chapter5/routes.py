@@ -96,7 +96,7 @@ def circuit(field: Field, stops: ArrayLike, period: int, name: str) -> Route:
     return along(field, np.column_stack([np.interp(now, gone, column) for column in corners.T]), name)
 
 
-def random_walk(field: Field, seed: int, start: int | None = None, every: int = STEP_EVERY) -> Route:
+def random_walk(field: Field, seed: int, start: int | None = None) -> Route:
     """One sensor that walks: every third snapshot one node along one axis, each direction equally likely.
 
     The dissertation starts each walk at the centre, and does not say what happens at the border: here a step that
@@ -111,7 +111,7 @@ def random_walk(field: Field, seed: int, start: int | None = None, every: int = 
         start = int(np.argmin((away**2).sum(axis=1)))
     node, points = field.nodes[fixed(field, [start]).points[0, 0]].copy(), np.empty(len(field), int)
     for snapshot in range(len(field)):
-        if snapshot and snapshot % every == 0:
+        if snapshot and snapshot % STEP_EVERY == 0:
             step = np.zeros(len(shape), int)
             step[rng.integers(len(shape))] = rng.choice([-1, 1])
             for moved in (node + step, node - step):

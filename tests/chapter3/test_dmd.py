@@ -1,13 +1,17 @@
+"""Dynamic mode decomposition: optimised, in bags, exact."""
+
 import numpy as np
 import pytest
-from chapter3.dmd import _modes, fit_dmd
+from chapter3.dmd import _modes, fit_dmd, fit_exact_dmd
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Samples
 
+TIME = np.arange(600) / 100
 
-def samples(y, dt=0.01):
-    time = dt * np.arange(len(y)) + 3.0
+
+def samples(y, start=3.0):
+    time = np.arange(len(y)) / 100 + start
     return Samples(time[:, None], y, ("t",), tuple("abc"[: y.shape[1]]), time, np.full(len(y), np.nan))
 
 
@@ -20,8 +24,7 @@ def test_two_oscillations_go_on_as_they_were():
 
 
 def test_bags_tell_the_spread_of_the_eigenvalues():
-    time = np.arange(400) / 100
-    y = np.sin(6 * time)[:, None] + 0.01 * np.random.default_rng(0).standard_normal((400, 1))
+    y = np.sin(6 * TIME[:400])[:, None] + 0.01 * np.random.default_rng(0).standard_normal((400, 1))
     model = fit_dmd(samples(y), delays=20, rank=2, bags=5)
     assert np.abs(np.sort(model.eigenvalues.imag) - [-6, 6]).max() < 0.1
     assert 0 < model.spread.max() < 1
@@ -69,6 +72,38 @@ def test_before_its_start_a_mode_that_dies_out_is_held_and_does_not_explode():
 
 
 def test_what_a_file_rounds_away_is_no_mode():
-    t = np.arange(600) / 100
-    y = np.column_stack([np.sin(4 * t), np.cos(4 * t)]).round(5)  # two modes, however many are asked for
+    y = np.column_stack([np.sin(4 * TIME), np.cos(4 * TIME)]).round(5)  # two modes, however many are asked for
     assert len(fit_dmd(samples(y), delays=60, rank=15).eigenvalues) == 2
+
+
+@pytest.fixture
+def dying_waves():
+    """Two frequencies, one of them dying out, in two channels."""
+    slow, fast = np.cos(3 * TIME), np.exp(-0.4 * TIME) * np.sin(11 * TIME)
+    return np.column_stack([slow + fast, 2 * slow - fast])
+
+
+def test_rates_and_frequencies_of_clean_waves_are_exact(dying_waves):
+    found = fit_exact_dmd(samples(dying_waves, 0.0), delays=20, rank=4)
+    order = np.argsort(found.eigenvalues.imag)
+    assert found.eigenvalues[order] == pytest.approx([-0.4 - 11j, -3j, 3j, -0.4 + 11j], abs=1e-6)
+    assert found(TIME[:, None]) == pytest.approx(dying_waves, abs=1e-6)
+
+
+def test_modes_that_are_rounding_are_left_out(dying_waves):
+    found = fit_exact_dmd(samples(dying_waves, 0.0), delays=20, rank=15)  # four modes are all there is
+    assert np.isfinite(found.modes).all()
+    assert found(TIME[:, None]) == pytest.approx(dying_waves, abs=1e-5)
+
+
+def test_under_noise_its_waves_die_where_those_of_optimised_dmd_do_not(dying_waves):
+    # noise in both factors of least squares shrinks the map (Dawson et al. 2016), so that waves seem to die
+    wave = np.column_stack([np.cos(9 * TIME), np.sin(9 * TIME)])
+    noisy = samples(wave + 0.3 * np.random.default_rng(0).standard_normal(wave.shape))
+    exact, optimised = fit_exact_dmd(noisy, delays=5, rank=2), fit_dmd(noisy, delays=5, rank=2)
+    assert exact.eigenvalues.real.max() < optimised.eigenvalues.real.min() - 0.05
+
+
+def test_nothing_grows():
+    found = fit_exact_dmd(samples(np.exp(0.3 * TIME)[:, None]), delays=10, rank=1)
+    assert found.eigenvalues.real.max() == 0.0

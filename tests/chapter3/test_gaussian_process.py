@@ -16,9 +16,9 @@ X = RNG.uniform(-2, 2, (700, 2))
 Y = np.column_stack([np.sin(X[:, 0]) * X[:, 1], 5 + X[:, 1] ** 2])
 
 
-def samples(y):
+def samples(y, x=X):
     time = np.arange(len(y)) / 100
-    return Samples(X[: len(y)], y, ("a", "b"), ("p", "q"), time, np.full(len(y), np.nan))
+    return Samples(x[: len(y)], y, ("a", "b")[: x.shape[1]], ("p", "q")[: y.shape[1]], time, np.full(len(y), np.nan))
 
 
 @pytest.mark.parametrize("most_exact", [700, 100])
@@ -49,9 +49,7 @@ def test_points_far_apart_cover_a_line():
 def test_the_standard_deviation_is_that_of_the_textbook(kind):
     line = np.linspace(-3, 3, 60)
     y = np.sin(line) + 0.1 * np.random.default_rng(2).standard_normal(60)
-    found = fit_gaussian_process(
-        Samples(line[:, None], y[:, None], ("a",), ("b",), line, np.full(60, np.nan)), kind=kind, variance=True
-    )
+    found = fit_gaussian_process(samples(y[:, None], line[:, None]), kind=kind, variance=True)
     new = np.linspace(-4, 4, 9)[:, None]
     size, noise, lengths = found.size[0] ** 2, found.noise[0] ** 2, found.lengths[0]
     noise *= autocorrelation_time(y[:, None] - found(line[:, None]), FORGOTTEN)[0]
@@ -78,9 +76,7 @@ def test_ninety_five_of_a_hundred_values_lie_within_two_standard_deviations():
         rng = np.random.default_rng(seed)
         x, new = rng.uniform(-2, 2, (2, 300, 2))
         y = truth(x) + 0.3 * rng.standard_normal((300, 1))
-        found = fit_gaussian_process(
-            Samples(x, y, ("a", "b"), ("p",), np.arange(300) / 100, np.full(300, np.nan)), variance=True
-        )
+        found = fit_gaussian_process(samples(y, x), variance=True)
         inside.append(np.abs(found(new) - truth(new)) < 1.96 * found.sd(new))
     assert np.mean(inside) == pytest.approx(0.95, abs=0.05)
 
@@ -93,12 +89,8 @@ def test_a_variance_that_was_not_kept_is_refused():
 def test_an_interval_of_noise_that_remembers_is_as_wide_as_of_so_many_samples_fewer():
     t = np.arange(2000) / 100
     slow = np.convolve(np.random.default_rng(3).standard_normal(2009), np.ones(10) / np.sqrt(10), "valid")
-    few, all_ = (
-        fit_gaussian_process(
-            Samples(at[:, None], y[:, None], ("t",), ("b",), at, np.full(len(at), np.nan)), variance=True
-        )
-        for at, y in ((t[::10], (np.sin(t) + 0.2 * slow)[::10]), (t, np.sin(t) + 0.2 * slow))
-    )
+    y = (np.sin(t) + 0.2 * slow)[:, None]
+    few, all_ = (fit_gaussian_process(samples(y[::n], t[::n, None]), variance=True) for n in (10, 1))
     new = np.linspace(2, 18, 30)[:, None]
     assert np.median(all_.sd(new)) == pytest.approx(np.median(few.sd(new)), rel=0.35)
 
@@ -128,8 +120,7 @@ def surface(noise=0.0, count=1500, seed=0):
     x = random.uniform(-2, 2, (count, 2)) * [1.0, 30.0]
     truth = 5.0 + 3 * np.sin(x[:, 0]) * np.cos(x[:, 1] / 30)
     y = truth + noise * truth.std() * random.standard_normal(count)
-    t = np.arange(count) / 100
-    return Samples(x, y[:, None], ("a", "b"), ("c",), t, t), truth
+    return samples(y[:, None], x), truth
 
 
 def test_slopes_are_the_derivatives_of_the_output():

@@ -1,17 +1,10 @@
-"""A command line as a person calls it, and a study with one participant."""
+"""A study with one participant, and the recordings that it is of."""
 
-import io
 import re
-import sys
-from contextlib import redirect_stderr, redirect_stdout
-from subprocess import CompletedProcess
-from unittest.mock import patch
 
 import pytest
 from driven_walker import DrivenWalker
-from typer.testing import CliRunner
 
-from gaitdisc.cli import app, main
 from gaitdisc.ingest.storage import write_storage
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
@@ -20,23 +13,6 @@ ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "kn
 @pytest.fixture(autouse=True)
 def whatever_was_learnt(trained_briefly):
     """No test of a command looks at how good a network is."""
-
-
-@pytest.fixture(scope="session")
-def called():
-    """Exit code and everything printed, with refusals printed as `main` prints them; tests/test_cli.py starts anew."""
-
-    def call(*words):
-        arguments, out, err = ["gaitdisc", *map(str, words)], io.StringIO(), io.StringIO()
-        with patch.object(sys, "argv", arguments), redirect_stdout(out), redirect_stderr(err):
-            try:
-                main()
-                code = 0
-            except SystemExit as end:
-                code = end.code
-        return CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
-
-    return call
 
 
 @pytest.fixture(scope="session")
@@ -51,9 +27,9 @@ def recordings(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def study(recordings, tmp_path_factory):
+def study(recordings, tmp_path_factory, called):
     folder = tmp_path_factory.mktemp("study") / "study"
-    assert CliRunner().invoke(app, ["new", str(folder), "--from", str(recordings)]).exit_code == 0
+    called("new", folder, "--from", recordings, ends=0)
     file = folder / "study.toml"
     few, text = '"knee_angle_r", "ankle_angle_r"', file.read_text(encoding="utf-8")
     for key in ("angles", "outputs"):  # as few as leave something to vary

@@ -42,8 +42,7 @@ def test_angles_of_two_marker_files(tmp_path, called):
     write_trc(markers_of(known, RAJAGOPAL, away), tmp_path / "walk.trc")
     write_trc(static_of(RAJAGOPAL, away), tmp_path / "static.trc")
     done = called("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.mot",
-                  "--forward", 1, 0, 0)  # fmt: skip
-    assert done.returncode == 0, done.stderr
+                  "--forward", 1, 0, 0, ends=0)  # fmt: skip
     assert "marker set: rajagopal: " in done.stdout
     assert "direction: forward as given" in done.stdout
     assert "26 channels, 150 samples" in done.stdout
@@ -58,11 +57,9 @@ def test_widths_may_be_given(tmp_path, called):
     write_trc(markers_of(known, PLUG_IN_GAIT, away), tmp_path / "walk.trc")
     write_trc(static_of(PLUG_IN_GAIT, away), tmp_path / "static.trc")
     words = ("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.csv")
-    refused = called(*words)
-    assert refused.returncode == REFUSED
+    refused = called(*words, ends=REFUSED)
     assert says(refused.stderr, "neither static.trc nor the measures")
-    done = called(*words, "--widths", 0.1, 0.1, 0.07, 0.07, "--forward", 1, 0, 0)
-    assert done.returncode == 0, done.stderr
+    called(*words, "--widths", 0.1, 0.1, 0.07, 0.07, "--forward", 1, 0, 0, ends=0)
     angles = read_trial(tmp_path / "a.csv").stream("kinematics")
     np.testing.assert_allclose(angles["knee_angle_r"], known["knee_angle_r"], atol=1e-5)
 
@@ -71,8 +68,7 @@ def test_a_walk_without_a_marker_is_refused_in_one_sentence(tmp_path, called):
     write_trc(markers_of(known_angles(150), RAJAGOPAL), tmp_path / "walk.trc")
     write_trc(without(static_of(RAJAGOPAL), "LMFC"), tmp_path / "static.trc")
     done = called("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.csv",
-                  "--marker-set", "rajagopal")  # fmt: skip
-    assert done.returncode == REFUSED
+                  "--marker-set", "rajagopal", ends=REFUSED)  # fmt: skip
     assert says(done.stderr, "static.trc", "no LMFC")
     assert not (tmp_path / "a.csv").exists()
 
@@ -80,8 +76,7 @@ def test_a_walk_without_a_marker_is_refused_in_one_sentence(tmp_path, called):
 def test_what_the_reader_found_is_said(tmp_path, called, gait_data):
     walk = gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"
     static = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
-    done = called("angles", walk, "--static", static, "--out", tmp_path / "a.mot")
-    assert done.returncode == 0, done.stderr
+    done = called("angles", walk, "--static", static, "--out", tmp_path / "a.mot", ends=0)
     of_reader = [finding.line() for finding in (*read_trial(static).findings, *read_trial(walk).findings)]
     assert of_reader and set(of_reader) < set(done.stdout.splitlines())
 
@@ -104,14 +99,12 @@ def test_segments_need_no_static_trial_and_markers_do(tmp_path, called):
     file.add_parameter("ROTATION", "LABELS", labels)
     file["data"]["rotations"] = rotations
     file.write(str(tmp_path / "walk.c3d"))
-    done = called("angles", tmp_path / "walk.c3d", "--out", tmp_path / "a.mot")
-    assert done.returncode == 0, done.stderr
+    called("angles", tmp_path / "walk.c3d", "--out", tmp_path / "a.mot", ends=0)
     found = read_trial(tmp_path / "a.mot").stream("kinematics")
     for name in ("hip_adduction_l", "knee_rotation_r", "ankle_inversion_l"):
         np.testing.assert_allclose(found[name], known[name], atol=1e-3)
     write_trc(markers_of(known, RAJAGOPAL), tmp_path / "walk.trc")
-    refused = called("angles", tmp_path / "walk.trc", "--out", tmp_path / "b.mot")
-    assert refused.returncode == REFUSED
+    refused = called("angles", tmp_path / "walk.trc", "--out", tmp_path / "b.mot", ends=REFUSED)
     assert says(refused.stderr, "angles", "need a static")
 
 
@@ -125,8 +118,7 @@ def files(gait_data):
 def test_moments_of_a_walk(tmp_path, called, files, ending):
     walk, static = files
     out = tmp_path / f"moments.{ending}"
-    done = called("moments", walk, "--static", static, "--out", out, "--marker-set", "plug_in_gait")
-    assert done.returncode == 0, done.stderr
+    done = called("moments", walk, "--static", static, "--out", out, "--marker-set", "plug_in_gait", ends=0)
     assert says(done.stdout, "plate_2", "0.18", "0.79 s")
     assert "force balance over " in done.stdout and "24 channels, 197 samples" in done.stdout
     assert says(done.stdout, "plate 1", "451 N", "LGroundReactionForce", "9.845")  # what the reader found
@@ -140,16 +132,16 @@ def test_moments_of_a_walk(tmp_path, called, files, ending):
 
 def test_a_mass_in_grams_is_refused_in_one_sentence(tmp_path, called, files):
     walk, static = files
-    done = called("moments", walk, "--static", static, "--out", tmp_path / "a.csv", "--mass", 45800)
-    assert done.returncode == REFUSED
+    done = called("moments", walk, "--static", static, "--out", tmp_path / "a.csv", "--mass", 45800, ends=REFUSED)
     assert says(done.stderr, "5", "300 kg", "45800 kg")
     assert not (tmp_path / "a.csv").exists()
 
 
 def test_who_stands_on_one_plate_with_both_feet_has_no_moments(tmp_path, called, files):
     _, static = files
-    done = called("moments", static, "--static", static, "--out", tmp_path / "a.csv", "--marker-set", "plug_in_gait")
-    assert done.returncode == REFUSED
+    done = called(
+        "moments", static, "--static", static, "--out", tmp_path / "a.csv", "--marker-set", "plug_in_gait", ends=REFUSED
+    )
     assert says(done.stderr, "HC030A01.c3d", "plate_1", "0.00 s: both")
 
 
@@ -157,10 +149,8 @@ def test_markers_and_forces_in_two_files_need_the_mass(tmp_path, called, gait_da
     walk = gait_data.parent / "opensim_gait10dof" / "ExperimentalData"
     words = ("moments", walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot", "--static",
              walk / "subject01_static.trc", "--out", tmp_path / "a.sto", "--marker-set", "gait2354")  # fmt: skip
-    refused = called(*words)
-    assert refused.returncode == REFUSED
+    refused = called(*words, ends=REFUSED)
     assert says(refused.stderr, "person's body mass [kg];")
-    done = called(*words, "--mass", 72.6, "--sex", "m")
-    assert done.returncode == 0, done.stderr
+    called(*words, "--mass", 72.6, "--sex", "m", ends=0)
     written = read_trial(tmp_path / "a.sto").stream("moments")
     assert np.nanmin(written["ankle_angle_l_moment"]) == pytest.approx(-1.55, abs=0.2)

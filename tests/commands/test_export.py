@@ -4,10 +4,9 @@ import pytest
 from driven_walker import DrivenWalker
 from made_cycles import made_cycles
 from texts import says
-from typer.testing import CliRunner
 
 from gaitdisc.channel import Channel
-from gaitdisc.cli import app
+from gaitdisc.commands.options import REFUSED
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.processing.pooled_cycles import CYCLES, cycles_name
@@ -24,13 +23,13 @@ def test_export_brings_streams_to_one_time_base(tmp_path, called):
     trial = DrivenWalker("A", seed=8).walked(10.0, "natural")
     for key in ("kinematics", "forces"):
         write_storage(trial.stream(key), tmp_path / f"{key}.mot")
-    done = called("export", tmp_path / "kinematics.mot", tmp_path / "forces.mot", "--out", tmp_path / "both.csv")
-    assert done.returncode == 0, done.stderr
+    files = (tmp_path / "kinematics.mot", tmp_path / "forces.mot")
+    done = called("export", *files, "--out", tmp_path / "both.csv", ends=0)
     assert says(done.stdout, "12 channels, 1000 samples", "100 Hz")
-    assert called("check", tmp_path / "both.csv").returncode == 0
+    called("check", tmp_path / "both.csv", ends=0)
 
 
-def test_a_saved_model_as_onnx(tmp_path):
+def test_a_saved_model_as_onnx(tmp_path, called):
     pytest.importorskip("onnx")
     time = np.arange(400) / 100
     x, y = np.sin(time)[:, None], np.cos(time)[:, None]
@@ -39,23 +38,25 @@ def test_a_saved_model_as_onnx(tmp_path):
     done = fit_reconstructor("delay ridge", what, samples.rows(slice(0, 300)), samples.rows(slice(300, None)))
     channels = Channel("a", "angle", "deg"), Channel("b", "angle", "deg")
     save_model(SensingModel(done, channels, np.ones(1)), tmp_path / "model")
-    run = CliRunner().invoke(app, ["export", str(tmp_path / "model"), "--out", str(tmp_path / "model.onnx")])
-    assert run.exit_code == 0, run.output
-    assert says(run.stdout, "1 states")
+    assert says(called("export", tmp_path / "model", "--out", tmp_path / "model.onnx", ends=0).stdout, "1 states")
     assert (tmp_path / "model.onnx").stat().st_size > 200
-    two = CliRunner().invoke(app, ["export", "one", "two", "--out", str(tmp_path / "both.onnx")])
-    assert says(str(two.exception), ".onnx", "one model; 2")
+    two = called("export", "one", "two", "--out", tmp_path / "both.onnx", ends=REFUSED)
+    assert says(two.stderr, ".onnx", "one model; 2")
+
+
+def save_cycles(folder, session=""):
+    """A run of one person's cycles, as it is saved; the cycles."""
+    one = made_cycles(each=3, out=1, session=session)
+    CYCLES.save(one, folder / "cycles" / cycles_name("P01", session, "walk"), "key")
+    save_run(ResponseRun("t", "walk", "", (), made_now({}, 0, {}, "4.2"), {"cycles.json": (one,)}), folder)
+    return one
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
-def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
-    one = made_cycles(each=3, out=1)
-    CYCLES.save(one, tmp_path / "run" / "cycles" / "P01-walk", "key")
-    made = made_now({}, 0, {}, "4.2")
-    save_run(ResponseRun("t", "walk", "", (), made, {"cycles.json": (one,)}), tmp_path / "run")
-    words = ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(app, words + (["--parquet"] if ending == "parquet" else []))
-    assert done.exit_code == 0, done.output
+def test_cycles_of_a_run_as_tidy_tables(tmp_path, called, ending):
+    one = save_cycles(tmp_path / "run")
+    form = ["--parquet"] if ending == "parquet" else []
+    called("export", tmp_path / "run", "--out", tmp_path / "out", *form, ends=0)
     read = pd.read_csv if ending == "csv" else pd.read_parquet
     tables = {name: read(tmp_path / "out" / f"{name}.{ending}") for name in ("cycles", "curves", "means")}
     assert len(tables["cycles"]) == 8 and tables["cycles"]["kept"].sum() == 6
@@ -64,12 +65,9 @@ def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
     assert set(tables["means"]["n"]) <= {1, 3}
 
 
-def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path):
-    one = made_cycles(each=3, out=1, session="visit 1")
-    CYCLES.save(one, tmp_path / "run" / "cycles" / cycles_name("P01", "visit 1", "walk"), "key")
-    save_run(ResponseRun("t", "walk", "", (), made_now({}, 0, {}, "4.2"), {"cycles.json": (one,)}), tmp_path / "run")
-    done = CliRunner().invoke(app, ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out"), "--mot"])
-    assert done.exit_code == 0, done.output
+def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path, called):
+    one = save_cycles(tmp_path / "run", "visit 1")
+    called("export", tmp_path / "run", "--out", tmp_path / "out", "--mot", ends=0)
     means = one.mean_curves()
     for side in "lr":
         trial = read_trial(tmp_path / "out" / f"P01_visit-1_walk_{side}.mot")
@@ -81,7 +79,6 @@ def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path):
         assert not [name for name in angles.names if name.endswith("_l" if side == "r" else "_r")]
 
 
-def test_a_run_without_cycles_has_none_to_export(tmp_path):
+def test_a_run_without_cycles_has_none_to_export(tmp_path, called):
     save_run(ResponseRun("t", "walk", "exo", (), made_now({}, 0, {}, "4.2"), {}), tmp_path)
-    done = CliRunner().invoke(app, ["export", str(tmp_path), "--out", str(tmp_path / "out")])
-    assert says(str(done.exception), "tables of cycles")
+    assert says(called("export", tmp_path, "--out", tmp_path / "out", ends=REFUSED).stderr, "tables of cycles")

@@ -4,39 +4,32 @@ import pytest
 from made_clinic import made_controls, made_person, made_run
 from manufactured_discovery import manufactured
 from texts import says
-from typer.testing import CliRunner
 
-from gaitdisc.cli import app
 from gaitdisc.clinic.clinical_reference import save_reference
 from gaitdisc.commands.options import REFUSED
 
 
-def test_the_report_of_a_run_is_drawn_again_without_fitting(study):
+def test_the_report_of_a_run_is_drawn_again_without_fitting(study, called):
     shutil.rmtree(study / "run" / "report", ignore_errors=True)  # other tests leave one whose figures are not painted
-    ran = CliRunner().invoke(app, ["run", str(study), "--quiet"])
-    assert ran.exit_code == 0, ran.output
+    called("run", study, "--quiet", ends=0)
     page = study / "run" / "report" / "report.html"
     first = page.read_bytes()
     page.unlink()
-    drawn = CliRunner().invoke(app, ["report", str(study / "run")])
-    assert drawn.exit_code == 0, drawn.output
+    called("report", study / "run", ends=0)
     assert page.read_bytes() == first
 
 
 def test_any_saved_result_is_drawn_by_its_folder(tmp_path, called, unpainted):
     manufactured().save(tmp_path / "found")
-    done = called("report", tmp_path / "found")
-    assert (done.returncode, done.stdout) == (0, f"report: {tmp_path / 'found' / 'report.html'}\n")
+    done = called("report", tmp_path / "found", ends=0)
+    assert done.stdout == f"report: {tmp_path / 'found' / 'report.html'}\n"
     assert manufactured().sentence in (tmp_path / "found" / "report.html").read_text()
 
 
 def test_a_folder_with_no_page_to_draw_is_refused(tmp_path, called):
     (tmp_path / "model.json").write_text("{}")
-    done = called("report", tmp_path)
-    assert done.returncode == REFUSED
-    assert says(done.stderr, "no page", "above", "`models`")
-    done = called("report", tmp_path / "nowhere")
-    assert done.returncode == REFUSED and "nowhere is no folder" in done.stderr
+    assert says(called("report", tmp_path, ends=REFUSED).stderr, "no page", "above", "`models`")
+    assert "nowhere is no folder" in called("report", tmp_path / "nowhere", ends=REFUSED).stderr
 
 
 @pytest.fixture(scope="module")
@@ -49,24 +42,24 @@ def run_folder(tmp_path_factory):
 
 
 @pytest.fixture
-def without_figures(monkeypatch):
+def without_figures(monkeypatch, unpainted):
     """The page of everybody has its words alone: its figures take seconds a person."""
     monkeypatch.setattr("gaitdisc.processing.page.cycles_figures", lambda *_: [])
 
 
-def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path):
+def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path, unpainted):
     save_reference(made_controls(6), tmp_path)
-    one = called("report", run_folder.parent, "--person", "P07", "--reference", tmp_path)
-    assert one.returncode == 0 and "P07_s1.html" in one.stdout and "P07_s2.html" in one.stdout
+    one = called("report", run_folder.parent, "--person", "P07", "--reference", tmp_path, ends=0)
+    assert "P07_s1.html" in one.stdout and "P07_s2.html" in one.stdout
     assert "6 controls of the laboratory" in (run_folder / "report" / "people" / "P07_s1.html").read_text()
-    both = called("report", run_folder, "--person", "P07", "--before", "s1", "--after", "s2")
-    assert both.returncode == 0 and "P07_s1_s2.html" in both.stdout
+    both = called("report", run_folder, "--person", "P07", "--before", "s1", "--after", "s2", ends=0)
+    assert "P07_s1_s2.html" in both.stdout
     assert "s1 walk and s2 walk" in (run_folder / "report" / "people" / "P07_s1_s2.html").read_text()
 
 
 def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
-    nobody = called("report", run_folder, "--person", "P99")
-    assert nobody.returncode == 1 and "'P99'; there are P07, P08" in nobody.stderr
+    nobody = called("report", run_folder, "--person", "P99", ends=1)
+    assert "'P99'; there are P07, P08" in nobody.stderr
     half = called("report", run_folder, "--before", "s1")
     assert says(half.stderr, "--person, --before", "--after")
     none = called("report", run_folder, "--reference", tmp_path / "none")
@@ -77,8 +70,7 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
     called, run_folder, tmp_path, without_figures
 ):
     report = run_folder / "report"
-    first = called("report", run_folder.parent)
-    assert first.returncode == 0, first.stderr
+    first = called("report", run_folder.parent, ends=0)
     assert f"people: {report / 'index.html'}" in first.stdout and f"report: {report / 'report.html'}" in first.stdout
     page = report / "people" / "P08.html"
     drawn, written = page.read_bytes(), page.stat().st_mtime_ns
@@ -86,8 +78,8 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
     assert called("report", run_folder.parent).stdout == first.stdout
     assert page.stat().st_mtime_ns == written
     page.write_text("edited")
-    edited = called("report", run_folder)
-    assert edited.returncode == 1 and says(edited.stderr, "P08.html", "changed", "report")
+    edited = called("report", run_folder, ends=1)
+    assert says(edited.stderr, "P08.html", "changed", "report")
     assert page.read_text() == "edited"
     assert called("report", run_folder, "--overwrite").returncode == 0 and page.read_bytes() == drawn
     save_reference(made_controls(6), tmp_path)
@@ -98,11 +90,11 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
 
 def test_a_language_is_written_filled_in_kept_and_taken_away(called, run_folder, tmp_path, without_figures):
     table, page = tmp_path / "de.csv", run_folder / "report" / "people" / "P08.html"
-    empty = called("report", run_folder, "--language", table)
-    assert empty.returncode == 0 and "Fill in the second column" in empty.stdout
+    empty = called("report", run_folder, "--language", table, ends=0)
+    assert "Fill in the second column" in empty.stdout
     table.write_text("English,other\nWhat stands out,Auffälliges <i>\nknee flexion,Kniebeugung\n", encoding="utf-8")
-    done = called("report", run_folder, "--language", table)
-    assert done.returncode == 0 and "remain in English: " in done.stdout and "hip flexion; " in done.stdout
+    done = called("report", run_folder, "--language", table, ends=0)
+    assert "remain in English: " in done.stdout and "hip flexion; " in done.stdout
     assert "Auffälliges &lt;i&gt;" in page.read_text() and "Kniebeugung" in page.read_text()
     called("report", run_folder, "--person", "P08")
     assert "Kniebeugung" in page.read_text()

@@ -99,8 +99,8 @@ def test_what_is_refused_and_mended_ends_with_the_code_of_the_last_run(called, t
 
     (lab / "P01" / "walk.mot").write_text("half")
     monkeypatch.setattr("gaitdisc.run.watched_folder.WatchedFolder.settled", settled)
-    done = called("watch", tmp_path / "clinic", "--from", lab)
-    assert done.returncode == 1 and "lab must contain recordings" in done.stderr and "[gd-read]" in done.stderr
+    done = called("watch", tmp_path / "clinic", "--from", lab, ends=1)
+    assert "lab must contain recordings" in done.stderr and "[gd-read]" in done.stderr
     assert done.stderr.endswith("Stopped.\n") and not (tmp_path / "clinic" / "study.toml").exists()
-    absent = called("watch", tmp_path / "clinic", "--from", tmp_path / "none")
-    assert absent.returncode == 1 and says(absent.stderr, "none is not a folder", "Create it")
+    absent = called("watch", tmp_path / "clinic", "--from", tmp_path / "none", ends=1)
+    assert says(absent.stderr, "none is not a folder", "Create it")

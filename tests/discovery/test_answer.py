@@ -42,7 +42,7 @@ SLACK = replace(
 @pytest.fixture(scope="module")
 def answered(case, as_read, named):
     now, rivals = named
-    plain, *_ = compared([as_read, now], case.search.base)
+    plain, *_ = compared([as_read, now])
     return answer(case, plain, Verdict("missing_physics", now, tuple(rivals)))
 
 
@@ -132,8 +132,8 @@ def test_random_pushes_of_a_function_are_answered(tmp_path):
 def shape(case, as_read, cubic):
     """Return an answer without a name that is the truth: no effect of the catalogue but one comes near it."""
     part = Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    model = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
-    return scored(as_read.shooting, case.search.base, model)
+    model = as_read.model.refitted(as_read.shooting, (part,))
+    return scored(as_read.shooting, model)
 
 
 def test_the_evidence_of_an_answer_is_its_own_and_one_of_nothing_has_none(case, as_read, shape):
@@ -165,10 +165,10 @@ def test_one_that_is_in_the_answer_is_no_rival(case, named):
 def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(case, as_read, cubic, named):
     drift = next(one for one in case.search.candidates if one.label == "sensor_drift@x")
     parts = (Part(cubic, {"factor": -14.0}), Part(drift, {"rate": 0.0}))
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
-    both = scored(as_read.shooting, case.search.base, model)
+    model = as_read.model.refitted(as_read.shooting, parts)
+    both = scored(as_read.shooting, model)
     offset = next(one for one in case.search.candidates if one.label == "sensor_offset@x")
-    other = fit_model(as_read.shooting, case.search.base, (Part(offset, {"offset": 0.0}),), as_read.model.fit.starts)
+    other = as_read.model.refitted(as_read.shooting, (Part(offset, {"offset": 0.0}),))
     (rival,) = rivals_of(case.search, both, (replace(both, model=other),), 0.0)
     assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
     assert rival.tied

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, mass, two_rods
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of, unnamed_terms
-from gaitdisc.discovery.candidate_model import Part, fit_model, with_parts
+from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, candidates_of, unnamed_terms
+from gaitdisc.discovery.candidate_model import Part, with_parts
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.penalty import BENT, FLEXIBLE, penalty_of
 from gaitdisc.discovery.places import places_of
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -172,7 +171,7 @@ def test_each_compiles_where_it_is_put():
 
 def penalty(case, label, **values):
     candidate = next(one for one in case.search.candidates if one.label == label)
-    return penalty_of(candidate, dict.fromkeys(candidate.slots, 1.0) | values)
+    return candidate.penalty(dict.fromkeys(candidate.slots, 1.0) | values)
 
 
 def test_what_imitates_anything_costs_more_than_a_plain_term(case):
@@ -205,7 +204,7 @@ def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
 
 def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic):
     part = Part(cubic, {"factor": 0.0})
-    model = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    model = as_read.model.refitted(as_read.shooting, (part,))
     error = float(np.sqrt(model.fit.covariance[0, 0]))
     assert model.parts[0].values["factor"] == pytest.approx(-14.0, abs=max(4 * error, 0.1))
     assert model.names == ({"factor": "part0_factor"},)
@@ -213,7 +212,7 @@ def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic)
 
 
 def test_a_number_more_costs_the_logarithm_of_what_was_measured(case, as_read, cubic):
-    model = fit_model(as_read.shooting, case.search.base, (Part(cubic, {"factor": 0.0}),), as_read.model.fit.starts)
+    model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
     assert model.size == 1
     assert model.bic - model.fit.misfit == pytest.approx(np.log(model.fit.white.size))
 

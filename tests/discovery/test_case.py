@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import SHORT, hangs_on_step, set_up_case, split_in_time
-from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.noise import sensor_noise
@@ -104,8 +104,8 @@ def test_as_read_only_the_starts_are_fitted(as_read):
 
 def test_a_right_account_is_followed_over_half_a_trial_or_more_and_no_run_is_longer_than_wanted(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
-    longer = case.lengthened(scored(as_read.shooting, case.search.base, true))
+    true = as_read.model.refitted(as_read.shooting, (part,))
+    longer = case.lengthened(scored(as_read.shooting, true))
     assert longer.shooting.segments.length >= case.measured.samples.min() / 2
     assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
     length = as_read.shooting.segments.length
@@ -113,7 +113,7 @@ def test_a_right_account_is_followed_over_half_a_trial_or_more_and_no_run_is_lon
 
 
 def test_shapes_of_the_users_own_are_searched():
-    case = set_up_case(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
+    case = set_up_case(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), Request((Shape("quintic", ("x**5",)),)))
     assert "quintic@load" in {one.label for one in case.search.candidates}
 
 

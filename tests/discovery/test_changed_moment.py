@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from made_joint import made_joint
 
-from gaitdisc.discovery.changed_moment import changed_moment
-from gaitdisc.discovery.foot_mass import foot_mass
+from gaitdisc.discovery.changed_moment import changed_moment, foot_mass
 from gaitdisc.discovery.joint_and_trials import changes_of, nominal_moment, walk_of
 
 

@@ -10,20 +10,26 @@ from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.decision import Verdict, decide, held_out_proof, kept_on_longer_runs, needed
+from gaitdisc.discovery.decision import (
+    Verdict,
+    decide,
+    held_out_proof,
+    kept_on_longer_runs,
+    needed,
+    prefer_on_held_out,
+)
 from gaitdisc.discovery.forward_selection import pruned
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
 
 
-def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic):
+def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic, labelled):
     shooting = case.shooting(case.segments(case.learned, 0.4)).with_noise(as_read.noise)
     starts = case.guess.starts(shooting.segments)
-    damper = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
     read, both = (
-        scored(shooting, case.search.base, fit_model(shooting, case.search.base, parts, starts))
-        for parts in ((), (Part(cubic, {"factor": -14.0}), Part(damper, {"factor": 0.0})))
+        scored(shooting, fit_model(shooting, case.search.base, parts, starts))
+        for parts in ((), (Part(cubic, {"factor": -14.0}), Part(labelled["viscous_damping@load"], {"factor": 0.0})))
     )
     assert not case.spans_a_period(read)
     assert kept_on_longer_runs(case, read, both).labels == ("cubic_stiffness@load",)
@@ -31,35 +37,47 @@ def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic):
     assert kept_on_longer_runs(case, as_read, both) is both
 
 
-def _with(case, as_read, parts):
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
-    return scored(as_read.shooting, case.search.base, model)
+@pytest.fixture(scope="module")
+def beside(as_read, cubic, labelled):
+    """Return the cubic spring beside explanations that are idle."""
+
+    def fit(*idle):
+        parts = (Part(labelled[one], dict.fromkeys(labelled[one].slots, 0.0)) for one in idle)
+        model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": -14.0}), *parts))
+        return scored(as_read.shooting, model)
+
+    return fit
 
 
-def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case, as_read, cubic):
-    idle = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
-    both = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
-    assert needed(case, as_read, both).labels == ("cubic_stiffness@load",)
-    alone = _with(case, as_read, (Part(cubic, {"factor": -14.0}),))
+def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case, as_read, beside):
+    assert needed(case, as_read, beside("viscous_damping@load")).labels == ("cubic_stiffness@load",)
+    alone = beside()
     assert needed(case, as_read, alone) is alone
 
 
-def test_of_three_names_the_one_that_is_missed_least_goes(case, as_read, cubic):
-    others = [
-        next(one for one in case.search.candidates if one.label == label)
-        for label in ("viscous_damping@load", "sensor_drift@x")
-    ]
-    parts = (Part(cubic, {"factor": -14.0}), *(Part(one, dict.fromkeys(one.slots, 0.0)) for one in others))
-    kept = pruned(case.search, _with(case, as_read, parts), float("inf"), 2)
+def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imitates_them(
+    case, as_read, beside, labelled
+):
+    imitates = Part(labelled["periodic_forcing@load"], {"factor": 1.0, "factor_1": 1.0, "w": 3.0})
+    one = scored(as_read.shooting, as_read.model.refitted(as_read.shooting, (imitates,)))
+    true, two = beside(), beside("viscous_damping@load")
+    assert one.model.size > two.model.size > true.model.size
+    assert prefer_on_held_out(case, one, (two,)) is two
+    assert prefer_on_held_out(case, one, (two, true)) is true  # the plainest of what is preferred
+    assert prefer_on_held_out(case, true, (one, two)) is true  # more numbers are none of its equals
+    assert prefer_on_held_out(case, two, (true,)) is two  # not beyond chance
+
+
+def test_of_three_names_the_one_that_is_missed_least_goes(case, beside):
+    kept = pruned(case.search, beside("viscous_damping@load", "sensor_drift@x"), float("inf"), 2)
     assert len(kept.model.parts) == 2
     assert "cubic_stiffness@load" in kept.labels
 
 
-def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, as_read, cubic, monkeypatch):
-    idle = next(one for one in case.search.candidates if one.label == "viscous_damping@load")
-    both = _with(case, as_read, (Part(cubic, {"factor": -14.0}), Part(idle, {"factor": 0.0})))
+def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, as_read, cubic, beside, monkeypatch):
+    both = beside("viscous_damping@load")
     wrong = replace(cubic, name="unnamed")
-    bad = fit_model(as_read.shooting, case.search.base, (Part(wrong, {"factor": 2.0}),), as_read.model.fit.starts, 0)
+    bad = as_read.model.refitted(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
     shape = ScoredModel(bad, as_read.shooting)
     for name, value in (
         ("searched", lambda *_: (as_read, both, [])),
@@ -73,14 +91,24 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
     assert verdict.proof.test.p < 0.05
 
 
+def test_a_shape_stands_before_a_name_that_held_out_data_do_not_bear_out(case, as_read, cubic, beside, monkeypatch):
+    likelier, unnamed = beside("viscous_damping@load"), Part(replace(cubic, name="unnamed"), {"factor": -14.0})
+    shape = scored(as_read.shooting, as_read.model.refitted(as_read.shooting, (unnamed,)))
+    borne = {likelier.labels: True, shape.labels: True}
+    monkeypatch.setattr(decision, "held_out_proof", lambda *of: SimpleNamespace(bears_out=borne[of[-1].labels]))
+    monkeypatch.setattr(decision, "with_random_pushes", lambda *_: "pushes")
+    both = case, as_read, likelier, shape, []
+    assert decision.with_autocorrelation(*both) is None  # the two are as likely: the name stands
+    borne[likelier.labels] = False
+    found = decision.with_autocorrelation(*both)
+    assert (found.word, found.found.labels, found.rivals[0]) == ("unnamed", shape.labels, likelier)
+    borne[shape.labels] = False
+    assert decision.with_autocorrelation(*both) == "pushes"
+
+
 @pytest.mark.parametrize(("half", "word"), [(0.5, "missing_physics"), (1.1, "no_gap")])
-def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(case, as_read, cubic, monkeypatch, half, word):
-    others = [
-        next(one for one in case.search.candidates if one.label == label)
-        for label in ("viscous_damping@load", "sensor_drift@x")
-    ]
-    parts = (Part(cubic, {"factor": -14.0}), *(Part(one, dict.fromkeys(one.slots, 0.0)) for one in others))
-    three = _with(case, as_read, parts)
+def test_of_more_names_than_are_named_two_take_half_of_the_error(case, as_read, beside, monkeypatch, half, word):
+    three = beside("viscous_damping@load", "sensor_drift@x")
     monkeypatch.setattr("gaitdisc.discovery.decision.searched", lambda *_: (as_read, three, []))
     monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
     monkeypatch.setattr("gaitdisc.discovery.decision.CRITERIA", replace(CRITERIA, half=half))
@@ -140,11 +168,9 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
     )
     part = Part(remembering, {"factor": -30.0, **constants})
     base, starts = case.search.base, as_read.model.fit.starts
-    endless = scored(as_read.shooting, base, fit_model(as_read.shooting, base, (part,), starts, turns=0))
+    endless = scored(as_read.shooting, fit_model(as_read.shooting, base, (part,), starts, turns=0))
     assert not case.search.shows(endless.model)
-    plain = scored(
-        as_read.shooting, base, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts)
-    )
+    plain = scored(as_read.shooting, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts))
     as_rival = prefer_relatives(case, as_read, Verdict("missing_physics", plain, (endless, plain)))
     assert [one.labels for one in as_rival.rivals] == [("linear_stiffness@load",)]
     proof = held_out_proof(case, as_read, endless)
@@ -153,11 +179,10 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
     assert found.found.model.parts[0].values["factor"] == pytest.approx(-30.0, rel=0.05)
 
 
-def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic):
-    remembering = next(one for one in case.search.candidates if one.label == "series_elasticity@load")
-    parts = (Part(cubic, {"factor": -14.0}), Part(remembering, {"factor": 2.0, "tau": 5e13}))
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts, turns=0)
-    endless = scored(as_read.shooting, case.search.base, model)
+def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic, labelled):
+    parts = (Part(cubic, {"factor": -14.0}), Part(labelled["series_elasticity@load"], {"factor": 2.0, "tau": 5e13}))
+    model = as_read.model.refitted(as_read.shooting, parts, turns=0)
+    endless = scored(as_read.shooting, model)
     proof = held_out_proof(case, as_read, endless)
     found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert all(case.search.shows(one.model) for one in (found.found, *found.rivals))

@@ -132,17 +132,17 @@ def test_a_spring_beside_hysteresis_is_named_with_it():
 
 
 @pytest.mark.parametrize(
-    ("truth", "both"),
+    ("truth", "alike"),
     [
         (with_load("1.2"), {("sensor_offset", "x"), ("constant_load", "load")}),
         (mass().with_observation("x", "1.3*x"), {("sensor_gain", "x"), ("input_gain", "push")}),
     ],
-    ids=["offset and load", "gains of sensor and input"],
+    ids=["load and offset", "sensor and input"],
 )
-def test_what_a_linear_system_cannot_tell_apart_is_given_both(truth, both):
+def test_what_a_linear_system_cannot_tell_apart_is_given_together(truth, alike):
     discovery, _ = _found(truth)
     tied = {(one.name, one.place) for one in discovery.rivals if one.tied}
-    assert {_named(discovery)[1][0], *tied} >= both
+    assert {_named(discovery)[1][0], *tied} >= alike
 
 
 @pytest.mark.parametrize("cutoff_hz", [0.0, 6.0], ids=["white", "coloured"])
@@ -227,7 +227,7 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     assert (reached[:3] > 0.8).all()
     assert reached[3] < 0.65
     progress = []
-    found, _ = discover(mass(), measured, progress=progress.append)
+    found, _ = discover(mass(), measured, Request(progress=progress.append))
     assert [effect.name for effect in found.effects] == ["one_sided_spring"]
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
@@ -254,7 +254,7 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
 
 def test_every_step_is_told():
     said = []
-    discover(mass(), record(mass(), SEED), progress=said.append)
+    discover(mass(), record(mass(), SEED), Request(progress=said.append))
     assert says(said[0], "fitting the simulation")
     assert any("weighing" in one and "explanations" in one for one in said)
 

@@ -52,10 +52,10 @@ def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     case, now = bumpy
-    shape = fitted_shape(now, case.search, case.scale)
+    shape = fitted_shape(case, now)
     assert shape is not None
     (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
-    plain = now.under(shape, case.search.base)
+    plain = now.under(shape)
     before, after, noise = plain.model.fit.misfit, shape.model.fit.misfit, shape.model.fit.white.size
     assert 1 - (after - noise) / (before - noise) > 0.7

@@ -2,7 +2,7 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import beside_others, exchanged, pruned, select_forward, settled
@@ -20,7 +20,7 @@ def test_what_is_hidden_is_let_in_alone(named):
 
 
 def _with(case, as_read, *parts):
-    return ScoredModel(fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts), as_read.shooting)
+    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
 
 
 def _idle_and_true(case, as_read, cubic):

@@ -7,6 +7,7 @@ from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, Prior
 from gaitdisc.discovery.gap_share import FOLDS, GapScale, cross_validated, left_out_errors
+from gaitdisc.discovery.scored_model import ScoredModel
 
 
 @pytest.fixture(scope="module")
@@ -21,19 +22,18 @@ def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
     assert scale.least == pytest.approx((0.64 + 1.0) / 2)
 
 
-def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(case, as_read, cubic, scale):
-    shooting, base = as_read.shooting, case.search.base
-    before = cross_validated(scale, shooting, base, (), as_read.model)
-    after = cross_validated(scale, shooting, base, (Part(cubic, {"factor": -10.0}),), before.model)
+def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(as_read, cubic, labelled, scale):
+    before = cross_validated(scale, as_read, ())
+    begun = ScoredModel(before.model, as_read.shooting)
+    after = cross_validated(scale, begun, (Part(cubic, {"factor": -10.0}),))
     assert after.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
     assert after.gap < 0.15 * before.gap
-    load = next(one for one in case.search.candidates if one.label == "constant_load@load")
-    wrong = cross_validated(scale, shooting, base, (Part(load, {"factor": 0.0}),), before.model)
+    wrong = cross_validated(scale, begun, (Part(labelled["constant_load@load"], {"factor": 0.0}),))
     assert wrong.gap > 0.8 * before.gap
 
 
-def test_what_was_not_fitted_leaves_the_sensors_noise(case, as_read, cubic, scale):
-    found = cross_validated(scale, as_read.shooting, case.search.base, (Part(cubic, {"factor": -14.0}),), as_read.model)
+def test_what_was_not_fitted_leaves_the_sensors_noise(as_read, cubic, scale):
+    found = cross_validated(scale, as_read, (Part(cubic, {"factor": -14.0}),))
     assert found.errors.mean() == pytest.approx(scale.floor, rel=0.15)
     assert found.model.explanations == {("cubic_stiffness@load", ("x**3",))}
     assert found.model.penalty == pytest.approx(0.03)

@@ -24,7 +24,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, scored
 @pytest.fixture(scope="module")
 def runs(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    true = as_read.model.refitted(as_read.shooting, (part,))
     true = ScoredModel(true, as_read.shooting)
     return tuple(runs_of(case, one, case.held_out, as_read) for one in (as_read, true))
 
@@ -85,7 +85,7 @@ def test_the_past_of_what_comes_late_is_the_runs_own():
     late = next(one for one in case.search.candidates if one.pieces == ("delay(x, _d)",))
     part = Part(late, {"factor": -4.0, "d": 0.21})
     starts = case.guess.starts(shooting.segments)
-    true = scored(shooting, case.search.base, fit_model(shooting, case.search.base, (part,), starts))
+    true = scored(shooting, fit_model(shooting, case.search.base, (part,), starts))
     assert true.noise.size[0] < 0.03 * case.measured.observed.std()
     rough = replace(case, guess=StateGuess(case.guess.states + 0.3))
     wide = case.shooting(case.segments(case.learned, 3.0)).with_noise(true.noise)
@@ -98,8 +98,8 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
     case = set_up_case(neuron(), record(truth, 2, Experiment(seconds=40.0, noise=0.05)))
     as_read = case.as_read()
     b = next(one for one in case.search.candidates if one.label == "wrong_parameter@b")
-    true = fit_model(as_read.shooting, case.search.base, (Part(b, {"value": 1.0}),), as_read.model.fit.starts)
-    longer = case.lengthened(scored(as_read.shooting, case.search.base, true))
+    true = as_read.model.refitted(as_read.shooting, (Part(b, {"value": 1.0}),))
+    longer = case.lengthened(scored(as_read.shooting, true))
     assert longer.shooting.segments.length > 4 * as_read.shooting.segments.length
     run = runs_of(case, longer, case.held_out, longer)
     assert run.misfits.sum() < 1.2 * run.fit.white.size

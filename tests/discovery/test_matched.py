@@ -32,7 +32,8 @@ def with_inputs(measured, inputs):
 
 
 def short(measured):
-    return measured.between(0, 9)
+    drive = Drive.of(measured.drive.inputs[:, :9], measured.rate)
+    return replace(measured, drive=drive, observed=measured.observed[:, :9])
 
 
 def gap_in_push(measured):
@@ -113,7 +114,7 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
 def test_delays_of_the_users_own_effects_are_refused_as_those_of_the_file(measured, piece, words):
     with pytest.raises(SimulationError, match=words):
         discover(mass(), measured, Request((Shape("mine", (piece,)),)))
-    discover_begins = set_up_case(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
+    discover_begins = set_up_case(mass(), measured, Request((Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),)))
     assert any(one.name == "mine" for one in discover_begins.search.candidates)
 
 

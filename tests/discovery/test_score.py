@@ -6,7 +6,6 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.score import Scorer
 
 
 def _inquiry(truth, late=0):
@@ -16,7 +15,7 @@ def _inquiry(truth, late=0):
 
 def _scores(case, now):
     model = now.model
-    scorer = Scorer(now.shooting, model.simulation, model.machine, model.fit, case.search.places, case.rhythm)
+    scorer = case.search.scorer(now.shooting, model)
     return {one.candidate.label: one for one in reversed(scorer.scores(case.search.candidates))}
 
 
@@ -56,14 +55,14 @@ def test_the_best_delay_of_the_grid_is_near_the_true_one():
 
 def test_an_effect_that_is_let_in_already_promises_nothing_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    model = fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts)
+    model = as_read.model.refitted(as_read.shooting, (part,))
     before, after = _scores(case, as_read), _scores(case, replace(as_read, model=model))
     assert after["cubic_stiffness@load"].gain < 1e-3 * before["cubic_stiffness@load"].gain
 
 
 def test_scores_are_in_order_and_one_for_each_candidate(case, as_read):
     model = as_read.model
-    scorer = Scorer(as_read.shooting, model.simulation, model.machine, model.fit, case.search.places, case.rhythm)
+    scorer = case.search.scorer(as_read.shooting, model)
     scores = scorer.scores(case.search.candidates)
     assert len(scores) <= len(case.search.candidates)
     assert np.all(np.diff([one.gain for one in scores]) <= 0)
@@ -77,7 +76,7 @@ def test_a_sensor_that_lags_already_is_not_delayed_again():
 
 def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(case, as_read):
     model, candidates = as_read.model, case.search.candidates
-    scorer = Scorer(as_read.shooting, model.simulation, model.machine, model.fit, case.search.places, case.rhythm)
+    scorer = case.search.scorer(as_read.shooting, model)
     left = scorer.left_without_each(candidates)
     for trial in np.unique(as_read.shooting.segments.trial):
         some = np.flatnonzero(as_read.shooting.segments.trial != trial)
@@ -85,10 +84,10 @@ def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(case,
         others = replace(
             scorer,
             shooting=replace(as_read.shooting, segments=as_read.shooting.segments.among(some)),
-            fit=replace(model.fit, **parts),
+            model=replace(model, fit=replace(model.fit, **parts)),
         )
         best = others.scores(candidates)[0].gain
-        expected = (np.square(others.fit.projected[0]).sum() - best) / others.fit.white.size
+        expected = (np.square(others.model.fit.projected[0]).sum() - best) / others.model.fit.white.size
         assert left[trial] == pytest.approx(expected, rel=1e-9)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
 
@@ -12,26 +12,24 @@ from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 @pytest.fixture(scope="module")
 def with_cubic(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    return ScoredModel(
-        fit_model(as_read.shooting, case.search.base, (part,), as_read.model.fit.starts), as_read.shooting
-    )
+    return ScoredModel(as_read.model.refitted(as_read.shooting, (part,)), as_read.shooting)
 
 
 def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(case, as_read, with_cubic):
-    own = scored(as_read.shooting, case.search.base, with_cubic.model)
+    own = scored(as_read.shooting, with_cubic.model)
     fit = own.model.fit
     used = fit.starts.size + 1
     assert fit.misfit / (fit.white.size - used) == pytest.approx(1.0, abs=0.1)
 
 
 def test_the_noise_of_the_true_account_is_that_of_the_sensor(case, as_read, with_cubic):
-    own = scored(as_read.shooting, case.search.base, with_cubic.model)
+    own = scored(as_read.shooting, with_cubic.model)
     hidden = 0.02 * case.measured.observed.std()
     assert own.noise.size[0] == pytest.approx(hidden, rel=0.1)
 
 
 def test_what_comes_late_sees_the_past_of_the_account_and_not_of_the_simulation_as_read(case, as_read, with_cubic):
-    own = scored(as_read.shooting, case.search.base, with_cubic.model)
+    own = scored(as_read.shooting, with_cubic.model)
     past, states = own.shooting.segments.of(own.shooting.past), own.model.fit.states
     apart = np.abs(states - as_read.model.fit.states).max()
     assert np.abs(past - states).max() < 0.01 * apart
@@ -41,34 +39,30 @@ def test_where_the_simulation_errs_by_a_share_of_the_spread_the_noise_is_no_less
     case, as_read, with_cubic
 ):
     base = replace(case.search.base, inexact=0.1)
-    exact, inexact = (scored(as_read.shooting, each, with_cubic.model) for each in (case.search.base, base))
+    models = with_cubic.model, replace(with_cubic.model, base=base)
+    exact, inexact = (scored(as_read.shooting, one) for one in models)
     spread = case.measured.observed.std()
     assert inexact.noise.size[0] ** 2 == pytest.approx(exact.noise.size[0] ** 2 + (0.1 * spread) ** 2, rel=0.05)
-    gains = [
-        plain.bic - true.bic
-        for plain, true in (
-            compared([as_read, one], each) for one, each in ((exact, case.search.base), (inexact, base))
-        )
-    ]
+    gains = [plain.bic - true.bic for plain, true in (compared([as_read, one]) for one in (exact, inexact))]
     assert 0 < gains[1] < gains[0]
 
 
 def test_accounts_are_compared_under_the_noise_that_the_best_leaves(case, as_read, with_cubic):
-    plain, true = compared([as_read, with_cubic], case.search.base)
+    plain, true = compared([as_read, with_cubic])
     assert plain.noise is true.noise
     assert true.noise.size[0] < as_read.noise.size[0]
     assert plain.bic - true.bic > 100
 
 
 def test_the_order_in_which_accounts_stand_does_not_decide(case, as_read, with_cubic):
-    plain, true = compared([as_read, with_cubic], case.search.base)
-    true_first, plain_last = compared([with_cubic, as_read], case.search.base)
+    plain, true = compared([as_read, with_cubic])
+    true_first, plain_last = compared([with_cubic, as_read])
     assert true_first.bic == pytest.approx(true.bic, rel=1e-3)
     assert plain_last.bic == pytest.approx(plain.bic, rel=0.02)
 
 
 def test_an_account_under_its_own_noise_stays_as_it_is(case, as_read):
-    assert as_read.under(as_read, case.search.base) is as_read
+    assert as_read.under(as_read) is as_read
 
 
 def test_labels_name_what_is_in(as_read, with_cubic):
@@ -78,8 +72,8 @@ def test_labels_name_what_is_in(as_read, with_cubic):
 
 
 def test_under_anothers_noise_what_was_gained_stays(case, as_read, with_cubic):
-    own = scored(as_read.shooting, case.search.base, with_cubic.model)
-    moved = replace(as_read, gained=7.0).under(own, case.search.base)
+    own = scored(as_read.shooting, with_cubic.model)
+    moved = replace(as_read, gained=7.0).under(own)
     assert (moved.gained, moved.noise) == (7.0, own.noise)
 
 

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 
@@ -62,7 +62,7 @@ def test_a_fit_that_failed_is_not_sensible(case, as_read):
 
 def _both(case, as_read, cubic):
     parts = (Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
-    return ScoredModel(fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts), as_read.shooting)
+    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
 
 
 def test_less_one_explanation_the_others_stay(case, as_read, cubic):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.discover import discover
@@ -27,8 +27,8 @@ def _with(case, as_read, label, **values):
     """Return the simulation with one explanation in it, fitted from its numbers."""
     candidate = next(one for one in case.search.candidates if one.label == label)
     parts = (Part(candidate, values),)
-    model = fit_model(as_read.shooting, case.search.base, parts, as_read.model.fit.starts)
-    return scored(as_read.shooting, case.search.base, model)
+    model = as_read.model.refitted(as_read.shooting, parts)
+    return scored(as_read.shooting, model)
 
 
 def test_hysteresis_that_yields_within_a_step_is_dry_friction():

@@ -22,7 +22,7 @@ def asked(term):
 def damped():
     """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
     case, as_read = asked("-8*x**2*v")
-    shape = fitted_shape(as_read, case.search, case.scale)
+    shape = fitted_shape(case, as_read)
     return case, as_read, Verdict("unnamed", shape, (), proof=held_out_proof(case, as_read, shape))
 
 

@@ -8,7 +8,7 @@ from texts import says
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import known_shapes
-from gaitdisc.discovery.result import Correction, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.discovery.result import Correction, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.simulation.simulation_file import bundled
 
@@ -51,6 +51,16 @@ def test_where_nothing_is_named_it_says_what_is_left(verdict, before, words):
     assert says(said, "3.09 deg", "0.50")
 
 
+def test_where_nothing_meets_the_criteria_the_listed_explanation_that_removes_most_is_said():
+    sizes = {"theta": (0.054, 0.0105, 0.0087)}
+    size, left = GapSize(0.5, 0.5, 0.1, 0.4, sizes, 14), GapSize(0.5, 0.2, 0.1, 0.004, sizes, 14)
+    listed = (Explanation((SPRING,), replace(left, p=0.2)), Explanation((replace(SPRING, name="hysteresis"),), left))
+    none = {"verdict": "unexplained", "effects": (), "parts": (), "where": (), "rivals": (), "held_out": size}
+    said = sentence(**none, explanations=listed)
+    assert says(said, "no tested explanation meets the criteria", "hysteresis", "removes most: 88 %", "New trials")
+    assert "removes most" not in sentence(**none, explanations=listed[:1])
+
+
 def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
     sizes = {"theta": (0.054, 0.0105, 0.0087)}
     left = sentence(held_out=GapSize(0.5, 0.25, 0.01, 0.001, sizes, 14))
@@ -58,11 +68,16 @@ def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
     assert "unexplained" not in sentence(held_out=GapSize(0.5, 0.02, 0.01, 0.001, sizes, 14))
 
 
+def not_named(p, pieces, bic=900.0):
+    """Return what is said where held-out data do not bear out what was learned from."""
+    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=bic)
+    size = GapSize(1, 1, 1, p, {"theta": (0.054, 0.054, 0.0087)}, pieces)
+    return sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+
+
 @pytest.mark.parametrize(("bic", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])
 def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(bic, unproven):
-    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=bic)
-    size = GapSize(1, 1, 1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    said = not_named(0.4, 14, bic)
     assert says(said, "No effect is named") == unproven
     assert (says(said, "equation", "omega", "not")) == unproven
     assert ("agree within the noise" in said) != unproven
@@ -157,17 +172,8 @@ def test_few_pieces_are_counted_in_the_sentence():
     assert says(sentence(held_out=size), "0.50", "p = 0.031", "5 independent samples")
 
 
-@pytest.mark.parametrize(
-    ("p", "pieces", "words"),
-    [(0.34, 9, ("not", "(p = 0.34", "9 independent samples")), (0.001, 14, ("No effect", "equation", "omega", "most"))],
-    ids=["not borne out", "too little"],
-)
-def test_what_is_not_named_says_by_which_test_or_that_it_explains_too_little(p, pieces, words):
-    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
-    size = GapSize(1, 1, 1, p, {"theta": (0.054, 0.054, 0.0087)}, pieces)
-    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert says(said, *words)
-    assert "bear it out" not in said
+def test_what_is_not_borne_out_says_by_which_test():
+    assert says(not_named(0.34, 9), "not", "(p = 0.34", "9 independent samples")
 
 
 @pytest.mark.parametrize(
@@ -192,3 +198,9 @@ def test_what_clearly_moved_within_its_bounds_is_said():
     lost = Correction("b", 1.0, Estimate(1.01, 0.9, 1.1, "N m s/rad"))
     assert says(sentence(corrections=(clear, lost)), "inertia", "0.11 kg m^2", "0.1126 kg m^2")
     assert "moved" not in sentence(corrections=(lost,))
+
+
+def test_where_names_explain_too_little_it_is_not_said_that_the_data_do_not_bear_them_out():
+    said = not_named(0.001, 14)
+    assert says(said, "No effect", "equation", "omega", "most")
+    assert "bear it out" not in said

@@ -1,12 +1,14 @@
 """200 small mutations of functions that outlive the second half of the house: which of them do the tests see?
 
     python tests/house/mutants.py draw          # mutants.csv anew: function, operator, place, change
+    python tests/house/mutants.py follow        # the table after a move: room, place and change of each mutant today
     python tests/house/mutants.py run FOLDER    # answers those that have none, in a copy of the checkout
 
 A mutant is named by its function, the operator and its n-th place in that function, so that the same one is made again
-where a file has moved. Private functions of at most 12 lines may go back into their caller: none is drawn. Each mutant
-is judged by the tests of its room and between rooms that call the function, the shortest first; one unchanged pass
-records which. To begin anew, empty the last three columns of the table and take a new FOLDER.
+where a file has moved. One whose function is gone is given one of the function that took over its work, by hand, and
+no answer until it is run. Private functions of at most 12 lines may go back into their caller: none is drawn. Each
+mutant is judged by the tests of its room and between rooms that call the function, the shortest first; one unchanged
+pass records which. To begin anew, empty the last three columns of the table and take a new FOLDER.
 """
 
 import ast
@@ -20,15 +22,19 @@ import sys
 import time
 from collections import defaultdict
 from contextlib import suppress
+from difflib import SequenceMatcher
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 CHECKOUT, TABLE = Path(__file__).parents[2], Path(__file__).with_name("mutants.csv")
 COLUMNS = ("room", "function", "operator", "place", "change", "answer", "tests", "seconds")
-ROOMS = ("signals", "statistics", "kinetics", "ingest", "simulation", "report")
+ROOMS = ("signals", "statistics", "kinetics", "ingest", "simulation", "report")  # that mutants were drawn from
+BETWEEN = ("promises", "report", "library")  # whose tests judge mutants of every room: pages, and what the door offers
+GROUND = ("units.py", "words.py", "test_units.py", "test_wording.py")  # files beside the rooms, and their tests
 LIBRARIES = "numpy pandas scipy.signal scipy.optimize scipy.stats torch matplotlib.pyplot numba pytest"
 DRAWN, SEED, SHORT = 200, 28, 12
+ALIKE = 0.6  # of the letters of a change: below, it is another mutant than the one that was answered
 LIMIT_S, CHOSEN_S = 240, 40  # [s] after which a mutant counts as killed; the tests chosen take no longer unchanged
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 OPPOSITE = {ast.Lt: ast.GtE, ast.Gt: ast.LtE, ast.Eq: ast.NotEq, ast.Is: ast.IsNot, ast.In: ast.NotIn}
@@ -103,6 +109,12 @@ def list_functions(root: Path) -> dict[str, tuple[Path, ast.Module, Any]]:
     return {name: places[0] for name, places in every.items() if len(places) == 1}
 
 
+def find_room(place: str) -> str:
+    """Room of a file or test by its path from the checkout."""
+    room = place.split("/")[1]
+    return "ground" if ".py" in room else room
+
+
 def draw() -> list[dict[str, str]]:
     """The mutants: of each room in turn one of its functions, and one of the places in it."""
     generator, rows, rooms = random.Random(SEED), [], defaultdict(list)
@@ -120,6 +132,26 @@ def draw() -> list[dict[str, str]]:
             row["operator"], row["place"] = generator.choice(places)
             row["change"] = Mutation(copy.deepcopy(node), row["operator"], int(row["place"])).words
             rows += [row] if row not in rows else []
+    return sorted(rows, key=lambda row: tuple(row.values()))
+
+
+def follow(rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """Room, place and change of each mutant as its function is today; without the same one, no answer."""
+    functions = list_functions(CHECKOUT)
+    for row in rows:
+        path, _, node = functions.get(row["function"], (None, None, None))
+        count = Mutation(copy.deepcopy(node), row["operator"]).count if node else 0
+        if not path or not count:
+            row["answer"] = ""
+            print("no function" if not path else "no place", *list(row.values())[:5])
+            continue
+        words = [Mutation(copy.deepcopy(node), row["operator"], n + 1).words for n in range(count)]
+        alike = [SequenceMatcher(None, row["change"], change).ratio() for change in words]
+        same = int(row["place"]) <= count and words[int(row["place"]) - 1] == row["change"]
+        place = int(row["place"]) if same else alike.index(max(alike)) + 1
+        answer = row["answer"] if max(alike) > ALIKE else ""
+        row |= {"place": str(place), "change": words[place - 1], "answer": answer}
+        row["room"] = find_room(path.relative_to(CHECKOUT).as_posix())
     return sorted(rows, key=lambda row: tuple(row.values()))
 
 
@@ -164,19 +196,20 @@ def run_tests(place: Path, tests: list[str], limit_s: float, plugins: tuple[Any,
     return code
 
 
-def record_tests(folder: Path, functions: set[str]) -> None:
+def record_tests(folder: Path, rooms: dict[str, str]) -> None:
     """Write down which tests call which functions, and how long each test takes, in one pass over a copy."""
     place, written = folder / "tried", {}
     for name, (path, module, node) in list_functions(place).items():
-        if name in functions:
+        if name in rooms:
             call = ast.parse(f"__import__('mutant_hits').hit({name!r})").body[0]
             node.body.insert(bool(ast.get_docstring(node)), call)
             written[path] = module
     (place / "mutant_hits.py").write_text(HIT)
     for path, module in written.items():
         path.write_text(ast.unparse(module), encoding="utf-8")
-    rooms = [f"{top}/{room}" for top in ("tests", "gaitdisc") for room in ROOMS]
-    run_tests(place, ["tests/promises", *(one for one in rooms if (place / one).is_dir())], 7200, (Durations(),))
+    parts = [*rooms.values(), *BETWEEN, *(GROUND if "ground" in rooms.values() else ())]
+    tests = sorted({f"{top}/{part}" for top in ("tests", "gaitdisc") for part in parts})
+    run_tests(place, [one for one in tests if (place / one).exists()], 7200, (Durations(),))
     for path in written:
         shutil.copy2(folder / "clean" / path.relative_to(place), path)
 
@@ -202,14 +235,14 @@ def run(folder: Path, rows: list[dict[str, str]]) -> None:
         if not (folder / name).is_dir():
             shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns(".git", ".venv*", "demo", "build"))
     if not (folder / "durations").exists():
-        record_tests(folder, {row["function"] for row in rows})
+        record_tests(folder, {row["function"]: row["room"] for row in rows if not row["answer"]})
     for name in LIBRARIES.split():
         import_module(name)
     functions, chosen, begun = list_functions(folder / "clean"), choose_tests(folder), time.monotonic()
     waiting = [row for row in rows if not row["answer"]]
     for number, row in enumerate(waiting, 1):
         tests, start = chosen.get(row["function"], []), time.monotonic()
-        tests = [test for test in tests if test.split("/")[1] in (row["room"], "promises")]
+        tests = [test for test in tests if find_room(test) in (row["room"], *BETWEEN)]
         row["answer"] = "no test" if row["function"] in functions else "no function"
         if row["function"] in functions and tests:
             path, module, node = functions[row["function"]]
@@ -232,4 +265,7 @@ if __name__ == "__main__":
     else:
         with TABLE.open(newline="") as table:
             lines = list(csv.DictReader(table))
-        run(Path(sys.argv[2]).resolve(), lines)
+        if sys.argv[1] == "follow":
+            write_table(follow(lines))
+        else:
+            run(Path(sys.argv[2]).resolve(), lines)

@@ -146,11 +146,11 @@ def parameters(**numbers: float) -> C3DParameters:
 
 @pytest.mark.parametrize(("number", "unit"), [(102.0, "mm"), (10.2, "cm"), (0.102, "m")])
 def test_a_length_is_read_in_the_unit_that_makes_it_one(number, unit):
-    assert dict(body_measures_of(parameters(RKNEEWIDTH=number), "a.c3d").knee_width_m) == {"r": pytest.approx(0.102)}
+    assert dict(body_measures_of(parameters(RKNEEWIDTH=number)).knee_width_m) == {"r": pytest.approx(0.102)}
 
 
 def test_zero_and_nonsense_are_not_measured():
-    found = body_measures_of(parameters(RKNEEWIDTH=0.0, LKNEEWIDTH=9000.0, INTERASISDISTANCE=float("nan")), "a.c3d")
+    found = body_measures_of(parameters(RKNEEWIDTH=0.0, LKNEEWIDTH=9000.0, INTERASISDISTANCE=float("nan")))
     assert (dict(found.knee_width_m), found.inter_asis_m, found.mass_kg) == ({}, None, None)
 
 

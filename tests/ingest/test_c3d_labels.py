@@ -65,7 +65,7 @@ def _events(times, labels, contexts=(), first_frame=1, used=None):
     }
     if contexts:
         values["EVENT", "CONTEXTS"] = tuple(contexts)
-    return file_events(C3DParameters(values), 200, 100.0, first_frame, "a.c3d")
+    return file_events(C3DParameters(values, "a.c3d"), 200, 100.0, first_frame)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_the_clock_of_the_cropped_file_is_recognised_and_reported():
 
 def test_a_group_without_events():
     assert _events(np.empty((0, 2)), []) == ((), [])
-    assert file_events(C3DParameters({}), 200, 100.0, 1, "a.c3d") == ((), [])
+    assert file_events(C3DParameters({}), 200, 100.0, 1) == ((), [])
     assert _events([(0, 1.0)], ["LHS"], used=0) == ((), [])
 
 
@@ -128,7 +128,7 @@ def _streams(labels, units, channels=None, descriptions=(), plates=frozenset()):
     if descriptions:
         values["ANALOG", "DESCRIPTIONS"] = tuple(descriptions)
     rows = np.tile(np.arange(1.0, len(labels) + 1), (3, 1))
-    return analog_streams(rows, C3DParameters(values), set(plates), LabelMap(channels), "a.c3d")
+    return analog_streams(rows, C3DParameters(values, "a.c3d"), set(plates), LabelMap(channels))
 
 
 def test_muscles_are_known_behind_the_words_of_the_device():

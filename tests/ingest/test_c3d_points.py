@@ -17,12 +17,12 @@ from gaitdisc.ingest.reading import read_trial
 
 
 def _parameters(**point):
-    return C3DParameters({("POINT", name): value for name, value in point.items()})
+    return C3DParameters({("POINT", name): value for name, value in point.items()}, "a.c3d")
 
 
 def _streams(rows, labels=(), channels=None, **point):
     parameters = _parameters(LABELS=tuple(labels), **point)
-    return point_streams(np.array(rows, float), parameters, LabelMap(channels), "a.c3d")
+    return point_streams(np.array(rows, float), parameters, LabelMap(channels))
 
 
 WALK_MM = np.array([[100.0, 900, 1800, 300, 400, 500]])
@@ -41,25 +41,25 @@ def test_markers_come_in_metres(unit, factor):
 
 @pytest.mark.parametrize(("scale", "unit"), [(1.0, "mm"), (1e-3, "m")])
 def test_an_absent_unit_is_inferred_and_reported(scale, unit):
-    found, findings = length_unit(_parameters(), WALK_MM * scale, "a.c3d")
+    found, findings = length_unit(_parameters(), WALK_MM * scale)
     assert found == unit
     assert f"and are read as {unit}" in findings[0].what
 
 
 def test_an_absent_unit_that_the_numbers_do_not_tell_is_refused():
     with pytest.raises(UnitError, match=r"a\.c3d.*50"):
-        length_unit(_parameters(), np.full((5, 3), 50.0), "a.c3d")
+        length_unit(_parameters(), np.full((5, 3), 50.0))
 
 
 @pytest.mark.parametrize(("unit", "scale", "looks"), [("m", 1.0, "mm"), ("mm", 1e-3, "m")])
 def test_a_unit_that_the_numbers_contradict_is_refused(unit, scale, looks):
     with pytest.raises(UnitError, match=rf"markers in {unit} must be .* looks like {looks}"):
-        length_unit(_parameters(UNITS=(unit,)), WALK_MM * scale, "a.c3d")
+        length_unit(_parameters(UNITS=(unit,)), WALK_MM * scale)
 
 
 def test_a_unit_that_is_no_length_is_refused():
     with pytest.raises(UnitError, match=r"a\.c3d says 'deg'"):
-        length_unit(_parameters(UNITS=("deg",)), WALK_MM, "a.c3d")
+        length_unit(_parameters(UNITS=("deg",)), WALK_MM)
 
 
 def test_angles_moments_and_powers_are_not_scaled_as_lengths():
@@ -284,6 +284,6 @@ def test_offsets_are_held_to_the_same_and_zero_is_one():
             ("ANALOG", "OFFSET"): np.array([0.0, 0.0, np.nan]),
         }
     )
-    columns, (finding,) = unscaled_channels(parameters, 3, "a.c3d")
+    columns, (finding,) = unscaled_channels(parameters, 3)
     assert columns == {1, 2}
     assert says(finding.what, "ANALOG:SCALE", "#2", "0; ANALOG:OFFSET", "#3")

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.ingest.columns import (
     check_written_names,
@@ -61,6 +60,9 @@ def test_names_tell_quantities(name, quantity, unit, side):
         ("emg_sol_r", "%", "%", 1.0),
         ("trigger", "mV", "V", 1e-3),
         ("gyro", "rad/s", "deg/s", np.degrees(1.0)),
+        ("skin", "degC", "degC", 1.0),
+        ("pulse", "1/min", "1/min", 1.0),
+        ("ratio", "1", "1", 1.0),
     ],
 )
 def test_stated_units_are_converted_to_those_inside(name, unit, inside, one):
@@ -79,6 +81,8 @@ def test_an_unknown_unit_and_one_of_another_quantity_are_refused():
         column_in_unit("F", named_channel("ground_force_r_vy"), "Nn", "a.csv")
     with pytest.raises(UnitError, match=r"'k'.*knee_angle_r.*'mm'"):
         column_in_unit("k", named_channel("knee_angle_r"), "mm", "a.csv")
+    with pytest.raises(UnitError, match=r"'skin'.*found 'K'; temperatures must be in degC.*by an offset"):
+        column_in_unit("skin", named_channel("skin"), "K", "a.csv")
 
 
 def test_names_that_a_text_table_cannot_hold_are_refused():
@@ -86,10 +90,6 @@ def test_names_that_a_text_table_cannot_hold_are_refused():
     for name in ("a\tb", "a\nb", " a"):
         with pytest.raises(ChannelError, match=r"a\.csv.*names in a text table"):
             check_written_names([name], "a.csv")
-
-
-def test_a_column_without_rate_is_converted_whole():
-    assert column_in_unit("x", Channel("x", "signal", "1"), "1", "a").converted(np.array([2.0])) == 2.0
 
 
 def _column(label, title="", channels=None, file="a.sto"):

@@ -22,7 +22,8 @@ def _file(kind=2, origin=(0.0, 0, -40), units=("N", "N", "N", "Nmm", "Nmm", "Nmm
         "CORNERS": CORNERS.T[..., None],
         "ORIGIN": np.array(origin, float)[:, None],
     } | more
-    return C3DParameters({("FORCE_PLATFORM", k): v for k, v in values.items()} | {("ANALOG", "UNITS"): tuple(units)})
+    plates = {("FORCE_PLATFORM", name): value for name, value in values.items()}
+    return C3DParameters(plates | {("ANALOG", "UNITS"): tuple(units)}, "a.c3d")
 
 
 def _rows(sensors=(0, 0, -0.04), sign=1.0, count=200):
@@ -33,8 +34,8 @@ def _rows(sensors=(0, 0, -0.04), sign=1.0, count=200):
 
 
 def _read(rows, parameters):
-    plates, described = force_plates(parameters, rows.shape[1], "mm", "a.c3d")
-    streams, columns, findings = plate_streams(rows, plates, parameters, "mm", "a.c3d")
+    plates, described = force_plates(parameters, rows.shape[1], "mm")
+    streams, columns, findings = plate_streams(rows, plates, parameters, "mm")
     return streams, columns, described + findings
 
 

@@ -10,8 +10,9 @@ from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.new_study import _found_trials, found_study, recording_files, stands
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study import ANGLES, Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import grown_study, load_study, write_study
+from gaitdisc.ingest.study_settings import ANGLES
 from gaitdisc.recording import Event, Recording, Trial
 
 TIME = np.arange(300) / 100

@@ -20,11 +20,8 @@ def test_hash_is_that_of_the_bytes(tmp_path):
     assert source.sha256 == hashlib.sha256(b"abc\r\n").hexdigest()
 
 
-def test_all_line_ends_and_a_byte_order_mark_are_read():
+def test_all_line_ends_a_byte_order_mark_and_old_windows_text_are_read():
     assert RawFile("a", b"\xef\xbb\xbfone\r\ntwo\rthree\nfour").lines() == ["one", "two", "three", "four"]
-
-
-def test_old_windows_text_is_read():
     assert RawFile("a", b"Fu\xdf").lines() == ["Fuß"]
 
 

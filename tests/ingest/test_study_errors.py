@@ -5,16 +5,17 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
-from gaitdisc.ingest.study_file import line_of, load_study, schema_error
-from gaitdisc.ingest.study_rules import (
-    check_channels,
+from gaitdisc.ingest.study import (
+    Conditions,
+    Participant,
+    PlannedTrial,
+    Study,
     check_conditions,
     check_participants,
     check_sessions,
-    check_variables,
-    refuse,
 )
+from gaitdisc.ingest.study_file import line_of, load_study, schema_error
+from gaitdisc.ingest.study_settings import Models, check_channels, check_variables, refuse
 
 TEXT = """title = "t"
 [conditions]
@@ -107,11 +108,11 @@ def _participants(words, *people):
 )
 def test_conditions_and_pseudonyms(words, people, message):
     with pytest.raises(PydanticCustomError, match=message):
-        check_participants(_participants(words, *people), ("unknown", "static"))
+        check_participants(_participants(words, *people))
 
 
 def test_unknown_conditions_may_be_listed():
-    check_participants(_participants(("natural", "exo"), ("P1", "unknown"), ("P2", "exo")), ("unknown",))
+    check_participants(_participants(("natural", "exo"), ("P1", "unknown"), ("P2", "exo")))
 
 
 @pytest.mark.parametrize(
@@ -125,7 +126,7 @@ def test_unknown_conditions_may_be_listed():
 )
 def test_words_of_conditions_differ(conditions, message):
     with pytest.raises(PydanticCustomError, match=message):
-        check_conditions(Conditions(**conditions), "unknown")
+        check_conditions(Conditions(**conditions))
 
 
 def _sessions(sessions, of_trial):

@@ -30,6 +30,7 @@ def test_a_missing_file_is_a_file_not_found_error_with_its_code(name):
     with pytest.raises(FileNotFoundError, match=name) as refusal:
         gd.read(name)
     assert isinstance(refusal.value, gd.GaitdiscError) and refusal.value.code == "gd-read"
+    assert not refusal.value.needed.startswith(name)
 
 
 def test_a_table_carries_its_units():

@@ -42,6 +42,12 @@ def test_inputs_may_be_a_mapping_a_table_or_a_recording():
     np.testing.assert_allclose(rate, (u - 0.7 * runs[0]["x"])[1:-1], atol=1e-4)
 
 
+def test_an_observation_has_the_input_and_the_time_of_its_sample():
+    model = gd.simulation_from_function(lambda x, u: u - x, observations={"seen": "x + u + 2*t"})
+    run = gd.simulate(model, TIME, {"u": np.sin(TIME)}, start=[0.0])
+    np.testing.assert_allclose(run["seen"], run["x"] + np.sin(TIME) + 2 * TIME, atol=1e-12)
+
+
 def test_units_are_those_of_the_simulation():
     pendulum = gd.bundled_simulation("pendulum")
     run = gd.simulate(pendulum, TIME, start={state.name: 0.1 for state in pendulum.states},

@@ -4,7 +4,6 @@ import errno
 import json
 import os
 import shutil
-import signal
 import subprocess
 import sys
 from importlib import import_module
@@ -17,7 +16,7 @@ from manufactured_discovery import manufactured
 
 import gaitdisc as gd
 from gaitdisc.channel import Channel
-from gaitdisc.cli import COMMANDS, main
+from gaitdisc.cli import COMMANDS
 from gaitdisc.commands.options import ENDED, REFUSED
 from gaitdisc.discovery.folder import load_discovery, save_discovery
 from gaitdisc.errors import WriteError
@@ -106,20 +105,12 @@ def run_once(_):
     yield [Path("w.mot")]
 
 
-def refused_words(monkeypatch, capsys, *words):
-    """Run a command that is refused, and return the one line that it prints."""
-    monkeypatch.setattr("sys.argv", ["gaitdisc", *words])
+@pytest.fixture
+def refused_words(monkeypatch, called):
+    """The one line that a command prints which is refused; `watch` looks once."""
     monkeypatch.setattr("gaitdisc.run.watched_folder.WatchedFolder.changes", run_once)
     monkeypatch.setattr("gaitdisc.commands.watch._grown", lambda *_: [])
-    before = signal.getsignal(signal.SIGTERM)
-    try:
-        with pytest.raises(SystemExit) as stopped:
-            main()
-    finally:
-        signal.signal(signal.SIGTERM, before)
-    printed = capsys.readouterr().err
-    assert stopped.value.code == REFUSED, printed
-    return " ".join(printed.split())
+    return lambda *words: " ".join(called(*words, ends=REFUSED).stderr.split())
 
 
 def contents(folder):
@@ -134,7 +125,7 @@ FOREIGN = [(name, file) for name, (_, files) in WRITE.items() for file in files]
 
 
 @pytest.mark.parametrize(("name", "file"), FOREIGN, ids=map(" ".join, FOREIGN))
-def test_a_file_of_somebody_else_is_left_as_it_is(lab, monkeypatch, capsys, name, file):
+def test_a_file_of_somebody_else_is_left_as_it_is(lab, refused_words, name, file):
     words = WRITE[name][0]
     out = next((word for word in words if word.startswith("OUT")), "OUT")
     mine = Path(os.path.normpath(Path(out) / file))
@@ -146,7 +137,7 @@ def test_a_file_of_somebody_else_is_left_as_it_is(lab, monkeypatch, capsys, name
     mine.parent.mkdir(parents=True, exist_ok=True)
     mine.write_text(MINE)
     before = contents(lab)
-    said = refused_words(monkeypatch, capsys, *words)
+    said = refused_words(*words)
     assert contents(lab) == before
     assert mine.name in said or mine.parent.name in said, said
     if name != "chapter":  # which has a rule of its own: its folder is another one, or deleted
@@ -155,7 +146,7 @@ def test_a_file_of_somebody_else_is_left_as_it_is(lab, monkeypatch, capsys, name
 
 @pytest.mark.parametrize("name", ONTO_AN_INPUT)
 @pytest.mark.parametrize("by", ["its name", "..", "a hard link", "a symbolic link"])
-def test_an_input_is_left_as_it_is_whatever_is_said(lab, monkeypatch, capsys, name, by):
+def test_an_input_is_left_as_it_is_whatever_is_said(lab, refused_words, name, by):
     words, file = ONTO_AN_INPUT[name]
     if by == "..":
         words = [f"../{lab.name}/{word}" if word == file else word for word in words]
@@ -167,12 +158,12 @@ def test_an_input_is_left_as_it_is_whatever_is_said(lab, monkeypatch, capsys, na
         given = words.index(file)
         words = [true if k == given and words.count(file) > 1 else word for k, word in enumerate(words)]
     before = contents(lab)
-    said = refused_words(monkeypatch, capsys, *words, "--overwrite")
+    said = refused_words(*words, "--overwrite")
     assert contents(lab) == before
     assert f"{Path(file).name} is an input of gaitdisc" in said or "another kind of result" in said
 
 
-def test_what_the_same_command_wrote_is_replaced_until_a_user_changes_it(tmp_path, monkeypatch):
+def test_what_the_same_command_wrote_is_replaced_until_a_user_changes_it(tmp_path, monkeypatch, called):
     monkeypatch.chdir(tmp_path)
     gd.write(wave(), "w.mot")
     shutil.copy("w.mot", "mine.mot")
@@ -181,33 +172,24 @@ def test_what_the_same_command_wrote_is_replaced_until_a_user_changes_it(tmp_pat
         ["new", "study", "--from", "."],
         ["export", "mine.mot", "--out", "x.csv"],
     ):
-        assert ended(*words) == 0
-    assert ended("new", "study", "--from", ".") == 0
+        called(*words, ends=0)
+    called("new", "study", "--from", ".", ends=0)
     Path("x.csv").write_text(Path("x.csv").read_text() + "0\n")
-    assert ended("export", "mine.mot", "--out", "x.csv") == REFUSED
-    assert ended("export", "mine.mot", "--out", "x.csv", "--overwrite") == 0
-    assert ended("export", "x.csv", "--out", "x.csv", "--overwrite") == REFUSED
-    assert ended("angles", "mine.mot", "--out", "x.csv") == REFUSED
+    called("export", "mine.mot", "--out", "x.csv", ends=REFUSED)
+    called("export", "mine.mot", "--out", "x.csv", "--overwrite", ends=0)
+    called("export", "x.csv", "--out", "x.csv", "--overwrite", ends=REFUSED)
+    called("angles", "mine.mot", "--out", "x.csv", ends=REFUSED)
 
 
-def test_a_page_is_drawn_again_by_report_until_a_user_changes_it(tmp_path, monkeypatch):
+def test_a_page_is_drawn_again_by_report_until_a_user_changes_it(tmp_path, monkeypatch, called):
     monkeypatch.chdir(tmp_path)
     save_discovery(manufactured(), Path("found"))  # as before there were lists
-    assert [ended("report", "found") for _ in range(2)] == [0, 0]
+    for _ in range(2):
+        called("report", "found", ends=0)
     page = Path("found/report.html")
     page.write_text(page.read_text() + MINE)
-    assert ended("report", "found") == REFUSED
+    called("report", "found", ends=REFUSED)
     assert page.read_text().endswith(MINE)
-
-
-def ended(*words):
-    """Exit code of a command."""
-    from typer.testing import CliRunner
-
-    from gaitdisc.cli import app
-
-    done = CliRunner().invoke(app, list(words))
-    return REFUSED if isinstance(done.exception, gd.GaitdiscError) else done.exit_code
 
 
 def wave():

@@ -32,17 +32,6 @@ def test_phi_is_always_in_its_interval(durations, seed):
     assert np.all((phi[inside] >= 0) & (phi[inside] < 100))
 
 
-def test_a_dropped_stride_leaves_a_hole():
-    cut = Strides(np.array([0.0, 2.0]), np.array([1.0, 3.0]), "r", "force")
-    assert np.isnan(cut.phi(np.array([1.5])))[0]
-
-
-def test_no_strides_at_all():
-    none = Strides(np.empty(0), np.empty(0), "r", "force")
-    assert len(none) == 0
-    assert np.isnan(none.phi(np.arange(3.0))).all()
-
-
 def test_normalised_ramp_is_percent_itself():
     time = np.arange(301) / 100
     ramp = Recording(time, (time % 1.0 * 100)[:, None], (KNEE,))
@@ -80,6 +69,7 @@ def test_every_time_has_the_number_of_its_stride():
     np.testing.assert_array_equal(np.isfinite(strides.phi(time)), strides.number(time) >= 0)
     none = Strides(np.empty(0), np.empty(0), "r", "force")
     np.testing.assert_array_equal(none.number(time), np.full(8, -1))
+    assert len(none) == 0 and np.isnan(none.phi(time)).all()
 
 
 def test_a_table_is_cut_as_its_recording_is():

@@ -1,8 +1,11 @@
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from made_joint import made_joint
+from manufactured_discovery import manufactured
 from texts import says
 
 from gaitdisc.channel import vocabulary
@@ -21,6 +24,7 @@ from gaitdisc.discovery.effect_words import estimate_text
 from gaitdisc.discovery.joint_and_trials import nominal_moment
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Finding, Recording, Trial
@@ -165,8 +169,29 @@ def test_a_model_that_does_not_explain_the_nominal_walk_names_no_device(walks):
         check_calibrated(model, walks.nominal)
 
 
+@pytest.mark.parametrize("verdict", ["The simulation lacks a linear spring.", "No effect is named: they agree."])
+def test_a_walk_without_emg_has_one_verdict(monkeypatch, verdict):
+    def refused(*_):
+        raise NoMomentsError("naming the effect needs EMG in both walks", "W01 exo has no EMG", "Add it.")
+
+    study = SimpleNamespace(participant=lambda _: SimpleNamespace(trials=()))
+    monkeypatch.setattr("gaitdisc.ingest.study_file.load_study", lambda _: study)
+    monkeypatch.setattr("gaitdisc.ingest.public_words.words_of", lambda *_: PublicWords())
+    monkeypatch.setattr("gaitdisc.discovery.device_study.device_walks", refused)
+    monkeypatch.setattr("gaitdisc.discovery.nominal_model.nominal_and_trials", lambda *_: (None, None))
+    compared = manufactured(sentence=verdict)
+    monkeypatch.setattr("gaitdisc.discovery.discover_files.discovered", lambda *_: (compared, None))
+    found, _ = discover_study(Path("study.toml"), "W01")
+    reason, _, said = found.sentence.partition(". ")
+    assert reason == (
+        "Naming the effect needs EMG in both walks, but W01 exo has no EMG: only the motion of both walks was "
+        "compared, which gives no moment of the device"
+    )
+    assert said == verdict and found.effects == compared.effects
+
+
 @pytest.mark.slow
-def test_without_moments_the_motion_is_compared_and_nothing_is_named(tmp_path):
+def test_without_moments_the_motion_is_compared(tmp_path):
     from gaitdisc.cohort.demonstration import write_demonstration
 
     study = write_demonstration(tmp_path, 30.0, 1)

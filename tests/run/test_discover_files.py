@@ -37,7 +37,7 @@ def files(tmp_path_factory):
 
 def test_the_answer_carries_what_it_rests_on(files):
     steps = []
-    found, augmented = discover_files(files / "mass.toml", files / "walk.csv", progress=steps.append)
+    found, augmented = discover_files(files / "mass.toml", files / "walk.csv", Request(progress=steps.append))
     assert steps[0] == "reading mass.toml and walk.csv"
     assert found.provenance is not None
     called = {"simulation": "mass.toml", "measured table": "walk.csv"}

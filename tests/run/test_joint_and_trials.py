@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from made_joint import GAIN, made_joint
 
+from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.joint_and_trials import nominal_moment, tracked_joint, tracked_trials, weighed
 from gaitdisc.errors import ChannelError, StrideError
@@ -18,7 +19,7 @@ def model():
 
 def found_in(record, model):
     simulation = tracked_joint(record, model)
-    return discover(simulation, tracked_trials(record, model, simulation), possible=weighed)[0]
+    return discover(simulation, tracked_trials(record, model, simulation), Request(possible=weighed))[0]
 
 
 def test_the_nominal_walk_gives_each_muscle_its_gain_and_sign(model):

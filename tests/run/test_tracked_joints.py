@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.discovery.discover_tracked import discovery_of
-from gaitdisc.discovery.tracked_joints import doubts, joints_of, shown_by
+from gaitdisc.discovery.discover_tracked import discovery_of, doubts, joints_of, shown_by
 from gaitdisc.discovery.tracked_pass import (
     balance,
     moments_of_angle_noise,

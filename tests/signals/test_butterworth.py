@@ -82,7 +82,7 @@ def test_a_run_too_short_is_left_out_and_said():
     x[130:150] = np.nan
     assert np.isnan(lowpassed(recording(x)).values[120:130, 0]).all()
     (finding,) = short_run_findings(recording(x))
-    assert says(finding.what, "1 segment(s)", "shorter", "18 samples (0.180 s)")
+    assert says(finding.what, "1 segment", "fewer", "18 samples (0.180 s)")
     assert "needs 18 samples" in finding.spoils
     assert finding.spans == ((1.2, 1.3),)
 

@@ -29,14 +29,21 @@ def test_trials_of_different_lengths():
     np.testing.assert_allclose(measured.time(1), np.arange(80) / 100)
 
 
-def test_some_trials_and_some_samples():
+def test_trials_that_are_too_short_are_left_out_with_a_finding():
+    whole, alone = _measured(_trial("a"), _trial("b", 80)), _measured(_trial("a", 19), _trial("b", 20))
+    measured = _measured(_trial("c", 12), _trial("a"), _trial("b", 80), _trial("d", 19))
+    assert measured.trials == whole.trials == ("a", "b")
+    np.testing.assert_array_equal(measured.observed, whole.observed)
+    (finding,) = measured.findings
+    assert finding.what == "2 trials with fewer than 20 samples: 'c' (12), 'd' (19)"
+    assert [one.kind for one in alone.findings] == ["short trial", "one trial"] and alone.trials == ("b",)
+    with pytest.raises(SamplingError, match=r"needs 20 samples; walk\.csv, trial 'a' has 19"):
+        _measured(_trial("a", 19), _trial("b", 12))
+
+
+def test_some_trials():
     measured = _measured(_trial("a"), _trial("b", 80))
     assert measured.selected([0]).observed.shape == (1, 50, 1)
-    late = measured.between(40, 80)
-    assert late.trials == ("b",)
-    assert late.time(0)[0] == pytest.approx(0.4)
-    with pytest.raises(SamplingError, match=r"samples 40.*90.*80"):
-        measured.between(40, 90)
 
 
 def test_one_trial_is_told():

@@ -1,6 +1,7 @@
 """Tables and recordings: one clear refusal for each fault."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -119,9 +120,9 @@ def test_files_that_are_no_table(ankle, tmp_path, name):
     assert name in str(refusal.value)
 
 
-def _recording(unit="deg", tau=None):
+def _recording(unit="deg", tau=None, quantity="angle"):
     t = np.arange(50) / 100
-    channels = (Channel("theta", "angle", unit), Channel("tau", "moment", "N m"), Channel("phase", "signal", "1"))
+    channels = (Channel("theta", quantity, unit), Channel("tau", "moment", "N m"), Channel("phase", "signal", "1"))
     tau = np.cos(9 * t) if tau is None else tau
     return Recording(t, np.column_stack([np.sin(7 * t), tau, t % 1]), channels, source=Source("walk.mot"))
 
@@ -159,6 +160,9 @@ def test_a_real_walk_drives_a_knee(gait_data):
 def test_recordings_with_faults(ankle):
     with pytest.raises(UnitError, match=r"'theta'.*walk\.mot.*'N m'"):
         measured_of_recordings([_recording("N m")], ankle)
+    with pytest.raises(UnitError, match=r"same kind as 'K'.*walk\.mot has it in 'degC'; .* by an offset"):
+        warm = replace(ankle, states=(replace(ankle.states[0], unit="K"), *ankle.states[1:]))
+        measured_of_recordings([_recording("degC", quantity="signal")], warm)
     with pytest.raises(ReadError, match=r"walk.mot'?.*'tau': 21 rows.*0\.07 s"):
         absent = (np.arange(50) >= 7) & (np.arange(50) < 28)
         measured_of_recordings([_recording(tau=np.where(absent, np.nan, np.arange(50.0)))], ankle)

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from statsmodels.stats.multitest import multipletests
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.statistics.holm_sidak import check_level, holm_sidak, holm_sidak_by, largest_family, step_levels
+from gaitdisc.statistics.holm_sidak import check_level, holm_sidak, holm_sidak_by, step_levels
 
 PROBABILITIES = st.lists(st.floats(0, 1), min_size=1, max_size=24)
 
@@ -84,13 +84,6 @@ def test_families_are_corrected_each_by_itself():
     assert list(found) == ["b", "a"]
     np.testing.assert_allclose(found["b"].adjusted, holm_sidak([0.01, 0.04]).adjusted)
     assert found["a"].adjusted.tolist() == pytest.approx([0.02])
-
-
-def test_the_largest_family_that_can_reject():
-    for n in range(6, 13):
-        most = largest_family(2 / 2**n)
-        assert holm_sidak([2 / 2**n] + [1.0] * (most - 1)).rejected[0]
-        assert not holm_sidak([2 / 2**n] + [1.0] * most).rejected[0]
 
 
 @pytest.mark.parametrize("level", [0.0, 1.0, 5.0, float("nan")])

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -66,7 +64,6 @@ def test_amplitude_of_a_known_pattern():
     assert found.rms[0] == pytest.approx(3 / np.sqrt(2), rel=0.01)
     assert found.peak_to_peak[0] == pytest.approx(6.0, rel=1e-3)
     np.testing.assert_allclose(found.mean[:, 0], pattern[0, :, 0], atol=1e-9)
-    assert found.share_beyond_zero[0] > 0.9
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.3, 0.6])
@@ -86,13 +83,6 @@ def test_effective_strides_of_known_correlation():
     assert effective_strides(np.ones((30, 101, 1)) * np.array([1.0, -1.0] * 15)[:, None, None])[0] == 30
 
 
-def test_an_interval_that_ends_at_zero_holds_it():
-    found = mean_over_strides(autoregressive_strides(10, 0.0, 0))
-    one, zero = np.ones_like(found.mean), np.zeros_like(found.mean)
-    for low, high, share in ((-one, zero, 0.0), (zero, one, 0.0), (-one, -1e-9 * one, 1.0), (1e-9 * one, one, 1.0)):
-        assert replace(found, low=low, high=high).share_beyond_zero == pytest.approx([share])
-
-
 def test_points_with_too_few_strides_have_no_mean():
     curves = np.random.default_rng(0).normal(size=(8, 101, 2))
     curves[:4, 10, 0] = np.nan
@@ -103,7 +93,6 @@ def test_points_with_too_few_strides_have_no_mean():
     assert np.isfinite(found.rms[0])
     assert np.isnan(found.rms[1])
     assert np.isnan(found.peak_to_peak[1])
-    assert np.isnan(found.share_beyond_zero[1])
 
 
 def test_too_few_strides():

@@ -91,7 +91,7 @@ def test_one_panel_a_disturbance_and_one_line_a_model():
         for model in models
     ]
     found = pd.DataFrame(rows, columns=pd.Index(["disturbance", "level", "model", "rmse_deg"]))
-    figure = disturbance_figure(found, "W01, 3 sensors", "disturbed")
+    figure = disturbance_figure(found, "W01, 3 sensors")
     noise, missing = figure.drawn.axes
     assert (len(noise.get_lines()), len(missing.get_lines())) == (1, 2)
     assert list(np.asarray(noise.get_lines()[0].get_xdata())) == [0.0, 10.0]

@@ -2,10 +2,12 @@
 
 import shutil
 
+import clinic_rules
 import ezc3d
 import faults_in_people
 import faults_on_pages
 import numpy as np
+import planted_faults
 import pytest
 
 
@@ -129,3 +131,19 @@ def test_only_what_is_new_and_named_counts_as_said():
         next(one for one in faults_on_pages.KINDS if one.people == 2), clean._replace(people=2), clean, False
     )
     assert not faults_on_pages.said(kinds["11 heels 0.5 s"], clean._replace(cycles=1), clean, True)
+
+
+@pytest.mark.slow
+def test_what_is_planted_is_found_on_pages_of_few_people():
+    rows = list(clinic_rules.run(quick=True))
+    assert [row["planted"] for row in rows] == ["nothing", "stiff knee", "drop foot", "child"]
+    assert rows[0]["said elsewhere"] == 0
+    assert all(row["found"] <= row["pages"] == 2 for row in rows)
+
+
+@pytest.mark.slow
+def test_three_faults_in_three_files_are_found_and_the_files_themselves_raise_no_alarm(gait_data):
+    found, alarms = planted_faults.outcomes(gait_data.parent, quick=True)
+    assert alarms == []
+    assert [one.found for one in found] == [True, True, True]
+    assert planted_faults.table(found)[-1] == ("all", 3, 3, 0, 0)

@@ -8,6 +8,7 @@ import further
 import numpy as np
 import pandas as pd
 import pytest
+from markdown_table import markdown_table
 from texts import says
 
 STUDIES = Path(__file__).parents[2] / "studies"
@@ -52,3 +53,9 @@ def test_power_is_told_within_people_better_than_by_shuffled_settings(gait_data)
     [highest] = [value for name, value in found.items() if says(str(name), "95 %", "shuffled")]
     [known] = [value for (row, column), value in rows.items() if row.startswith("setting known") and column == within]
     assert highest < found[within] < known
+
+
+def test_headings_are_parted_and_every_row_is_a_line():
+    lines = markdown_table("walk | p [1]", [("straight", "0.03"), ("turn", "")]).splitlines()
+    assert lines == ["| walk | p [1] |", "|---|---|", "| straight | 0.03 |", "| turn |  |"]
+    assert markdown_table("a", []).splitlines() == ["| a |", "|---|"]
