@@ -129,9 +129,10 @@ def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tu
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    found = found_effects(case, verdict.found, closed, gained)
+    parts = verdict.found.model.parts
+    found = [replace(_effect(case, verdict.found, n), held_out=closed, bic=gained) for n in range(len(parts))]
     if verdict.read:
-        (part,) = verdict.found.model.parts
+        (part,) = parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
         found = [replace(found[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
     return tuple(found)
@@ -144,40 +145,18 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     return base
 
 
-def found_effects(case: Case, now: ScoredModel, closed: float, gained: float) -> list[FoundEffect]:
-    """List the explanations with their numbers and intervals."""
-    found = []
-    for number, part in enumerate(now.model.parts):
-        candidate = part.candidate
-        estimates = estimates_of(now.model, number, case.search.base)
-        place = (candidate.kind, candidate.place, candidate.name)
-        found.append(
-            FoundEffect(
-                *place,
-                part.term,
-                estimates,
-                closed,
-                gained,
-                bounds=file_bounds(case.search.base, candidate),
-                states=candidate.states_at(part.written),
-            )
-        )
-    return found
-
-
 def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
-    candidate, model = rival.scored.model.parts[part].candidate, rival.scored.model
-    return FoundEffect(
-        candidate.kind,
-        candidate.place,
-        candidate.name,
-        "",
-        estimates_of(model, part % len(model.parts), case.search.base),
-        bic=rival.gained,
-        tied=rival.tied,
-        bounds=file_bounds(case.search.base, candidate),
-    )
+    number = part % len(rival.scored.model.parts)
+    return replace(_effect(case, rival.scored, number), term="", states={}, bic=rival.gained, tied=rival.tied)
+
+
+def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
+    """Return one of a model's explanations with its numbers."""
+    part, base = now.model.parts[number], case.search.base
+    one, estimates = part.candidate, estimates_of(now.model, number, base)
+    bounds, states = file_bounds(base, one), one.states_at(part.written)
+    return FoundEffect(one.kind, one.place, one.name, part.term, estimates, bounds=bounds, states=states)
 
 
 def bic_gain(search: Search, now: ScoredModel) -> float:

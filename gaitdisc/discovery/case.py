@@ -27,6 +27,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, leaves, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
@@ -101,6 +102,10 @@ class Case:
         noise (channel,): what a simulation leaves [the channel's unit]
         """
         return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
+
+    def noting(self, finding: Finding) -> Case:
+        """Return the case with one finding more."""
+        return replace(self, measured=replace(self.measured, findings=(*self.measured.findings, finding)))
 
     def segments(self, trials: tuple[int, ...], periods: float = 1.0) -> Segments:
         """Cut trials into runs."""

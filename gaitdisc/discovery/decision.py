@@ -18,7 +18,7 @@ from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uni
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
-from gaitdisc.discovery.search import Search, is_certain
+from gaitdisc.discovery.search import is_certain
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
 MOST_NEAR = 4
@@ -65,7 +65,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if not names:
         wrong = wrong_starts(case.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
-    longer, rivals = decided(case, named if exact else strongest(case.search, named), rivals)
+    longer, rivals = decided(case, named if exact else pruned(case.search, named, np.inf, MOST_NAMES), rivals)
     kept = needed(case, as_read, longer)
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
         alone = decided(case, rivals[0], rivals) if rivals else (kept, rivals)
@@ -109,14 +109,6 @@ def proven_shape(
     """Return the verdict on a shape without a name that the held-out data bear out; None where they do not."""
     proof = held_out_proof(case, as_read, shape)
     return Verdict("unnamed", shape, others, proof=proof) if proof.bears_out else None
-
-
-def strongest(search: Search, named: ScoredModel) -> ScoredModel:
-    """Return what was named with as many explanations as are named at most, those left out that are missed least."""
-    while len(named.model.parts) > MOST_NAMES:
-        fewer = [search.without(named, number) for number in range(len(named.model.parts))]
-        named = min(fewer, key=lambda one: one.bic)
-    return named
 
 
 def needed(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:

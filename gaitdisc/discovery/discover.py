@@ -22,7 +22,7 @@ from gaitdisc.discovery.search import Search, is_certain
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives, without_small
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
-from gaitdisc.discovery.uncertain_inputs import weigh_input_errors
+from gaitdisc.discovery.uncertain_inputs import weigh_input_errors, weigh_unstated_errors
 from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
@@ -95,6 +95,7 @@ def weigh_explanations(
         verdict = step(case, as_read, verdict)
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)
     case, verdict = weigh_input_errors(case, verdict)
+    case, verdict = weigh_unstated_errors(case, verdict)
     return case, as_read, without_small(case, as_read, verdict)
 
 

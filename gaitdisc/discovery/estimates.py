@@ -55,9 +55,8 @@ def named_estimates(part: Part, covariance: Values, base: Simulation) -> dict[st
             continue
         name = names.get(slot, slot)
         sign = -1 if name in RESISTING and not waning else 1
-        found[_free_name(name, found)] = _estimate(
-            sign * part.values[slot], float(covariance[number, number]), units[slot]
-        )
+        value, variance = sign * part.values[slot], float(covariance[number, number])
+        found[_free_name(name, found)] = _estimate(value, variance, units[slot])
         number += 1
     return found
 

@@ -1,4 +1,7 @@
-"""A simulation fitted to segments, what start states explain of its residual, and the prior of a file's numbers."""
+"""A simulation fitted to segments, what starts and random effects explain of its residual, and the file's prior.
+
+Source: Patterson and Thompson 1971, Biometrika 58, 545 (restricted likelihood).
+"""
 
 from __future__ import annotations
 
@@ -54,6 +57,30 @@ class Prior:
         inside = values.copy()
         inside[self.places] = np.clip(values[self.places], self.low, self.high)
         return inside
+
+
+@dataclass(frozen=True)
+class RandomEffects:
+    """A residual and the slopes of constants, along the principal axes of independent random effects."""
+
+    products: Values  # (1 + free, 1 + free), of the residual and the slopes, those of the prior among them
+    along: Values  # (segment, effect, 1 + free), their products with each principal effect
+    strength: Values  # (segment, effect), sum of squares that a principal effect of unit size adds
+
+    def likelihood(self, variance: float, numbers: int, least: float = 0.0) -> tuple[float, float]:
+        """Return minus twice the log likelihood, up to a constant, and the residual's variance that is likeliest.
+
+        variance: of each effect, over the residual's
+        numbers: independent ones in the residual
+        least: that the residual's variance is known to have
+        """
+        weights = variance / (1 + variance * self.strength)
+        normal = self.products - np.einsum("seb,se,sec->bc", self.along, weights, self.along)
+        constants = np.linalg.lstsq(normal[1:, 1:], normal[1:, 0], rcond=1e-12)[0]
+        squares = float(normal[0, 0] - normal[0, 1:] @ constants)
+        level = max(squares / numbers, least)
+        volume = np.log1p(variance * self.strength).sum()
+        return float(volume + numbers * np.log(level) + squares / level), level
 
 
 @dataclass(frozen=True)
@@ -119,6 +146,17 @@ class Fitted:
         rows[:, len(self.free) - len(rows) :] = np.diag(1 / self.prior.sd)
         flat = np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
         return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
+
+    def beside(self, effects: Values) -> RandomEffects:
+        """Return the residual beside random effects.
+
+        effects (segment, number, effect): what each changes of `white`
+        """
+        (left, slopes), flat = self.projected, np.column_stack(self.stacked)
+        effects = without(start_basis(self.slopes[..., : self.starts.shape[1]]), effects)
+        strength, axes = np.linalg.eigh(np.swapaxes(effects, 1, 2) @ effects)
+        along = np.swapaxes(effects @ axes, 1, 2) @ np.concatenate([left[..., None], slopes], axis=2)
+        return RandomEffects(flat.T @ flat, along, np.maximum(strength, 0.0))
 
     @property
     def covariance(self) -> Values:

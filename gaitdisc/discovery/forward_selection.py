@@ -110,9 +110,9 @@ def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> 
     return now
 
 
-def pruned(search: Search, now: ScoredModel, worth: float) -> ScoredModel:
-    """Return the model without the explanations that a better choice of the others has made idle."""
-    while len(now.model.parts) > 1:
+def pruned(search: Search, now: ScoredModel, worth: float, fewest: int = 1) -> ScoredModel:
+    """Return the model without the explanations that are missed least, by less than a worth, while it has others."""
+    while len(now.model.parts) > fewest:
         fewer = [search.without(now, number) for number in range(len(now.model.parts))]
         best = min(fewer, key=lambda one: one.bic)
         if best.bic > now.bic + worth:

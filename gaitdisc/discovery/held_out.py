@@ -146,7 +146,7 @@ def noted(before: Case, now: Case) -> Case:
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"trial {blind} runs alike with and without the identified effect; trial {instead} is held out instead"
     finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data should have been held out")
-    return replace(now, measured=replace(now.measured, findings=(*now.measured.findings, finding)))
+    return now.noting(finding)
 
 
 def _informative(case: Case, as_read: ScoredModel, now: ScoredModel) -> tuple[int, ...]:

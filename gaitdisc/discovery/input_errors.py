@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.signal import lfilter
 
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.parts import Parameter
+from gaitdisc.simulation.parts import Input, Parameter
 from gaitdisc.simulation.simulation import Simulation
 
 BOUNDS = 2.0  # standard deviations, as of every number with bounds (prior.py)
 
 
-@dataclass(frozen=True)
-class Wandering:
-    """An input whose stated error changes in time."""
-
-    column: int
-    name: str
-    sd: float  # [the input's unit]
-    gain: float
-    seconds: float  # correlation time
-
-
-def wandering(simulation: Simulation) -> tuple[Wandering, ...]:
-    """List the inputs whose stated error changes in time."""
-    each = enumerate(simulation.inputs)
-    return tuple(Wandering(k, one.name, one.sd or 0.0, one.gain or 0.0, one.wander) for k, one in each if one.wander)
+def wandering(simulation: Simulation) -> list[tuple[int, Input]]:
+    """List the inputs whose stated error changes in time, each with its column."""
+    return [(column, one) for column, one in enumerate(simulation.inputs) if one.wander]
 
 
 def with_constant_errors(simulation: Simulation) -> Simulation:
@@ -56,10 +44,10 @@ def with_constant_errors(simulation: Simulation) -> Simulation:
 def with_drawn_errors(measured: Measured, simulation: Simulation, seed: int) -> Measured:
     """Return trials whose inputs err once more as stated: a stationary Markov process (Ornstein and Uhlenbeck)."""
     rng, inputs = np.random.default_rng(seed), measured.drive.inputs.copy()
-    for one in wandering(simulation):
-        kept = float(np.exp(-1 / (measured.rate * one.seconds)))
-        for size in (one.sd, one.gain * measured.drive.inputs[..., one.column]):
+    for column, one in wandering(simulation):
+        kept = float(np.exp(-1 / (measured.rate * (one.wander or 0.0))))
+        for size in (one.sd or 0.0, (one.gain or 0.0) * measured.drive.inputs[..., column]):
             new = rng.normal(size=inputs.shape[:2])
             new[:, 1:] *= np.sqrt(1 - kept**2)
-            inputs[..., one.column] += size * np.asarray(lfilter([1.0], [1.0, -kept], new, axis=1))
+            inputs[..., column] += size * np.asarray(lfilter([1.0], [1.0, -kept], new, axis=1))
     return replace(measured, drive=replace(measured.drive, inputs=inputs))

@@ -129,14 +129,11 @@ def noise_of(
         best = int(np.argmin(count * np.log(left) + np.arange(most + 1) * np.log(count)))
         predictors.append(tuple(orders[: best + 1]))
         spread.append(np.sqrt(left[: best + 1]))
-        own = (
-            np.ones(1)
-            if autocorrelation is None
-            else autocorrelation[: best + 1, channel] * (1 - np.arange(best + 1) / each)
-        )
-        own[1:] /= 1 + white_share
-        filtered.append(float(1 / np.sqrt(_predicted(own)[1][-1])))
-    return Noise(tuple(predictors), tuple(spread), tuple(filtered) if autocorrelation is not None else ())
+        if autocorrelation is not None:
+            own = autocorrelation[: best + 1, channel] * (1 - np.arange(best + 1) / each)
+            own[1:] /= 1 + white_share
+            filtered.append(float(1 / np.sqrt(_predicted(own)[1][-1])))
+    return Noise(tuple(predictors), tuple(spread), tuple(filtered))
 
 
 def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
@@ -205,17 +202,11 @@ def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
     kept = 1 - (powers @ np.linalg.pinv(powers))[WINDOW // 2, WINDOW // 2]
     spread = np.nanstd(observed, axis=(0, 1))
     found = LEAST * spread
-    for channel in range(observed.shape[2]):
-        sizes = [_rough(record[np.isfinite(record)]) for record in observed[:, :, channel]]
-        sizes = [one for one in sizes if np.isfinite(one)]
-        if sizes:
-            found[channel] = max(MAD_OF_NORMAL * float(np.median(sizes)) / np.sqrt(kept), found[channel])
+    middle = slice(WINDOW // 2, -(WINDOW // 2))
+    for channel, trials in enumerate(np.moveaxis(observed, 2, 0)):
+        known = [trial[np.isfinite(trial)] for trial in trials]
+        rough = [(one - savgol_filter(one, WINDOW, ORDER))[middle] for one in known if len(one) >= FEWEST]
+        if rough:
+            size = MAD_OF_NORMAL * float(np.median([np.median(np.abs(one)) for one in rough])) / np.sqrt(kept)
+            found[channel] = max(size, found[channel])
     return found
-
-
-def _rough(record: NDArray[np.float64]) -> float:
-    """Median absolute deviation of a record from its local cubic; NaN for one that is too short."""
-    if len(record) < FEWEST:
-        return float("nan")
-    left = record - savgol_filter(record, WINDOW, ORDER)
-    return float(np.median(np.abs(left[WINDOW // 2 : -(WINDOW // 2)])))

@@ -79,7 +79,10 @@ def sum_error(change: NDArray[np.float64], left: NDArray[np.float64]) -> float:
 def _autocovariance(left: NDArray[np.float64], known: NDArray[np.intp]) -> NDArray[np.float64]:
     """Return the autocovariance of what is left (lag, channel), weighed down with the lag."""
     covariance = _lagged_products(left / np.sqrt(np.maximum(known, 1)))
-    return covariance * _lag_weights(covariance, int(known.max()))
+    lags = np.abs(np.fft.fftfreq(len(covariance), 1 / len(covariance)))
+    memory = min(float(np.abs(covariance[1] / covariance[0]).max()), MOST_MEMORY)
+    last = 1.1447 * (4 * memory**2 * int(known.max()) / (1 - memory**2) ** 2) ** (1 / 3)  # the longer the memory
+    return covariance * np.maximum(1 - lags / (min(last, len(lags) / 2 - 1) + 1), 0.0)[:, None]
 
 
 def _lagged_products(record: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -87,14 +90,6 @@ def _lagged_products(record: NDArray[np.float64]) -> NDArray[np.float64]:
     samples = 2 * record.shape[1]
     power = np.abs(np.fft.rfft(record, samples, axis=1)) ** 2
     return np.fft.irfft(power.sum(axis=0), samples, axis=0)
-
-
-def _lag_weights(covariance: NDArray[np.float64], known: int) -> NDArray[np.float64]:
-    """Return how much the autocovariance of each lag counts (lag, 1): the longer the memory, the further it goes."""
-    lags = np.abs(np.fft.fftfreq(len(covariance), 1 / len(covariance)))
-    memory = min(float(np.abs(covariance[1] / covariance[0]).max()), MOST_MEMORY)
-    last = 1.1447 * (4 * memory**2 * known / (1 - memory**2) ** 2) ** (1 / 3)
-    return np.maximum(1 - lags / (min(last, len(lags) / 2 - 1) + 1), 0.0)[:, None]
 
 
 def errors_rise_p(before: NDArray[np.float64], after: NDArray[np.float64]) -> float:

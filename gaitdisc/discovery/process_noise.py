@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.fitted import Fitted, start_basis
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.linearised import linearise, seen_change
-from gaitdisc.discovery.noise import noise_of, sensor_noise, white_noise
+from gaitdisc.discovery.noise import Noise, noise_of, sensor_noise, white_noise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.arrays import Values
 
 SHARES = np.logspace(-3, 3, 19)  # of the process noise's variance in what is seen, against the sensor's
 MOST_SEGMENTS = 24
@@ -44,57 +45,48 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
 
     returns: pushes are independent from sample to sample; the sensors' noise beside them is white
     """
-    fit, segments = model.fit, shooting.segments
-    most = max(MOST_NUMBERS // fit.residual.shape[2], 8)
-    length = min(fit.residual.shape[1], most)
-    some = np.unique(np.linspace(0, len(segments) - 1, MOST_SEGMENTS).astype(int))
-    line = linearise(shooting, model.simulation, places, fit)
+    fit = model.fit
+    length = min(fit.residual.shape[1], max(MOST_NUMBERS // fit.residual.shape[2], 8))
+    some = np.unique(np.linspace(0, len(shooting.segments) - 1, MOST_SEGMENTS).astype(int))
     known = shooting.known[some, :length]
     plain = np.where(known, fit.residual[some, :length], 0.0)
     count = known.sum(axis=(0, 1))
     size = np.sqrt((plain**2).sum(axis=(0, 1)) / count - (plain.sum(axis=(0, 1)) / count) ** 2)
+    segments = shooting.segments.among(some)
     if not segments.margin:  # pushes move one channel more than another: what is left of it is no sensor's noise
         size = np.clip(sensor_noise(shooting.measured.observed), LEAST_NOISE * size, size)
-    unwhitened = shooting.with_noise(white_noise(np.ones(len(size)))).at(model.machine, (), fit.values, fit.starts)
-    starts = unwhitened.slopes.reshape(*fit.residual.shape, -1)[some, :length] / size[:, None] * known[..., None]
-    rival = _autoregressive(fit.residual, starts * size[:, None], some, known)
-    sensors = sensor_covariance(shooting, known)
-    penalty = 2 * float(count @ np.log(size)) + np.log(count.sum())
-    flat = (plain / size).reshape(len(some), -1), starts.reshape(len(some), plain[0].size, -1)
+    few, flat = replace(shooting, segments=segments).with_noise(white_noise(size)), (len(some), plain[0].size, -1)
+    now = few.at(model.machine, (), fit.values, fit.starts[some])
+    columns = np.concatenate([now.white[..., None], now.slopes], axis=2).reshape(*now.residual.shape, -1)[:, :length]
+    factor = np.linalg.cholesky(sensor_covariance(shooting, known))
+    white = np.asarray(np.linalg.solve(factor, columns.reshape(flat)), np.float64)
+    now = replace(now, white=white[..., 0], slopes=white[..., 1:])
+    numbers = int(count.sum()) - now.starts.size
+    scale = 2 * float(count @ np.log(size)) + 2 * float(np.log(np.diagonal(factor, axis1=1, axis2=2)).sum())
+    constant = scale + _volume(now.slopes) + float(np.log(count.sum()))
     # white noise by the same restricted likelihood; the filter correlates it in a known way
-    rival = min(rival, _likelihood(*flat, sensors, int(count.sum()))[0] + float(penalty))
-    found = []
+    unmoved = now.beside(np.zeros((*now.white.shape, 0))).likelihood(0.0, numbers)[0] + constant
+    noise = noise_of(fit.residual, now.starts.shape[1] / fit.residual.shape[2], white_share=0.0)
+    rival = min(_autoregressive(noise, plain, columns[..., 1:] * size[:, None], now, known), unmoved)
+    line, found = linearise(few, model.simulation, places, now), []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
         last = min((length - 1) * segments.every + 2 * segments.margin, steps)  # later pushes change nothing here
-        change = line.pushed[some][:, :, :, number, None] * np.eye(steps)[None, :, None, :last]
-        seen = _seen_in(shooting, model, some, line.among(some).of_change(change))[:, :length]
-        pushed = (seen / size[:, None] * known[..., None]).reshape(len(some), -1, last)
-        pushes = pushed @ np.swapaxes(pushed, 1, 2)
-        unit = np.trace(pushes, axis1=1, axis2=2).sum() / count.sum()
+        change = line.pushed[:, :, :, number, None] * np.eye(steps)[None, :, None, :last]
+        seen = seen_change(few, model.machine, now, line.of_change(change))[:, :length]
+        pushes = (seen / size[:, None] * known[..., None]).reshape(flat)
+        unit = (pushes**2).sum() / count.sum()
         if unit == 0:  # pushes there change nothing of what is measured
             found.append(ProcessNoise(place, np.inf, rival, 0.0, int(count.sum())))
             continue
-        tried = [(*_likelihood(*flat, sensors + share * pushes / unit, int(count.sum())), share) for share in SHARES]
-        best, level, share = min(tried)
-        best += float(penalty + np.log(count.sum()))
+        pushed = now.beside(np.asarray(np.linalg.solve(factor, pushes), np.float64))
+        best, level, share = min((*pushed.likelihood(share / unit, numbers), share) for share in SHARES)
+        best += constant + float(np.log(count.sum()))
         found.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
     return sorted(found, key=lambda one: one.bic)
 
 
-def _seen_in(
-    shooting: Shooting, model: CandidateModel, some: NDArray[np.intp], change: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """What changes of state change in some of the segments (segment, sample, channel, step)."""
-    fit = model.fit
-    few = replace(shooting, segments=shooting.segments.among(some))
-    part = Fitted(
-        fit.free, fit.values, fit.starts[some], fit.states[some], fit.residual[some], fit.white[some], fit.slopes[some]
-    )
-    return seen_change(few, model.machine, part, change)
-
-
-def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:
     """Covariance of noise that was white before the filter (segment, number, number), of unit size.
 
     What was not measured is taken for independent of all else.
@@ -113,43 +105,20 @@ def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[n
     return np.where(both, out.reshape(length * channels, -1), np.eye(length * channels))
 
 
-def _likelihood(
-    residual: NDArray[np.float64], starts: NDArray[np.float64], covariance: NDArray[np.float64], known: int
-) -> tuple[float, float]:
-    """(-2 log restricted likelihood, level) of residuals whose variance is level times a covariance."""
-    count = known - starts.shape[0] * starts.shape[2]
-    factor = np.linalg.cholesky(covariance)
-    white = np.asarray(np.linalg.solve(factor, np.concatenate([residual[..., None], starts], axis=2)), np.float64)
-    basis = start_basis(white[..., 1:])
-    left = white[..., 0] - (basis @ (np.swapaxes(basis, 1, 2) @ white[..., :1]))[..., 0]
-    level = float((left**2).sum()) / count
-    volume = 2 * np.log(np.maximum(np.linalg.svd(white[..., 1:], compute_uv=False), 1e-12)).sum()
-    scale = 2 * np.log(np.diagonal(factor, axis1=1, axis2=2)).sum()
-    return float(scale + volume + count * (np.log(level) + 1)), level
+def _volume(starts: Values) -> float:
+    """Log determinant of the information on start states, all segments together."""
+    return float(2 * np.log(np.maximum(np.linalg.svd(starts, compute_uv=False), 1e-12)).sum())
 
 
-def _autoregressive(
-    residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], known: NDArray[np.bool_]
-) -> float:
+def _autoregressive(noise: Noise, plain: Values, slopes: Values, now: Fitted, known: NDArray[np.bool_]) -> float:
     """Return the criterion of the model with autoregressive noise of each sensor, over the same numbers."""
-    noise = noise_of(residual, slopes.shape[-1] / residual.shape[2], white_share=0.0)
-    plain = np.where(known, residual[some, : known.shape[1]], 0.0)
-    white = noise.whitened(plain, known).reshape(len(some), -1)
-    starts = noise.whitened(slopes, known).reshape(*white.shape, -1)
-    basis = start_basis(starts)
-    left = white - (basis @ (np.swapaxes(basis, 1, 2) @ white[..., None]))[..., 0]
-    volume = 2 * np.log(np.maximum(np.linalg.svd(starts, compute_uv=False), 1e-12)).sum()
+    white, starts = noise.whitened(plain, known).reshape(now.white.shape), noise.whitened(slopes, known)
+    now = replace(now, white=white, slopes=starts.reshape(*white.shape, -1))
+    sample = np.arange(known.shape[1])[:, None]
+    past = sample - 1 - np.maximum.accumulate(np.where(known, -1, sample), axis=1)  # samples without a gap before each
     scale = 2 * sum(
-        np.log(spread[np.minimum(_known_before(known[..., channel]), len(spread) - 1)])[known[..., channel]].sum()
+        np.log(spread[np.minimum(past[..., channel], len(spread) - 1)])[known[..., channel]].sum()
         for channel, spread in enumerate(noise.spread)
     )
     numbers = sum(noise.lags) + len(noise.lags)
-    return float((left**2).sum() + scale + volume + numbers * np.log(known.sum()))
-
-
-def _known_before(known: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """How many samples without a gap stand before each (segment, sample)."""
-    out = np.zeros(known.shape, np.intp)
-    for sample in range(1, known.shape[1]):
-        out[:, sample] = (out[:, sample - 1] + 1) * known[:, sample - 1]
-    return out
+    return float((now.projected[0] ** 2).sum() + scale + _volume(now.slopes) + numbers * np.log(known.sum()))

@@ -125,7 +125,9 @@ class Search:
                 if kind == "quantiles of x":
                     yield part.values[slot], self._visited(model, part.candidate.role)
                 elif kind == "half widths of x":
-                    least = self._step(model, part.candidate.role) if part.candidate.states else 0.0
+                    along = self._along(model, part.candidate.role).reshape(model.fit.states.shape[:2])
+                    step = float(np.sqrt(np.nanmean(np.diff(along, axis=1) ** 2)))  # yielding within is dry friction
+                    least = step if part.candidate.states else 0.0
                     yield part.values[slot], (least, self._widest(model, part.candidate.role))
                 elif kind == "delays":
                     yield part.values[slot], (1 / self.rhythm.rate, self.rhythm.period)
@@ -144,11 +146,6 @@ class Search:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
         low, high = np.quantile(self._along(model, role), VISITED)
         return float(low), float(high)
-
-    def _step(self, model: CandidateModel, role: str) -> float:
-        """Return how far a run goes from sample to sample: a spring that yields within is dry friction."""
-        along = self._along(model, role).reshape(model.fit.states.shape[:2])
-        return float(np.sqrt(np.nanmean(np.diff(along, axis=1) ** 2)))
 
     def _along(self, model: CandidateModel, role: str) -> NDArray[np.float64]:
         """Return what stands for x in an explanation, along the runs."""

@@ -3,6 +3,7 @@
 To first order the errors enter where the input stands. The covariance is each model's own, so that one that hardly
 uses an input has no excuse by its errors. Numbers are estimated anew by what is left so (weighted orthogonal
 distances): else an input's errors pull its factors towards 0, and whatever goes along with it takes over.
+Where none is stated, models are compared by restricted likelihood with errors of the likeliest size and memory.
 Source: Fuller 1987, Measurement Error Models; Boggs and Rogers 1990, Contemporary Mathematics 112, 183.
 """
 
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED
-from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -41,6 +42,10 @@ TURNS = 6
 NUDGE = 0.1  # standard errors
 ENOUGH = 0.1  # off the squares, a tenth of what one number of noise leaves
 HALVED = (1.0, 0.5, 0.25, 0.1)  # of a step that leaves more
+SHARES = (0.0, 0.02, 0.05, 0.1, 0.15, 0.25, 0.4)  # of an input and of its spread, by which it may err unsaid
+PERIODS = (1.0, 4.0, 16.0)  # in which such an error is forgotten
+KNOTS_EACH, KNOTS = 4, (8, 60)  # in a period, and in a run: between these such an error is linear
+RUNS = 24  # at most, over which such errors are weighed
 Array = NDArray[np.float64]
 
 
@@ -72,30 +77,34 @@ class Weighed:
 
 def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without what the stated errors of inputs explain as well, its numbers with their doubt."""
-    found, erring = verdict.found, [repr(one.name) for one in wandering(case.search.base)]
+    erring = [repr(one.name) for _, one in wandering(case.search.base)]
     if not erring or verdict.starts:
         return case, verdict
     best = likeliest(case, verdict)
     if verdict.process_noise and best.level > CRITERIA.mere_noise:
         return case, verdict
     now, proof = beyond_errors(case, best)
-    named, kept = (Counter(part.candidate.label for part in one.model.parts) for one in (best.now, now))
+    verdict, dropped = without_names(replace(verdict, proof=proof or verdict.proof), best.now, now)
+    what = f"the stated errors of {listed(erring)} explain {dropped} as well"
+    finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
+    return case.noting(finding) if dropped else case, verdict
+
+
+def without_names(verdict: Verdict, named: ScoredModel, now: ScoredModel) -> tuple[Verdict, str]:
+    """Return the verdict on a model that names less than another, and what it does not name, in words."""
+    before, after = (Counter(part.candidate.label for part in one.model.parts) for one in (named, now))
     dropped = ["process noise"] * bool(verdict.process_noise)
-    dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (named - kept).elements()]
-    if dropped:
-        what = f"the stated errors of {listed(erring)} explain {listed(dropped)} as well"
-        finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
-        measured = replace(case.measured, findings=(*case.measured.findings, finding))
-        case = replace(case, measured=measured)
-    same = now.labels == verdict.found.labels
-    verdict = replace(verdict, found=now, proof=proof or verdict.proof, read=verdict.read and same, process_noise=None)
-    verdict = replace(verdict, word=now.word if now.model.parts else "no_gap")
-    return case, verdict if same else replace(verdict, rivals=(found, *verdict.rivals))
+    dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (before - after).elements()]
+    same, word = now.labels == verdict.found.labels, now.word if now.model.parts else "no_gap"
+    rivals, read = verdict.rivals if same else (verdict.found, *verdict.rivals), verdict.read and same
+    verdict = replace(verdict, word=word, found=now, rivals=rivals, read=read, process_noise=None)
+    return verdict, listed(dropped) if dropped else ""
 
 
 def likeliest(case: Case, verdict: Verdict) -> Weighed:
     """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
-    found = cut_short(case, verdict.found)
+    # as many numbers as a covariance can be made of
+    found = cut_short(case, verdict.found, max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES))
     tried = [one.model.parts for one in verdict.rivals[:RIVALS]]
     tried += [
         (Part(one, part.values),)  # what a shape reads as
@@ -104,12 +113,20 @@ def likeliest(case: Case, verdict: Verdict) -> Weighed:
         if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
     ]
     tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
-    runs, starts, base = found.shooting, found.model.fit.starts, case.search.base
-    models = [fit_model(runs, base, parts, starts, like=found.model) for parts in tried]
-    models = [ScoredModel(one, runs) for one in models if case.search.sensible(one)]
+    models = [case.search.with_others(found, parts) for parts in tried]
+    models = [one for one in models if case.search.sensible(one.model)]
     ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
     named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
+
+
+def cut_short(case: Case, now: ScoredModel, samples: int) -> ScoredModel:
+    """Return a model fitted to runs of no more samples."""
+    if now.shooting.segments.span <= samples:
+        return now
+    shooting = case.learned_runs(samples).with_noise(now.noise)
+    model = case.fitted_over(shooting, now)
+    return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
 def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
@@ -117,10 +134,7 @@ def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
 
     All together also take half of what the simulation as read leaves of unseen data beyond the stated errors.
     """
-    bare, proof = now.now, None
-    while bare.model.parts:
-        bare = case.search.without(bare, 0)
-    base = weighed(case, bare)
+    base, proof = weighed(case, case.search.with_others(now.now, ())), None
     while now.now.model.parts:
         parts = range(len(now.now.model.parts))
         fewer = [weighed(case, case.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
@@ -150,16 +164,6 @@ def tested(case: Case, before: Weighed, now: Weighed) -> PairedTest:
     worth = gained > CRITERIA.margin and now.plain < before.plain and is_certain(now.now.model)
     p, fall = errors_rise_p(*squares) if worth else 1.0, float((squares[1] - squares[0]).sum())
     return PairedTest(p, len(squares[0]), fall, case.alpha)
-
-
-def cut_short(case: Case, now: ScoredModel) -> ScoredModel:
-    """Return a model fitted to runs of which a covariance can be made."""
-    samples = max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES)
-    if now.shooting.segments.span <= samples:
-        return now
-    shooting = case.learned_runs(samples).with_noise(now.noise)
-    model = case.fitted_over(shooting, now)
-    return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
 def weighed(case: Case, now: ScoredModel) -> Weighed:
@@ -222,22 +226,94 @@ def whitener(case: Case, now: ScoredModel, shooting: Shooting, starts: Array, si
 
 def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Array:
     """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
-    base, segments = case.search.base, shooting.segments
-    places = tuple(Place("input", one.name, (), (), (), False) for one in wandering(base))
-    line = linearise(shooting, now.model.simulation, places, fit)
-    direct = seen_push(shooting, now.model.simulation, places, fit)
-    unit = np.eye(segments.length)
-    held = 0.5 * (unit[:-1] + unit[1:])
+    erring, segments = wandering(case.search.base), shooting.segments
     late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
+    moved = moved_by_inputs(now, shooting, fit, [one.name for _, one in erring], np.eye(segments.length))
     total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
-    for number, one in enumerate(wandering(base)):
-        change = line.of_change(line.pushed[:, :, :, number, None] * held[:, None, :])
-        seen = seen_change(shooting, now.model.machine, fit, change)
-        seen = seen + shooting.filtered(direct[:, :, :, number, None] * unit[:, None, :], 1)
+    for seen, (column, one) in zip(moved, erring, strict=True):
         flat = seen.reshape(len(segments), -1, segments.length)
-        memory = np.exp(-late / one.seconds)
+        memory = np.exp(-late / (one.wander or np.inf))
         # averaged, as else what reads low errs less and its factor is too large (by 17-21 % where it errs by 25 %)
-        along = one.gain * (segments.of(case.measured.drive.inputs)[..., one.column] @ memory) / memory.sum(axis=0)
-        own = (one.sd**2 + along[:, :, None] * along[:, None]) * memory
+        driven = segments.of(case.measured.drive.inputs)[..., column]
+        along = (one.gain or 0.0) * (driven @ memory) / memory.sum(axis=0)
+        own = ((one.sd or 0.0) ** 2 + along[:, :, None] * along[:, None]) * memory
         total += flat @ own @ np.swapaxes(flat, 1, 2)
     return total
+
+
+def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Array) -> list[Array]:
+    """Return what errors of each of some inputs change in what is seen (run, sample, channel, knot), to first order.
+
+    hats (sample, knot): the error that each knot stands for
+    """
+    places = tuple(Place("input", one, (), (), (), False) for one in names)
+    line = linearise(shooting, now.model.simulation, places, fit)
+    direct = seen_push(shooting, now.model.simulation, places, fit)
+    push, moved = np.broadcast_to(hats, (len(fit.starts), *hats.shape)), []
+    for number in range(len(places)):
+        seen = seen_change(shooting, now.model.machine, fit, line.of_push(number, push))
+        moved.append(seen + shooting.filtered(direct[:, :, :, number, None] * hats[:, None, :], 1))
+    return moved
+
+
+def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
+    """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders."""
+    found, search = verdict.found, case.search
+    erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
+    if not erring or not names_in(found):
+        return case, verdict
+    bare = cut_short(case, found, round(case.rhythm.samples))  # along long runs such errors are not linear
+    best, now = beside_errors(case, bare, erring)
+    while names := names_in(bare):
+        fewer = [search.without(bare, number) for number in names]
+        tried = [(*beside_errors(case, one, erring), one) for one in fewer]
+        least, gained, less = min(tried, key=lambda one: one[0])
+        if least - best > CRITERIA.margin:
+            break
+        best, now, bare = min(least, best), gained, less
+    if len(bare.model.parts) == len(found.model.parts):
+        return case, verdict
+    now = case.lengthened(now)
+    bare = search.with_others(now, ())
+    proof = proof_of(case, bare, now, now)
+    verdict, dropped = without_names(replace(verdict, proof=proof), found, now if proof.bears_out else bare)
+    what = f"unstated errors of {listed([repr(one) for one in erring])} explain {dropped} as well"
+    finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
+    return case.noting(finding), verdict
+
+
+def names_in(now: ScoredModel) -> list[int]:
+    """Return which of a model's explanations are no errors of inputs."""
+    return [number for number, part in enumerate(now.model.parts) if part.candidate.verdict != "input_error"]
+
+
+def beside_errors(case: Case, now: ScoredModel, erring: list[str]) -> tuple[float, ScoredModel]:
+    """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident."""
+    search, present = case.search, now.model.explanations
+    gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
+    parts = (*now.model.parts, *(Part(one, {"gain": 1.0}) for one in gains if one.identity not in present))
+    plain, gained = criterion_with_errors(case, now, erring), search.with_others(now, parts)
+    beside = criterion_with_errors(case, gained, erring) if search.sensible(gained.model) else np.inf
+    return min(plain, beside), gained if plain - beside > CRITERIA.margin else now
+
+
+def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> float:
+    """Return the information criterion of a model whose inputs err, by the size and memory that are likeliest."""
+    fit, names, period = now.model.fit, [one.name for one in case.search.base.inputs], case.rhythm.samples
+    some = np.unique(np.linspace(0, len(now.shooting.segments) - 1, RUNS).astype(int))
+    segments = now.shooting.segments.among(some)
+    noise = white_noise(case.noise_floor(now.noise.size))
+    shooting = replace(now.shooting, segments=segments, prior=fit.prior).with_noise(noise)
+    fit = shooting.at(now.model.machine, fit.free, fit.values, fit.starts[some])
+    at = np.linspace(0, segments.length - 1, int(np.clip(KNOTS_EACH * segments.length / period, *KNOTS)))
+    hats = np.array([np.interp(np.arange(segments.length), at, one) for one in np.eye(len(at))]).T
+    driven = segments.of(case.measured.drive.inputs)[:, at.round().astype(int)]
+    moved = [shooting.whitened(one) for one in moved_by_inputs(now, shooting, fit, erring, hats)]
+    pairs = [(one, driven[..., names.index(name)]) for one, name in zip(moved, erring, strict=True)]
+    numbers, best = int(shooting.known.sum()) - fit.starts.size, np.inf
+    for periods in PERIODS:
+        wander = np.linalg.cholesky(np.exp(-np.abs(np.subtract.outer(at, at)) / (periods * period)))
+        gains, wanders = zip(*((one @ each[..., None], each.std() * one @ wander) for one, each in pairs), strict=True)
+        beside = fit.beside(np.concatenate([*gains, *wanders], axis=2))
+        best = min(best, *(beside.likelihood(share**2, numbers, least=1.0)[0] for share in SHARES))
+    return best + now.model.size * float(np.log(numbers))

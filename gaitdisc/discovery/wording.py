@@ -89,7 +89,7 @@ def _given(discovery: Discovery) -> str:
 
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
-    stated = next((one.what for one in discovery.findings if one.kind == "stated errors"), "")
+    stated = next((one.what for one in discovery.findings if one.kind.endswith("stated errors")), "")
     if stated and discovery.verdict == "no_gap":
         return f"No effect is named: {stated}."
     first = discovery.rivals[0] if discovery.rivals else None
@@ -247,8 +247,11 @@ def _shown(discovery: Discovery) -> str:
         return f"Held-out error{of}: {before} ({noise})."
     worse = [name for name in sizes if name != channel and _goes(discovery, name).startswith("rises")]
     others = "".join(f"; that of {name} {_goes(discovery, name)}" for name in worse)
+    size = discovery.held_out
+    few = 0 < size.pieces < FEW and size.after <= size.before
+    tested = f", p = {_chance(size.p)} over {size.pieces} independent samples" if few else ""
     return (
-        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{_few(discovery)}){others}."
+        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}."
         f"{_unexplained(discovery.held_out)}"
     )
 
@@ -281,16 +284,6 @@ def _goes(discovery: Discovery, channel: str) -> str:
     if before == after:
         return f"does not change: {with_unit(after, unit)}"
     return f"{'falls' if size[1] < size[0] else 'rises'} from {before} to {with_unit(after, unit)}"
-
-
-def _few(discovery: Discovery) -> str:
-    """Say on how many independent samples it rests, where these are few."""
-    size = discovery.held_out
-    return (
-        f", p = {_chance(size.p)} over {size.pieces} independent samples"
-        if 0 < size.pieces < FEW and size.after <= size.before
-        else ""
-    )
 
 
 def _chance(p: float) -> str:

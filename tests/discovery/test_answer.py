@@ -136,16 +136,13 @@ def shape(case, as_read, cubic):
     return scored(as_read.shooting, model)
 
 
-def test_the_evidence_of_an_answer_is_its_own(case, shape):
+def test_the_evidence_of_an_answer_is_its_own_and_one_of_nothing_has_none(case, as_read, shape):
     before = fit_model(shape.shooting, case.search.base, (), shape.model.fit.starts, 15)
     assert bic_gain(case.search, shape) == pytest.approx(before.bic - shape.bic)
-
-
-def test_an_answer_of_nothing_has_no_evidence(case, as_read):
     assert bic_gain(case.search, as_read) == 0.0
 
 
-def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(case, shape, named):
+def test_rivals_are_compared_with_the_answer_and_one_that_explains_as_much_is_tied(case, shape, named):
     gained = bic_gain(case.search, shape)
     found = tuple(one for one in named[1] if one.labels != ("cubic_stiffness@load",))
     assert found
@@ -153,10 +150,6 @@ def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(case, sh
     assert rivals
     assert not any(one.tied for one in rivals)
     assert all(one.gained < gained - CRITERIA.tie for one in rivals)
-
-
-def test_a_rival_that_explains_as_much_is_tied(case, shape, named):
-    gained = bic_gain(case.search, shape)
     first = rivals_of(case.search, shape, tuple(named[1]), gained)[0]
     assert first.scored.labels == ("cubic_stiffness@load",)
     assert first.tied

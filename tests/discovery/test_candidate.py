@@ -67,10 +67,18 @@ def test_a_sensor_error_is_written_into_the_observation(name, slot, number, seen
     assert dict(error.written(mass(), {slot: number}).observations) == {"x": seen}
 
 
-def test_a_lagging_sensor_of_a_sum_sees_every_signal_late():
-    both = mass().with_observation("x", "x + 0.1*v")
+@pytest.mark.parametrize(
+    ("definitions", "seen", "late"),
+    [
+        ((), "x + 0.1*v", "delay(x, 0.05) + 0.1*delay(v, 0.05)"),
+        ((("half", "x/2"), ("both", "half + v")), "3*both", "3*(delay(x, 0.05)/2 + delay(v, 0.05))"),
+    ],
+    ids=["sum", "definition"],
+)
+def test_a_lagging_sensor_sees_every_signal_late(definitions, seen, late):
+    simulation = replace(mass(), definitions=definitions).with_observation("x", seen)
     lag = Candidate("sensor_error", "observation", "x", "sensor_lag")
-    assert dict(lag.written(both, {"seconds": "0.05"}).observations)["x"] == "delay(x, 0.05) + 0.1*delay(v, 0.05)"
+    assert dict(lag.written(simulation, {"seconds": "0.05"}).observations)["x"] == late
 
 
 @pytest.mark.parametrize(("name", "slot"), [("input_gain", "gain"), ("input_delay", "seconds")])
@@ -97,37 +105,28 @@ def test_an_input_that_nothing_uses_is_not_suspected():
     assert not any(one.place == "spare" for one in _candidates(idle))
 
 
-def test_a_stride_brings_effects_that_are_locked_to_it():
+def test_a_stride_brings_effects_that_are_locked_to_it_and_does_not_lag():
     text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]')
-    labels = {one.label for one in _candidates(simulation_of(text, "stride.toml"))}
-    assert "phase_locked_moment@load" in labels
+    used = text.replace("push + load", "push + load + phase")
+    idle, driving = ({one.label for one in _candidates(simulation_of(one, "stride.toml"))} for one in (text, used))
+    assert "phase_locked_moment@load" in idle
+    assert "input_delay@phase" in driving and "input_lag@phase" not in driving
 
 
-def test_in_a_chain_a_spring_may_act_on_a_joint_on_their_difference_or_on_the_other():
-    pieces = _pieces(two_rods(), "cubic_stiffness@lower_moment")
-    assert pieces == {("lower**3",), ("(lower - upper)**3",), ("upper**3",)}
-
-
-def test_a_linear_term_in_the_other_state_is_a_coupling_and_nothing_else():
-    assert _pieces(two_rods(), "linear_stiffness@lower_moment") == {("lower",), ("(lower - upper)",)}
-    assert ("upper",) in _pieces(two_rods(), "linear_coupling@lower_moment")
-
-
-def test_gravity_acts_on_the_joint_itself():
-    assert _pieces(two_rods(), "gravity_moment@lower_moment") == {("sin(lower)",), ("cos(lower)",)}
+def test_in_a_chain_a_spring_acts_on_a_joint_or_their_difference_and_gravity_on_the_joint_itself():
+    cubic, linear, coupling, gravity = (
+        _pieces(two_rods(), f"{name}@lower_moment")
+        for name in ("cubic_stiffness", "linear_stiffness", "linear_coupling", "gravity_moment")
+    )
+    assert cubic == {("lower**3",), ("(lower - upper)**3",), ("upper**3",)}
+    assert linear == {("lower",), ("(lower - upper)",)} and ("upper",) in coupling  # the other state is a coupling
+    assert gravity == {("sin(lower)",), ("cos(lower)",)}
 
 
 def test_a_shape_of_the_users_own_is_one_more_candidate():
     quintic = Shape("quintic", ("x**5",), means="a very stiff spring")
     found = [one for one in _candidates(mass(), (*known_shapes(), quintic)) if one.name == "quintic"]
     assert [(one.label, one.pieces, one.means) for one in found] == [("quintic@load", ("x**5",), "a very stiff spring")]
-
-
-def test_a_lag_reaches_what_stands_inside_a_definition():
-    defined = replace(mass(), definitions=(("half", "x/2"), ("both", "half + v")))
-    lag = Candidate("sensor_error", "observation", "x", "sensor_lag")
-    late = lag.written(defined.with_observation("x", "3*both"), {"seconds": "0.05"})
-    assert dict(late.observations)["x"] == "3*(delay(x, 0.05)/2 + delay(v, 0.05))"
 
 
 def test_an_effect_with_a_state_of_its_own_adds_it_under_a_name_that_is_free():
@@ -145,15 +144,6 @@ def test_a_lagged_input_replaces_the_input_everywhere_but_in_its_own_equation():
     late = lag.written(mass(), {"seconds": "0.2"})
     v = dict(mass().equations)["v"].replace("push", "push_lagged")
     assert late.equations == (("x", "v"), ("v", v), ("push_lagged", "(push - push_lagged)/0.2"))
-
-
-def test_the_share_of_the_stride_does_not_lag():
-    text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]').replace(
-        "push + load", "push + load + phase"
-    )
-    labels = {one.label for one in _candidates(simulation_of(text, "stride.toml"))}
-    assert "input_delay@phase" in labels
-    assert "input_lag@phase" not in labels
 
 
 def terms(simulation):

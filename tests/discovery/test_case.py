@@ -43,7 +43,7 @@ def test_of_four_trials_one_is_held_out(trials, held):
     assert case.learned == tuple(range(held[0]))
 
 
-def test_one_trial_is_split_in_time():
+def test_one_trial_is_split_in_time_and_what_is_learned_and_held_out_share_no_sample():
     measured = record(mass(), 0, Experiment(1, 8.0))
     two = split_in_time(measured)
     assert two.trials == ("1", "1, last quarter")
@@ -52,6 +52,8 @@ def test_one_trial_is_split_in_time():
     np.testing.assert_array_equal(two.drive.inputs[1, :100], measured.drive.inputs[0, 300:])
     assert two.time(1)[0] == pytest.approx(measured.time(0)[300])
     assert np.isnan(two.observed[1, 100:]).all()
+    case = set_up_case(mass(), measured)
+    assert set(case.segments(case.learned).trial).isdisjoint(case.segments(case.held_out).trial)
 
 
 def ringing(lengths: tuple[int, ...], rate: float = 10.0) -> Measured:
@@ -81,11 +83,6 @@ def test_trials_of_unequal_length_are_answered_written_and_drawn(tmp_path):
     assert "no gap" in write_discovery_report(found, tmp_path).read_text()
 
 
-def test_what_is_learned_and_what_is_held_out_share_no_sample():
-    case = set_up_case(mass(), record(mass(), 0, Experiment(1, 8.0)))
-    assert set(case.segments(case.learned).trial).isdisjoint(case.segments(case.held_out).trial)
-
-
 def test_runs_are_about_a_period_long(case):
     period = case.rhythm.period * case.rhythm.rate
     assert case.segments(case.learned).length == pytest.approx(period, rel=0.25)
@@ -105,15 +102,12 @@ def test_as_read_only_the_starts_are_fitted(as_read):
     np.testing.assert_array_equal(as_read.model.fit.values, as_read.model.machine.defaults)
 
 
-def test_a_right_account_is_followed_over_half_a_trial_or_more(case, as_read, cubic):
+def test_a_right_account_is_followed_over_half_a_trial_or_more_and_no_run_is_longer_than_wanted(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
     true = as_read.model.refitted(as_read.shooting, (part,))
     longer = case.lengthened(scored(as_read.shooting, true))
     assert longer.shooting.segments.length >= case.measured.samples.min() / 2
     assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
-
-
-def test_no_run_is_longer_than_wanted(case, as_read):
     length = as_read.shooting.segments.length
     assert case.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
 

@@ -17,8 +17,8 @@ from gaitdisc.discovery.decision import (
     kept_on_longer_runs,
     needed,
     prefer_on_held_out,
-    strongest,
 )
+from gaitdisc.discovery.forward_selection import pruned
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
@@ -69,7 +69,7 @@ def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imit
 
 
 def test_of_three_names_the_one_that_is_missed_least_goes(case, beside):
-    kept = strongest(case.search, beside("viscous_damping@load", "sensor_drift@x"))
+    kept = pruned(case.search, beside("viscous_damping@load", "sensor_drift@x"), float("inf"), 2)
     assert len(kept.model.parts) == 2
     assert "cubic_stiffness@load" in kept.labels
 

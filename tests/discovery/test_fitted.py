@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, record, with_load
+from scipy.linalg import null_space
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
@@ -53,6 +54,26 @@ def test_the_covariance_is_that_of_the_regression_that_has_the_starts_in_it():
     whole[:, 10] = slopes[..., 2].ravel()
     wanted = np.linalg.inv(whole.T @ whole)[10, 10]
     assert _fitted(np.zeros((5, 12)), slopes).covariance[0, 0] == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(("variance", "least"), [(0.0, 0.0), (0.3, 0.0), (40.0, 5.0)])
+def test_the_likelihood_beside_random_effects_is_that_of_the_dense_covariance_without_the_starts(variance, least):
+    rng = np.random.default_rng(5)
+    white, slopes, effects = (rng.normal(size=(3, *shape)) for shape in ((12,), (12, 3), (12, 4)))
+    covariance, starts = np.eye(36), np.zeros((36, 6))
+    for segment in range(3):
+        rows = slice(12 * segment, 12 * segment + 12)
+        covariance[rows, rows] += variance * effects[segment] @ effects[segment].T
+        starts[rows, 2 * segment : 2 * segment + 2] = slopes[segment, :, :2]
+    contrasts = null_space(starts.T)
+    dense = contrasts.T @ covariance @ contrasts
+    whitened = np.linalg.inv(np.linalg.cholesky(dense)) @ contrasts.T
+    left, slope = whitened @ white.ravel(), whitened @ slopes[..., 2].ravel()
+    squares = left @ left - (slope @ left) ** 2 / (slope @ slope)
+    level = max(squares / 30, least)
+    wanted = np.linalg.slogdet(dense)[1] + 30 * np.log(level) + squares / level
+    found = _fitted(white, slopes).beside(effects).likelihood(variance, 30, least)
+    assert found == (pytest.approx(wanted), pytest.approx(level))
 
 
 def test_nothing_free_has_no_covariance():

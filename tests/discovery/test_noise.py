@@ -21,12 +21,10 @@ def test_an_autoregression_of_known_coefficients_is_recovered(remembering):
     assert noise.lags == (2,)
     np.testing.assert_allclose(noise.predictors[0][2], [FIRST, SECOND], atol=0.03)
     assert noise.spread[0][-1] == pytest.approx(1.0, abs=0.02)
-
-
-def test_its_size_is_the_stationary_one(remembering):
+    assert noise_of(remembering).is_autocorrelated
     ratio = FIRST / (1 - SECOND)  # first autocorrelation, Yule-Walker by hand
     variance = 1 / (1 - FIRST * ratio - SECOND * (FIRST * ratio + SECOND))
-    assert noise_of(remembering, white_share=0.0).size[0] ** 2 == pytest.approx(variance, rel=0.04)
+    assert noise.size[0] ** 2 == pytest.approx(variance, rel=0.04)  # the stationary one
 
 
 def test_whitened_numbers_are_independent_and_of_unit_variance(remembering):
@@ -49,10 +47,6 @@ def test_white_noise_has_no_memory_and_its_own_size():
     np.testing.assert_allclose(noise.size, [3.0, 0.2], rtol=0.03)
 
 
-def test_noise_that_remembers_says_so(remembering):
-    assert noise_of(remembering).is_autocorrelated
-
-
 def test_numbers_that_the_fit_took_enlarge_the_variance():
     residual = np.random.default_rng(1).normal(size=(50, 20, 1))
     assert noise_of(residual, used=4.0).size[0] == pytest.approx(noise_of(residual).size[0] * np.sqrt(20 / 16))
@@ -71,12 +65,8 @@ def test_columns_are_whitened_each_by_itself(remembering):
     np.testing.assert_allclose(noise.whitened(two)[..., 1], 2 * noise.whitened(remembering))
 
 
-def test_residuals_of_zero_do_not_divide_by_zero():
-    noise = noise_of(np.zeros((2, 40, 1)))
-    assert np.isfinite(noise.whitened(np.zeros((2, 40, 1)))).all()
-
-
-def test_white_noise_of_a_size_divides_by_it():
+def test_white_noise_of_a_size_divides_by_it_and_residuals_of_zero_by_no_zero():
+    assert np.isfinite(noise_of(np.zeros((2, 40, 1))).whitened(np.zeros((2, 40, 1)))).all()
     noise: Noise = white_noise(np.array([2.0, 4.0]))
     np.testing.assert_array_equal(noise.whitened(np.full((1, 2, 2), 8.0))[0, 0], [4.0, 2.0])
 

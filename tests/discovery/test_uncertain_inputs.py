@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hidden_in_a_mass import RATE, mass, record, with_load
+from hidden_in_a_mass import MASS, RATE, mass, record, with_load
 
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.discover import discover, fit_given
 from gaitdisc.discovery.input_errors import with_constant_errors, with_drawn_errors
-from gaitdisc.discovery.uncertain_inputs import covariance_by_inputs
+from gaitdisc.discovery.uncertain_inputs import covariance_by_inputs, weigh_unstated_errors
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -93,3 +93,46 @@ def test_the_covariance_is_that_of_runs_with_drawn_errors(seen):
         drawn = replace(shooting, measured=with_drawn_errors(case.measured, stated, seed))
         runs.append(drawn.run(now.model.machine, fit.starts[None], fit.values[None])[1][0, 0, :, 0])
     assert np.cov(np.array(runs).T) == pytest.approx(covariance, abs=0.2 * covariance.max())
+
+
+@pytest.mark.parametrize(
+    ("hidden", "wander", "gain", "named", "left"),
+    [
+        ("", 2.0, 1.0, "linear_stiffness@load", ()),  # a slow error of the push, and nothing else
+        ("", 0.5, 1.25, "viscous_damping@load", ("input_gain@push",)),
+        ("-30*max(0, x - 0.25)", 0.5, 1.0, "one_sided_spring@load", ("one_sided_spring@load",)),
+        ("-1.5*v*abs(v)", 0.0, 1.0, "quadratic_drag@load", ("quadratic_drag@load",)),
+    ],
+)
+def test_what_unstated_errors_or_a_gain_explain_as_well_is_not_named(hidden, wander, gain, named, left):
+    measured = _wandering(record(with_load(hidden) if hidden else mass(), SEED), wander, 4.0)
+    case = set_up_case(mass(), _driven(measured, measured.drive.inputs / gain))
+    verdict = fit_given(case, case.as_read(), (named,))
+    weighed, after = weigh_unstated_errors(case, verdict)
+    assert after.found.labels == left
+    said = [one.what for one in weighed.measured.findings if one.kind == "unstated errors"]
+    assert len(said) == (left != (named,)) and all("unstated errors of 'push' explain" in one for one in said)
+    assert (after.rivals[:1] == (verdict.found,)) == bool(said)
+
+
+def test_gains_of_two_inputs_together_explain_what_neither_does_alone():
+    measured, two = record(mass(), SEED), MASS.replace('v = "(push', 'v = "(push + pull')
+    total = measured.drive.inputs
+    pull = np.roll(total, 1, axis=0)
+    measured = _driven(measured, np.concatenate([(total - pull) / 1.2, pull / 0.85], axis=2))
+    case = set_up_case(
+        simulation_of(two.replace("[parameters.m]", '[inputs.pull]\nunit = "N"\n[parameters.m]')), measured
+    )
+    verdict = fit_given(case, case.as_read(), ("input_gain@push", "cubic_stiffness@load"))
+    weighed, after = weigh_unstated_errors(case, verdict)
+    assert (after.word, after.found.labels) == ("input_error", ("input_gain@push", "input_gain@pull"))
+    assert [part.values["gain"] for part in after.found.model.parts] == pytest.approx([1.2, 0.85], rel=0.02)
+    (said,) = (one.what for one in weighed.measured.findings if one.kind == "unstated errors")
+    assert said == "unstated errors of 'push' and 'pull' explain cubic stiffness at load as well"
+
+
+def test_an_error_that_is_stated_is_not_doubted():
+    stated = _stating(mass(), sd=2.0, wander=0.3)
+    case = set_up_case(stated, _wandering(record(mass(), SEED), 2.0, 4.0))
+    verdict = fit_given(case, case.as_read(), ("linear_stiffness@load",))
+    assert weigh_unstated_errors(case, verdict) == (case, verdict)
