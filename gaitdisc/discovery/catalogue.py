@@ -87,9 +87,11 @@ class Request:
     effects: tuple[str, ...] = ()  # `name@place`; nothing is searched where there are any
     catalogue: Path | None = None  # the file of the shapes
     alpha: float = ALPHA  # the greatest rate of false finds
-    progress: Callable[[str], None] = lambda _: None
-    possible: Callable[[Candidate], bool] = lambda _: True
-    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model
+    progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
+    possible: Callable[[Candidate], bool] = field(default_factory=lambda: lambda _: True, compare=False)
+    refitted: Callable[[ScoredModel], CandidateModel] = field(
+        default_factory=lambda: lambda found: found.model, compare=False
+    )
 
     @classmethod
     def read(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ShapeError, StrideError
 from gaitdisc.notebook import html_of
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped
 
@@ -60,8 +60,8 @@ class Strides:
     array([25., 50., nan])
     """
 
-    start: NDArray[np.float64]
-    end: NDArray[np.float64]
+    start: Values
+    end: Values
     side: str
     detector: str
     dropped: tuple[DroppedStride, ...] = field(default_factory=tuple)
@@ -102,11 +102,11 @@ class Strides:
         return html_of("Strides", rows)
 
     @property
-    def duration_s(self) -> NDArray[np.float64]:
+    def duration_s(self) -> Values:
         """Duration of every stride, (stride,) [s]."""
         return self.end - self.start
 
-    def phi(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    def phi(self, time: Values) -> Values:
         """Percent stride, 0 <= phi < 100, NaN outside of the strides.
 
         Parameters
@@ -121,7 +121,7 @@ class Strides:
         phi = 100.0 * (time - self.start[which]) / self.duration_s[which]
         return np.where(inside, np.minimum(phi, np.nextafter(100.0, 0.0)), np.nan)
 
-    def number(self, time: NDArray[np.float64]) -> NDArray[np.intp]:
+    def number(self, time: Values) -> NDArray[np.intp]:
         """Number of the stride, from 0, (time,); -1 outside of the strides.
 
         Parameters
@@ -134,7 +134,7 @@ class Strides:
         which = np.searchsorted(self.start, time, side="right") - 1
         return np.where((which >= 0) & (time < self.end[which]), which, -1)
 
-    def normalised(self, recording: Recording | pd.DataFrame) -> NDArray[np.float64]:
+    def normalised(self, recording: Recording | pd.DataFrame) -> Values:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
 
         Linear interpolation; NaN next to a missing sample or outside the recording. A heading that passes 180 deg
@@ -184,9 +184,7 @@ def _of_table(table: Any) -> Recording:
     return Recording(table["time"].to_numpy(float), table[names].to_numpy(float), tuple(channels))
 
 
-def interpolated(
-    time: NDArray[np.float64], values: NDArray[np.float64], points: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def interpolated(time: Values, values: Values, points: Values) -> Values:
     """Linear interpolation on an even time base that lets NaN through and does not extrapolate.
 
     time (time,) [s]: even

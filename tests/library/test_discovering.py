@@ -34,11 +34,9 @@ def given(monkeypatch):
     """Instead of the search: what would be searched."""
     seen = {}
 
-    def instead(model, data, catalogue, files, told):
-        seen.update(
-            model=model, data=data, catalogue=catalogue, files={path.name: word for path, word in files.items()}
-        )
-        told("searching")
+    def instead(model, data, request, files):
+        seen.update(model=model, data=data, request=request, files={path.name: word for path, word in files.items()})
+        request.progress("searching")
         return None, model
 
     monkeypatch.setattr(discovering, "discovered", instead)
@@ -98,10 +96,11 @@ def test_a_tracked_walk_takes_the_file_of_its_angles_and_nothing_else(tracked_wa
     given = {}
 
     def discover_tracked(*arguments):
-        given["walk"], given["kinematics"], given["catalogue"], given["progress"] = arguments
+        given["walk"], given["kinematics"], given["request"] = arguments
         return SimpleNamespace(found="found", augmented="augmented")
 
     monkeypatch.setattr("gaitdisc.discovery.discover_tracked.discover_tracked", discover_tracked)
     assert gd.discover(str(tracked_walk), "walk.mot", progress=print) == ("found", "augmented")
-    assert (given["kinematics"], given["catalogue"], given["progress"]) == (Path("walk.mot"), ALL, print)
+    assert (given["kinematics"], given["request"]) == (Path("walk.mot"), ALL)
+    assert given["request"].progress is print
     assert given["walk"].model == tracked_walk.parent / "leg.osim" and given["walk"].lowpass_hz == 6.0
