@@ -15,8 +15,9 @@ from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
 from gaitdisc.discovery.discover_engine import discover_model_file
-from gaitdisc.engines.engine import Engine, Motion, read_model
+from gaitdisc.engines.engine import Engine, read_model
 from gaitdisc.engines.mapping import drafted
+from gaitdisc.engines.motion import Motion
 
 RATE_HZ, SECONDS, TRIALS, CUTOFF_HZ = 100.0, 4.0, 4, 6.0
 
@@ -90,8 +91,7 @@ def searched(case: Case, model: Path, table: Path) -> dict[str, object]:
         estimate = ours[0].estimates.get(number) if ours else None
         if estimate is not None:
             interval = f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g})"
-            inside = estimate.low <= case.number <= estimate.high
-            row |= {"true": case.number, "found": interval, "inside": inside}
+            row |= {"true": case.number, "found": interval, "inside": estimate.low <= case.number <= estimate.high}
     row["tied"] = sum(one.tied for one in found.rivals)
     row["native"] = sum("is written into" in note for note in answer.written.notes)
     return row | {"cpu s": round(seconds, 1)}

@@ -105,7 +105,8 @@ def write_device() -> None:
 
 def write_engine() -> None:
     """A model of MuJoCo held against a table."""
-    from gaitdisc.engines.engine import Motion, read_model
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.motion import Motion
 
     Path("pendulum.xml").write_text(PENDULUM)
     Path("truth.xml").write_text(PENDULUM.replace("</mujoco>", f"{SPRING}</mujoco>"))

@@ -18,9 +18,10 @@ from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.result import ENGINE, Discovery
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
-from gaitdisc.engines.engine import Engine, Values
+from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import expanded
 from gaitdisc.engines.mapping import other_values, read_mapping
+from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import OwnRuns, trial_called
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import ChannelError
@@ -105,7 +106,8 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
         linear, driven = expanded(mapping, engine, data, states, moved)
         found, answer = discovered(linear, driven, request, read)
     request.progress(f"running it by {engine.called}")
-    runs = base.runs.among(np.isin(base.runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
+    runs = base_runs(base.written.engine, fit) if fit.low_pass.margin else base.runs  # filtered as the record was
+    runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
     augmented, written, _ = fit.written(found, fit.parts)
     hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
     pushed = [f"{one.name} at {one.place}" for one in found.effects if one.name == "process_noise"]
@@ -118,7 +120,7 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
         if not engine.fibres:  # their runs take too long
             found = fit.fitted(found, linear, runs.among(~held_out(found, runs, data)))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
-        both = zip(found.effects, fit.parts, strict=True)
+        both = list(zip(found.effects, fit.parts, strict=True))
         sure = tuple(part for one, part in both if request.effects or not one.small)
         kept = sure if borne_out(runs, runs.before) else ()
         for part in kept if len(kept) > 1 and not request.effects else ():
@@ -132,7 +134,6 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
                 return EngineAnswer(found, mapping, base.written, runs, engine)
             found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
         elif len(kept) < len(fit.parts):
-            both = list(zip(found.effects, fit.parts, strict=True))
             idle = tuple(replace(one, small=True) for one, part in both if part not in kept)
             effects = tuple(one for one, part in both if part in kept)
             fit.parts, found = kept, replace(found, effects=effects, rivals=(*idle, *found.rivals))
@@ -171,12 +172,11 @@ def measured_of_file(file: Path, mapping: Simulation) -> Measured:
     from gaitdisc.ingest.storage import read_storage
 
     streams = list(read_storage(file).streams.values())
-    channels = tuple(channel for one in streams for channel in one.channels)
     whole = replace(
         streams[0],
-        values=np.concatenate([one.values for one in streams], axis=1),
-        channels=channels,
-        suspect=np.concatenate([np.asarray(one.suspect) for one in streams], axis=1),
+        values=np.hstack([one.values for one in streams]),
+        channels=tuple(channel for one in streams for channel in one.channels),
+        suspect=np.hstack([np.asarray(one.suspect) for one in streams]),
     )
     return measured_of_recordings([whole], mapping)
 
@@ -217,13 +217,11 @@ def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> Valu
 def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:
     """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
     found, inside = [], np.arange(states.shape[1]) < data.samples[:, None]
-    for number, one in enumerate(engine.coordinates):
-        q = states[inside][:, number]
+    for one, q in zip(engine.coordinates, states[inside].T, strict=False):
         share = 100 * np.mean((q <= one.low) | (q >= one.high))
         if share:
-            what = (
-                f"{one.called} is at its limit ({one.low:.3g} to {one.high:.3g} {one.unit}) in {share:.2g} % of samples"
-            )
+            limits = f"{one.low:.3g} to {one.high:.3g} {one.unit}"
+            what = f"{one.called} is at its limit ({limits}) in {share:.2g} % of samples"
             found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
     driven = data.drive.inputs[inside]
     for number, (low, high) in getattr(engine, "control_ranges", {}).items():

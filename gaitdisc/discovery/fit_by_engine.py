@@ -17,22 +17,14 @@ from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.joint_and_trials import lagged
 from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.paired_test import paired_test, sum_error
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import Discovery, Runs
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.engines.engine import Engine, Values
-from gaitdisc.engines.mapping import replaced_inputs, with_input_changed
-from gaitdisc.engines.own_runs import (
-    FEWER,
-    MOST_RUNS,
-    Driven,
-    OwnRuns,
-    Start,
-    left_by,
-    root_mean_square,
-    stretches_of,
-    trial_called,
-)
+from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.mapping import replaced_inputs, with_input_changed, with_strength
+from gaitdisc.engines.motion import Values
+from gaitdisc.engines.own_runs import Driven, OwnRuns, left_by, root_mean_square, stretches_of, trial_called
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.measured import Measured
@@ -43,6 +35,7 @@ TURNS = 3
 STEP = 0.01  # of a number, for its slope: over less, runs that meet limits or friction do not change smoothly
 ENOUGH = 0.1  # of the misfit, a third of a standard error
 DRAWN = 4  # runs of a picture
+NO_FILTER = RecordFilter((), 1.0)
 
 
 @dataclass
@@ -54,11 +47,12 @@ class EngineFit:
     measured: Measured  # driven by the controls
     states: Values  # (trial, sample, state), smoothed: where starts and fibres are taken from
     parts: tuple[Part, ...] = ()  # of what was found
+    low_pass: RecordFilter = NO_FILTER  # that the record went through, as the search has it
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
 
     def noted(self, found: ScoredModel) -> CandidateModel:
-        """Return what was found as it is, once its parts are kept."""
-        self.parts = found.model.parts
+        """Return what was found as it is, once its parts and the record's filter are kept."""
+        self.parts, self.low_pass = found.model.parts, found.shooting.record_filter or NO_FILTER
         return found.model
 
     def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
@@ -67,7 +61,9 @@ class EngineFit:
         for part in parts:
             one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
             form = SIGNAL_ERRORS[one.name][2] if one.verdict == "input_error" else ""
-            if form:
+            if one.name == "input_gain":
+                changed = with_strength(changed, self.engine, one.place, part.values["gain"])
+            elif form:
                 changed = with_input_changed(changed, one.place, form.format(s=one.place, **numbers))
             elif one.verdict != "input_error":
                 changed = one.written(changed, numbers)
@@ -91,10 +87,11 @@ class EngineFit:
                 controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
                 lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}it stands in discovery.json alone"))
-        return augmented, written, Driven(written.engine, augmented, controls, lags, self.progress)
+        recorded = self.low_pass.filtered
+        return augmented, written, Driven(written.engine, augmented, controls, lags, recorded, self.progress)
 
     def left(
-        self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Start] | None = None
+        self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
     ) -> Values:
         """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
         return left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
@@ -113,11 +110,11 @@ class EngineFit:
             of_part = ({slot: each[number, slot] for slot in one.values} for number, one in enumerate(self.parts))
             return tuple(replace(one, values=own) for one, own in zip(self.parts, of_part, strict=True))
 
-        def white(values: Values, near: dict[int, Start]) -> Values:
+        def white(values: Values, near: dict[int, Values]) -> Values:
             left = self.left(found, parts_at(values), runs, near) / runs.floor
             return np.nan_to_num(left, posinf=1e6, neginf=-1e6).ravel()
 
-        near: dict[int, Start] = {}
+        near: dict[int, Values] = {}
         now, slopes = white(values, near), np.zeros((0, len(slots)))
         for turn in range(TURNS):
             self.progress(
@@ -155,9 +152,9 @@ def borne_out(runs: OwnRuns, without: Values) -> bool:
 
 def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
-    mapping, data = fit.mapping, fit.measured
-    at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, FEWER if engine.fibres else MOST_RUNS)
-    left = left_by(Driven(engine, mapping, data.drive.inputs, progress=fit.progress), data, at, fit.states)
+    mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
+    at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
+    left = left_by(Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), data, at, fit.states)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([one.sd or np.nan for one in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Coordinate, Engine, Values
+from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.motion import Coordinate, Values
 from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -30,23 +31,18 @@ class _Convention(NamedTuple):
     mend: str
 
 
+_UNIT = 'Write in the mapping: [observations.{column}] unit = "%s", expression = "%s{name}".'
 _TURNED = _Convention(
     -1.0, "has the other sign", 'Write in the mapping: [observations.{column}] expression = "-({expression})".'
 )
 CONVENTIONS = {
     "rad": (
         _TURNED,
-        _Convention(np.pi / 180, "is in degrees",
-                    'Write in the mapping: [observations.{column}] unit = "deg", expression = "57.2957795*{name}".'),
-        _Convention(180 / np.pi, "is in radians",
-                    'Write in the mapping: [observations.{column}] unit = "rad", expression = "{name}".'),
+        _Convention(np.pi / 180, "is in degrees", _UNIT % ("deg", "57.2957795*")),
+        _Convention(180 / np.pi, "is in radians", _UNIT % ("rad", "")),
     ),
-    "m": (
-        _TURNED,
-        _Convention(1e-3, "is in millimetres",
-                    'Write in the mapping: [observations.{column}] unit = "mm", expression = "1000*{name}".'),
-    ),
-}  # fmt: skip
+    "m": (_TURNED, _Convention(1e-3, "is in millimetres", _UNIT % ("mm", "1000*"))),
+}
 
 
 def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from gaitdisc.engines.engine import Engine, Motion, Values
+from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import REPLACED
+from gaitdisc.engines.motion import Motion, Values
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Input

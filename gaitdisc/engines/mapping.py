@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.engines.engine import Engine, Values, is_model, read_model
+from gaitdisc.engines.engine import Engine, is_model, read_model
+from gaitdisc.engines.motion import Motion, Values
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
@@ -145,6 +146,19 @@ def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
     """Mapping in which a control is replaced by an expression of the recorded one."""
     return replace(mapping, definitions=(*mapping.definitions, (f"{REPLACED}{name}", expression)))
+
+
+def with_strength(mapping: Simulation, engine: Engine, name: str, gain: float) -> Simulation:
+    """Mapping in which a control does so many times as much: by the motor's own number, where that is the same."""
+    column, n = [one.name for one in engine.controls].index(name), len(engine.coordinates)
+    own = next((one for one in engine.parameters if one.name in (f"{name}_gear", f"{name}_optimal_force")), None)
+    if own is not None:
+        u = np.full((1, len(engine.controls)), 0.1)
+        half = np.where(np.arange(u.shape[1]) == column, 0.5 * u, u)
+        at, less = (Motion(np.full((1, n), 0.2), np.full((1, n), 0.3), each) for each in (u, half))
+        if np.allclose(engine.accelerations(less, {}), engine.accelerations(at, {own.name: own.value / 2}), 1e-9):
+            return mapping.with_parameter(replace(own, value=gain * mapping.values().get(own.name, own.value)))
+    return with_input_changed(mapping, name, f"{gain!r}*{name}")
 
 
 def replaced_inputs(mapping: Simulation, time: Values, u: Values, rate: float) -> Values:

@@ -10,12 +10,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
+from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_value
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 
-JOINT_UNITS = {"stiffness": ("N m/rad", "N/m"), "damping": ("N m s/rad", "N s/m"), "frictionloss": ("N m", "N")}
+PASSIVE = {  # numbers of a joint or tendon: their units where it turns and where it slides, and the force of one
+    "stiffness": ("N m/rad", "N/m", "{rest!r} - {name}"),
+    "damping": ("N m s/rad", "N s/m", "-{speed}"),
+    "frictionloss": ("N m", "N", "-sign({speed})"),
+}
+
+
+def _size(value: Any) -> float:
+    """Length of a vector; a single number as it is, with its sign."""
+    return float(np.linalg.norm(value) if np.ndim(value) else value)
 
 
 class _Place(NamedTuple):
@@ -51,7 +60,7 @@ class MujocoModel:
 
     def __init__(self, path: Path | str) -> None:
         try:
-            import mujoco  # pyright: ignore[reportMissingImports] the extra
+            import mujoco.rollout  # pyright: ignore[reportMissingImports] the extra
         except ImportError as error:
             raise refuse_absent("mujoco", error) from None
         self.path = Path(path)
@@ -61,14 +70,15 @@ class MujocoModel:
         # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened
         self._model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self._data: Any = self._mujoco.MjData(self._model)
-        model, known = self._model, (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-        for number in range(model.njnt):
-            if model.jnt_type[number] not in known:
-                raise SchemaError(
-                    "each joint is a hinge or a slide, which has one coordinate and one speed",
-                    f"{self.path.name}: joint {self._called('joint', number) or number + 1!r} is a ball or free joint",
-                    "Write it as hinges and slides one after the other, or weld the body to the world.",
-                )
+        model, joint = self._model, self._mujoco.mjtJoint
+        known = int(joint.mjJNT_HINGE), int(joint.mjJNT_SLIDE)
+        others = [repr(self._called("joint", k) or k + 1) for k in range(model.njnt) if model.jnt_type[k] not in known]
+        if others:
+            raise SchemaError(
+                "each joint is a hinge or a slide, which has one coordinate and one speed",
+                f"{self.path.name}: joint {', '.join(others)} is a ball or free joint and cannot be examined",
+                "Write it as hinges and slides one after the other, or weld the body to the world.",
+            )
         bound = np.flatnonzero(model.eq_active0)
         if bound.size:
             name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
@@ -79,20 +89,24 @@ class MujocoModel:
             )
         if not model.njnt:
             raise SchemaError("a model has one joint or more", f"{self.path.name} has none", "Give a body a joint.")
-        self._names: dict[tuple[str, int], str] = {}
         ranges = np.where(model.jnt_limited[:, None], model.jnt_range, (-np.inf, np.inf)).tolist()
         turns = model.jnt_type == known[0]
         self.coordinates = tuple(
-            Coordinate(self._name("joint", k), "rad" if turns[k] else "m", self._called("joint", k), *ranges[k])
-            for k in range(model.njnt)
+            Coordinate(name, "rad" if turns[k] else "m", self._called("joint", k), *ranges[k])
+            for k, name in enumerate(self._names("joint", model.njnt, set()))
         )
-        self.controls = tuple(Input(name, "1", "actuator") for name in self._control_names())
-        self._places = self._places_of_parameters()
+        places = self._places_of_parts()
+        taken = {"gravity", *places} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
+        self.controls = tuple(Input(name, "1", "actuator") for name in self._names("control", model.nu, taken))
+        self._places = places | self._places_of_controls()
         self.parameters = tuple(
-            Parameter(name, float(np.linalg.norm(array[index])), unit)
-            for name, (array, index, unit, _) in self._places.items()
+            Parameter(name, _size(array[index]), unit) for name, (array, index, unit, _) in self._places.items()
         )
-        self.offered = tuple(one.name for one in self.parameters if one.value and "gear" not in one.name)
+        self.offered = tuple(
+            one.name
+            for one, place in zip(self.parameters, self._places.values(), strict=True)
+            if (one.value and "gear" not in one.name) or (place.part[0] == "tendon" and "loss" not in one.name)
+        )
         ranges = np.where(model.actuator_ctrllimited[:, None], model.actuator_ctrlrange, (-np.inf, np.inf)).tolist()
         self.control_ranges = {k: (low, high) for k, (low, high) in enumerate(ranges) if np.isfinite(high)}
         self._stateful = self._model.actuator_actadr >= 0
@@ -127,15 +141,10 @@ class MujocoModel:
         """Springs, dampers and friction of joints are forces on their coordinates."""
         part, _, word = parameter.rpartition("_")
         number = next((k for k, one in enumerate(self.coordinates) if one.name == part), -1)
-        if number < 0 or word not in JOINT_UNITS:
+        if number < 0 or word not in PASSIVE:
             return None
         one, rest = self.coordinates[number], float(self._model.qpos_spring[number])
-        forms = {
-            "stiffness": f"{rest!r} - {one.name}",
-            "damping": f"-{one.speed}",
-            "frictionloss": f"-sign({one.speed})",
-        }
-        return number, forms[word]
+        return number, PASSIVE[word][2].format(rest=rest, name=one.name, speed=one.speed)
 
     rates = accelerations  # no fibre has a state of its own
 
@@ -167,29 +176,43 @@ class MujocoModel:
     def run(self, start: Motion, controls: Values, rate: float) -> Values:
         """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator; controls are linear in between."""
         model, data, steps = self._model, self._data, self._steps(rate)
-        own, kept = self._stateful, model.opt.timestep
+        kept, count = model.opt.timestep, model.nq + model.nv
         model.opt.timestep = 1.0 / (rate * steps)
-        found = np.empty((*controls.shape[:2], model.nq + model.nv))
-        for run, driven in enumerate(controls):
-            self._mujoco.mj_resetData(model, data)
-            data.qpos[:], data.qvel[:] = start.q[run], start.v[run]
-            data.act[model.actuator_actadr[own]] = start.u[run, own]
-            found[run, 0] = *start.q[run], *start.v[run]
+        change = np.diff(controls, axis=1)[:, :, None] / steps
+        driven = (controls[:, :-1, None] + np.arange(steps)[:, None] * change).reshape(len(controls), -1, model.nu)
+        found = np.empty((len(controls), driven.shape[1] + 1, count))
+        found[:, 0] = np.hstack([start.q, start.v])
+        halted = np.ones(len(controls), bool)
+        if self.pushes is None and driven.shape[1]:  # all at once, each halted where MuJoCo warns
+            begun = np.array([self._begun(start, run) for run in range(len(controls))])
+            states, _ = self._mujoco.rollout.rollout(model, data, begun, driven)
+            found[:, 1:] = states[:, :, 1 : 1 + count]
+            halted = states[:, -1, 0] < (driven.shape[1] - 0.5) * model.opt.timestep
+        for run in np.flatnonzero(halted):
+            self._begun(start, int(run))
             pushed = None if self.pushes is None else self.pushes.begun(start)[[run]]
             begins = 0.0 if start.t is None else start.t[run]
-            for sample in range(len(driven) - 1):
-                change = (driven[sample + 1] - driven[sample]) / steps
-                for step in range(steps):
-                    data.ctrl[:] = driven[sample] + step * change
-                    if self.pushes is not None and pushed is not None:
-                        pushed[0, : 2 * model.nv] = *data.qpos, *data.qvel
-                        now = np.array([begins + data.time])
-                        data.qfrc_applied[:], rates = self.pushes.at(now, pushed, data.ctrl[None])
-                        pushed[:, 2 * model.nv :] += model.opt.timestep * rates
-                    self._mujoco.mj_step(model, data)
-                found[run, sample + 1] = *data.qpos, *data.qvel
+            for step, control in enumerate(driven[run]):
+                data.ctrl[:] = control
+                if self.pushes is not None and pushed is not None:
+                    pushed[0, : 2 * model.nv] = *data.qpos, *data.qvel
+                    now = np.array([begins + data.time])
+                    data.qfrc_applied[:], rates = self.pushes.at(now, pushed, data.ctrl[None])
+                    pushed[:, 2 * model.nv :] += model.opt.timestep * rates
+                self._mujoco.mj_step(model, data)
+                found[run, step + 1] = *data.qpos, *data.qvel
         model.opt.timestep = kept
-        return found
+        return found[:, ::steps]
+
+    def _begun(self, start: Motion, run: int) -> Values:
+        """Put the model where a run begins, and give its whole state there."""
+        model, data, whole = self._model, self._data, self._mujoco.mjtState.mjSTATE_FULLPHYSICS
+        self._mujoco.mj_resetData(model, data)
+        data.qpos[:], data.qvel[:] = start.q[run], start.v[run]
+        data.act[model.actuator_actadr[self._stateful]] = start.u[run, self._stateful]
+        state = np.empty(self._mujoco.mj_stateSize(model, whole))
+        self._mujoco.mj_getState(model, data, state, whole)
+        return state
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
@@ -200,7 +223,7 @@ class MujocoModel:
         """Text of the model with an effect on a joint."""
         one = self.coordinates[effect.coordinate]
         values = {each.name: each.value for each in self.parameters}
-        return with_effect(text, effect, one.called, {word: values[f"{one.name}_{word}"] for word in JOINT_UNITS})
+        return with_effect(text, effect, one.called, {word: values[f"{one.name}_{word}"] for word in PASSIVE})
 
     @_heard
     def _read(self) -> Any:
@@ -221,44 +244,39 @@ class MujocoModel:
         """Steps of the integrator for a sample, none longer than the model's own."""
         return max(int(np.ceil(round(1.0 / (rate * self._model.opt.timestep), 6))), 1)
 
-    def _name(self, kind: str, number: int) -> str:
-        """Name of a part as it may stand in an expression, unlike those of its kind."""
-        if (kind, number) not in self._names:
-            taken = {name for (other, _), name in self._names.items() if other == kind}
-            called = self._called(kind, number) or f"{kind}_{number + 1}"
-            self._names[kind, number] = new_name(called, kind, taken)
-        return self._names[kind, number]
-
-    def _control_names(self) -> list[str]:
-        """Names of the controls, unlike all others: a motor is often called as the joint that it drives."""
-        taken = {"gravity", *(f"{self._name('body', body)}_mass" for body in range(1, self._model.nbody))}
-        for one in self.coordinates:
-            taken |= {one.name, one.speed, one.port, *(f"{one.name}_{word}" for word in JOINT_UNITS)}
-        called = [self._called("actuator", number) or f"control_{number + 1}" for number in range(self._model.nu)]
-        return [new_name(one, "control", taken) for one in called]
+    def _names(self, kind: str, count: int, taken: set[str]) -> list[str]:
+        """Names of parts as they may stand in an expression, unlike each other and what is taken."""
+        known = "actuator" if kind == "control" else kind
+        return [new_name(self._called(known, k) or f"{kind}_{k + 1}", kind, taken) for k in range(count)]
 
     def _called(self, kind: str, number: int) -> str:
         found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
         return found or ""
 
-    def _places_of_parameters(self) -> dict[str, _Place]:
-        """Every number that may be changed by name."""
+    def _places_of_parts(self) -> dict[str, _Place]:
+        """Every number of bodies, joints and tendons that may be changed by name."""
         model = self._model
         places: dict[str, _Place] = {}
         if np.any(model.opt.gravity):
             places["gravity"] = _Place(model.opt.gravity, slice(None), "m/s^2", ("body", 0))
-        for body in range(1, model.nbody):
+        for body, name in enumerate(self._names("body", model.nbody, set())):
             if model.body_dofnum[model.body_rootid[body]] or model.body_weldid[body]:
-                places[f"{self._name('body', body)}_mass"] = _Place(model.body_mass, body, "kg", ("body", body))
-        for number, one in enumerate(self.coordinates):
-            slides = int(one.unit == "m")
-            dof = model.jnt_dofadr[number]
-            for word, array, index in (
-                ("stiffness", model.jnt_stiffness, number),
-                ("damping", model.dof_damping, dof),
-                ("frictionloss", model.dof_frictionloss, dof),
-            ):
-                places[f"{one.name}_{word}"] = _Place(array, index, JOINT_UNITS[word][slides], ("joint", number))
+                places[f"{name}_mass"] = _Place(model.body_mass, body, "kg", ("body", body))
+        joints = {one.name: one.unit for one in self.coordinates}
+        along = zip(model.wrap_type[model.tendon_adr], model.wrap_objid[model.tendon_adr], strict=True)
+        units = [[*joints.values()][k] if way == int(self._mujoco.mjtWrap.mjWRAP_JOINT) else "m" for way, k in along]
+        tendons = dict(zip(self._names("tendon", model.ntendon, set(joints)), units, strict=True))
+        arrays = (model.jnt_stiffness, model.dof_damping, model.dof_frictionloss)
+        for kind, parts in (("joint", joints), ("tendon", tendons)):
+            for number, (name, unit) in enumerate(parts.items()):
+                for (word, of), array in zip(PASSIVE.items(), arrays, strict=True):
+                    places[f"{name}_{word}"] = _Place(array, number, of[unit == "m"], (kind, number))
+            arrays = (model.tendon_stiffness, model.tendon_damping, model.tendon_frictionloss)
+        return places
+
+    def _places_of_controls(self) -> dict[str, _Place]:
+        """Every muscle's force, and every motor's gear."""
+        model, places = self._model, {}
         for number, one in enumerate(self.controls):
             if model.actuator_gaintype[number] == int(self._mujoco.mjtGain.mjGAIN_MUSCLE):
                 if model.actuator_gainprm[number, 2] > 0:
@@ -269,21 +287,19 @@ class MujocoModel:
 
     def _changed(self, values: Mapping[str, float]) -> list[tuple[Any, Any, Any]]:
         """Put other values in, and give what stood there before."""
-        kept = []
+        model, changes = self._model, []
         for name, value in values.items():
             array, index, *_ = self._places[name]
-            before = np.array(array[index], float)
-            size = float(np.linalg.norm(before))
-            if size == value:
-                continue
-            kept.append((array, index, before))
-            array[index] = before * (value / size) if before.ndim else value
-            if name.endswith("_mass"):  # a body of the same shape: its inertia goes with its mass
-                kept.append((self._model.body_inertia, index, self._model.body_inertia[index].copy()))
-                self._model.body_inertia[index] *= value / size
-            if name.endswith("_force"):
-                kept.append((self._model.actuator_biasprm, index, float(self._model.actuator_biasprm[index])))
-                self._model.actuator_biasprm[index] = value
+            before, size = array[index], _size(array[index])
+            if size != value:
+                changes.append((array, index, before * (value / size) if np.ndim(before) else value))
+                if name.endswith("_mass"):  # a body of the same shape: its inertia goes with its mass
+                    changes.append((model.body_inertia, index, model.body_inertia[index] * (value / size)))
+                if name.endswith("_force"):
+                    changes.append((model.actuator_biasprm, index, value))
+        kept = [(array, index, np.array(array[index])) for array, index, _ in changes]
+        for array, index, after in changes:
+            array[index] = after
         if kept:
-            self._mujoco.mj_setConst(self._model, self._data)
+            self._mujoco.mj_setConst(model, self._data)
         return kept

@@ -8,17 +8,15 @@ from xml.parsers import expat
 
 import numpy as np
 
-from gaitdisc.engines.engine import ByHand
+from gaitdisc.engines.motion import ByHand
 
-FAR = 1000.0  # [rad], beyond all that a joint does
-BEYOND = 10.0  # [rad], where a one-sided spring pulls that pulls at all
 MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
 
 
 def with_value(text: str, name: str, value: float, kind: str, called: str) -> str | None:
     """Text with a number of a joint, body or option changed; None where the file does not say it.
 
-    name: `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss`, `_gear`, `_force`, or gravity
+    name: `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss` (of a joint or tendon), `_gear`, `_force`, or gravity
     kind, called: tag and name of the element in the file
     """
     if name == "gravity":
@@ -87,18 +85,13 @@ def _with_mass(text: str, body: _Tag, value: float) -> str | None:
 
 def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
     """A fixed tendon that is slack on one side of a threshold."""
-    above = abs(effect.at(BEYOND, 0.0)) > 0.0
-    side = 1.0 if above else -1.0
-    far, farther = effect.at(side * BEYOND, 0.0), effect.at(side * 2 * BEYOND, 0.0)
-    stiffness = -(farther - far) / (side * BEYOND)
+    low, stiffness, high = effect.slack
     if not stiffness > 0:
         return None
-    threshold = side * BEYOND + far / stiffness
-    lengths = f"{-FAR!r} {threshold!r}" if above else f"{threshold!r} {FAR!r}"
     return _before_end(
         text,
         "  <tendon>\n"
-        f'    <fixed name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{lengths}">\n'
+        f'    <fixed name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{low!r} {high!r}">\n'
         f'      <joint joint="{joint}" coef="1"/>\n'
         "    </fixed>\n"
         "  </tendon>\n",
@@ -145,10 +138,10 @@ def _tags(text: str) -> list[_Tag]:
 
 
 def _is(text: str, tag: _Tag, kind: str, called: str) -> bool:
-    """Whether a tag is that of an element; an actuator's may be any."""
-    kinds = (kind,) if kind != "actuator" else (tag[0],)
-    inside = tag[0] in kinds and _attribute(text, tag, "name") == called
-    return inside and (kind != "actuator" or text[tag[3] :].startswith("<actuator"))
+    """Whether a tag is that of an element; those of actuators and tendons have many names."""
+    group = kind in ("actuator", "tendon")
+    fits = text[tag[3] :].startswith(f"<{kind}") if group else tag[0] == kind
+    return fits and _attribute(text, tag, "name") == called
 
 
 def _attribute(text: str, tag: _Tag, name: str) -> str | None:

@@ -17,13 +17,16 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from gaitdisc.engines.engine import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
+from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.expression import Name, Number, Tree, parsed
-from gaitdisc.simulation.parts import Input, Parameter, Term
+from gaitdisc.simulation.parts import Input, Parameter
 
 ALLOWED = ("sin", "cos", "tan", "tanh", "exp", "sqrt", "min", "max")
 ELEMENTS = {"mass": "Body", "optimal_force": "CoordinateActuator", "max_isometric_force": r"\w*Muscle"}  # of any kind
+SPRING, LIMIT = "SpringGeneralizedForce", "CoordinateLimitForce"  # all other effects are forces of an expression
+NATIVE = {"linear_stiffness": SPRING, "viscous_damping": SPRING, "one_sided_spring": LIMIT}
+TRANSITION = 1e-4  # [deg, m], over which a limit's stiffness sets in
 BINARY = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "^"}
 
 
@@ -88,9 +91,8 @@ class OpensimModel:
         push = np.zeros_like(at.q) if forces is None else forces
         return self._query("rates", at.q, at.v, at.u, at.z, changed, push)
 
-    def as_force(self, parameter: str) -> tuple[int, str] | None:
+    def as_force(self, _: str) -> tuple[int, str] | None:
         """None: masses, gravity and optimal forces are more."""
-        del parameter
 
     def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
@@ -131,7 +133,7 @@ class OpensimModel:
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a coordinate."""
-        return with_effect(text, effect.term, self.coordinates[effect.coordinate])
+        return with_effect(text, effect, self.coordinates[effect.coordinate])
 
     def _query(self, question: str, *arguments: Any) -> Any:
         """What the process answers; it is started with the model at the first question, and anew after it died."""
@@ -143,7 +145,8 @@ class OpensimModel:
                 stderr=subprocess.DEVNULL,
                 env=os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
             )
-            weakref.finalize(self, _ended, self._process)
+            for ending in (self._process.wait, self._process.kill):  # the last comes first
+                weakref.finalize(self, ending)
         assert self._process.stdin is not None and self._process.stdout is not None
         try:
             pickle.dump((question, arguments), self._process.stdin)
@@ -167,33 +170,36 @@ class OpensimModel:
         return answer
 
 
-def _ended(process: subprocess.Popen[bytes]) -> None:
-    """End a process when nobody needs it any more."""
-    process.kill()
-    process.wait()
-
-
-def with_effect(text: str, term: Term, coordinate: Coordinate) -> str | None:
-    """Text with a force of an expression on a coordinate; None where the expression knows more than that coordinate."""
-    expression = _translated(parsed(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})
-    found = re.search(r"<ForceSet\b.*?</ForceSet>", text, re.DOTALL)
-    if expression is None or found is None:
+def with_effect(text: str, effect: ByHand, coordinate: Coordinate) -> str | None:
+    """Text with a force on a coordinate; None where its expression knows more than that coordinate."""
+    own, found = _force_on(coordinate, effect), re.search(r"<ForceSet\b.*?</ForceSet>", text, re.DOTALL)
+    if own is None or found is None:
         return None
-    own = (
-        f"<ExpressionBasedCoordinateForce name={quoteattr(f'{term.name}_{coordinate.called}')}>"
-        f"<coordinate>{escape(coordinate.called)}</coordinate><expression>{escape(expression)}</expression>"
-        "</ExpressionBasedCoordinateForce>\n"
-    )
     whole = found[0]
-    empty = re.search(r"<objects\s*/>", whole)
-    at = whole.rfind("</objects>")
-    if at >= 0:  # the last: the first ones are those of muscles' paths
-        whole = f"{whole[:at]}{own}{whole[at:]}"
-    elif empty:
-        whole = f"{whole[: empty.start()]}<objects>\n{own}</objects>{whole[empty.end() :]}"
+    if "</objects>" not in whole:
+        whole = re.sub(r"<objects\s*/>", "<objects>\n</objects>", whole, count=1)
+    at = whole.rfind("</objects>")  # the last: the first ones are those of muscles' paths
+    return f"{text[: found.start()]}{whole[:at]}{own}{whole[at:]}{text[found.end() :]}" if at >= 0 else None
+
+
+def _force_on(coordinate: Coordinate, effect: ByHand) -> str | None:
+    """Return the element of an effect: OpenSim's own spring, damper or limit, or a force of its expression."""
+    term, kind = effect.term, NATIVE.get(effect.term.name)
+    if kind == SPRING:
+        numbers = {"stiffness": -effect.at(1.0, 0.0), "rest_length": 0.0, "viscosity": -effect.at(0.0, 1.0)}
+    elif kind == LIMIT:
+        low, stiffness, high = effect.slack
+        degree = np.rad2deg(1.0) if coordinate.unit == "rad" else 1.0
+        numbers = {"upper_limit": high * degree, "lower_limit": low * degree, "transition": TRANSITION, "damping": 0.0}
+        numbers |= {f"{side}_stiffness": stiffness / degree for side in ("upper", "lower")}  # it divides by either
     else:
+        kind = "ExpressionBasedCoordinateForce"
+        numbers = {"expression": _translated(parsed(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})}
+    if None in numbers.values():
         return None
-    return text[: found.start()] + whole + text[found.end() :]
+    words = {"coordinate": coordinate.called} | {word: str(value) for word, value in numbers.items()}
+    inside = "".join(f"<{word}>{escape(value)}</{word}>" for word, value in words.items())
+    return f"<{kind} name={quoteattr(f'{term.name}_{coordinate.called}')}>{inside}</{kind}>\n"
 
 
 def with_value(text: str, name: str, value: float) -> str | None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gaitdisc.engines.engine import Coordinate, Motion, Values, new_name
+from gaitdisc.engines.motion import Coordinate, Motion, Values, new_name
 from gaitdisc.engines.opensim_model import OpensimModel
 from gaitdisc.engines.opensim_worker import (
     PORT,
@@ -32,7 +32,7 @@ class OpensimTracked(OpensimModel):
     def __init__(self, path: Path | str, loads: tuple[Path, Path] | None = None, actuators: Path | None = None) -> None:
         self.path = Path(path)
         self._process = None
-        self.given = (str(loads[0]), str(loads[1])) if loads else None, str(actuators) if actuators else None
+        self.given = loads, actuators
         self._query("loaded", *self.given)
         described = self._query("described")
         taken: set[str] = set()
@@ -66,9 +66,7 @@ class OpensimTracked(OpensimModel):
 
     def other(self, path: Path) -> OpensimTracked:
         """Another model under the same loads."""
-        loads, actuators = self.given
-        both = (Path(loads[0]), Path(loads[1])) if loads else None
-        return OpensimTracked(path, both, Path(actuators) if actuators else None)
+        return OpensimTracked(path, *self.given)
 
 
 class _Tracked:
@@ -77,11 +75,11 @@ class _Tracked:
     def __init__(self, osim: Any, path: str) -> None:
         self.osim, self.model = osim, osim.Model(path)
 
-    def loaded(self, loads: tuple[str, str] | None, actuators: str | None) -> None:
+    def loaded(self, loads: tuple[Path, Path] | None, actuators: Path | None) -> None:
         osim, model = self.osim, self.model
         switch_off_controllers(model)
         if actuators:
-            more = osim.ForceSet(actuators)
+            more = osim.ForceSet(str(actuators))
             for k in range(more.getSize()):
                 model.updForceSet().cloneAndAppend(more.get(k))
         model.finalizeConnections()
@@ -91,9 +89,9 @@ class _Tracked:
         self.names = [name for name in names if not every.get(name).getDefaultLocked() and name not in self.coupled]
         self.actuators = [one.getName() for one in model.getActuators()]
         add_ports(model, osim, self.names)
-        external = osim.ExternalLoads(loads[0], True) if loads else None
+        external = osim.ExternalLoads(str(loads[0]), True) if loads else None
         if external is not None and loads:
-            external.setDataFileName(loads[1])
+            external.setDataFileName(str(loads[1]))
             model.addModelComponent(external)
         self.state = model.initSystem()
         self.loads = [external.get(k) for k in range(external.getSize())] if external is not None else []

@@ -152,22 +152,12 @@ def place_coupled(osim: Any, model: Any, state: Any, coupled: dict[str, tuple[li
         where = osim.Vector(len(others), 0.0)
         for k, one in enumerate(leading):
             where.set(k, one.getValue(state))
-        own = [scale * _slope(function, where, k) for k in range(len(others))]
+        own = [scale * function.calcDerivative(osim.StdVectorInt([k]), where) for k in range(len(others))]
         every.get(name).setValue(state, scale * function.calcValue(where), False)
         speeds = [one.getSpeedValue(state) for one in leading]
         every.get(name).setSpeedValue(state, float(np.dot(own, speeds)))
         slopes[name] = dict(zip(others, own, strict=True))
     return slopes
-
-
-def _slope(function: Any, where: Any, number: int, step: float = 1e-5) -> float:
-    """Slope of a function of several coordinates by one of them."""
-    here, values = where.get(number), []
-    for side in (step, -step):
-        where.set(number, here + side)
-        values.append(function.calcValue(where))
-    where.set(number, here)
-    return (values[0] - values[1]) / (2 * step)
 
 
 def _set(model: Any, osim: Any, name: str, value: float) -> None:

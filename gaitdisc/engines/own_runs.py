@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Engine, Values
+from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import recorded_motion
+from gaitdisc.engines.motion import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -18,13 +19,13 @@ from gaitdisc.simulation.simulation import Simulation
 MOST_RUNS, FEWER = 24, 6  # fewer where muscles have fibres
 PERIODS = 2.0  # of a run: over 4 s with limits or contacts 2 of 4 perfect models had a start that is not the best
 SHARES = (0.125, 0.35, 1.0)  # of a run, to which its start is fitted one after the other
+SHORT, COVERED = 6, 0.95  # margins in a trial, at least; share of what runs can cover that they do
 TURNS = 6
 SILENT_S = 10.0  # without progress, after which the number of finished runs is reported
 NUDGE = 1e-4
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 WINDOWS = 10  # in a period: what is missing bends a run more slowly
 CHANCE = 0.05  # of runs of a perfect model that are not taken for mere noise, and searched
-Start = Values  # (state,): coordinates, speeds, lags, states of pushes
 
 
 @dataclass(frozen=True)
@@ -35,17 +36,20 @@ class Driven:
     mapping: Simulation
     controls: Values  # (trial, sample, control)
     lags: Mapping[int, float] = field(default_factory=dict)  # control: time constant [s] of the lag in these
+    # channels, samples along an axis, as the record's filter leaves them
+    recorded: Callable[[Values, int], Values] = field(default_factory=lambda: lambda simulated, _: simulated)
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
 
 
 @dataclass(frozen=True)
 class Stretches:
-    """Parts of trials, equally long."""
+    """Parts of trials, equally long; no sample is compared in two of them."""
 
     trial: NDArray[np.intp]  # (run,), and the first sample of each
     first: NDArray[np.intp]
     length: int
     period: float  # of the motion [samples]
+    margin: int = 0  # samples at either end that are not compared, as a filter does not know what is beyond
 
 
 @dataclass(frozen=True)
@@ -107,14 +111,18 @@ def root_mean_square(left: Values) -> Values:
     return np.sqrt(np.nanmean(left**2, axis=(0, 1)))
 
 
-def stretches_of(measured: Measured, period: float, most: int) -> Stretches:
-    """Runs of two periods, spread over every trial."""
-    length, samples = int(min(max(round(PERIODS * period), 16), measured.samples.min())), measured.samples
-    counts = -(-samples // length)  # all of each trial, where these are not too many
-    every = [(k, at) for k, n in enumerate(counts) for at in np.linspace(0, samples[k] - length, n).astype(int)]
-    some = np.unique(np.linspace(0, len(every) - 1, most).round().astype(int))
+def stretches_of(measured: Measured, period: float, fewer: bool = False, margin: int = 0) -> Stretches:
+    """Runs of two periods at most, spread over every trial: side by side, so that noise counts once."""
+    margin = min(margin, int(measured.samples.min()) // SHORT)
+    inner = measured.samples - 2 * margin
+    longest = min(max(round(PERIODS * period), 16), int(inner.min()))
+    lengths = np.arange(longest, longest // 2, -1)
+    covered = (inner[:, None] // lengths * lengths).sum(axis=0)
+    length = int(lengths[np.argmax(covered > COVERED * covered.max())])
+    every = [(k, at) for k, n in enumerate(inner) for at in np.linspace(0, n - length, n // length).astype(int)]
+    some = np.unique(np.linspace(0, len(every) - 1, FEWER if fewer else MOST_RUNS).round().astype(int))
     trial, first = np.array(every)[some].T
-    return Stretches(trial, first, length, period)
+    return Stretches(trial, first, length + 2 * margin, period, margin)
 
 
 def trial_called(measured: Measured, name: str) -> int:
@@ -125,12 +133,12 @@ def trial_called(measured: Measured, name: str) -> int:
 
 
 def left_by(
-    model: Driven, measured: Measured, at: Stretches, states: Values, near: dict[int, Start] | None = None
+    model: Driven, measured: Measured, at: Stretches, states: Values, near: dict[int, Values] | None = None
 ) -> Values:
     """Measured minus run (run, sample, channel), starts and hidden states found by Gauss-Newton.
 
     states (trial, sample, state): smoothed: where the search for each start begins
-    near: run -> the start of a model that is hardly another, where it begins then; these are put in
+    near: run -> the start (state,) of a model that is hardly another, where it begins then; these are put in
     """
     engine, n, lags = model.engine, len(model.engine.coordinates), model.lags
     recorded = recorded_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
@@ -152,7 +160,12 @@ def left_by(
             begun = replace(known, own=starts[:, 2 * n + len(lags) :], t=np.full(len(starts), t[0]))
             run = engine.run(begun, driven, measured.rate)
             points = [Points(t, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
-            return (seen - np.stack([observed(model.mapping, measured.channels, one) for one in points])) / size
+            simulated = np.stack([observed(model.mapping, measured.channels, one) for one in points])
+            if samples < at.length:
+                return (seen - simulated) / size
+            left = (seen - model.recorded(simulated, 1)) / size
+            left[:, : at.margin], left[:, samples - at.margin :] = np.nan, np.nan
+            return left
 
         own = len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0
         known, left = near.get(row) if near else None, found[row]

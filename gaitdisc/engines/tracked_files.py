@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
-from gaitdisc.engines.engine import Coordinate, Values
+from gaitdisc.engines.motion import Coordinate, Values
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, loads_of, xml_of
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError

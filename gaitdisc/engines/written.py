@@ -12,8 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.engines.engine import ByHand, Engine, Motion, Pushes, Values, read_model
+from gaitdisc.engines.engine import Engine, read_model
 from gaitdisc.engines.mapping import REPLACED, read_mapping
+from gaitdisc.engines.motion import ByHand, Motion, Pushes, Values
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.expression import names, parsed

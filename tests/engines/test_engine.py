@@ -5,8 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from gaitdisc.engines.engine import Coordinate, is_model, part_name, read_model
+from gaitdisc.engines.engine import is_model, read_model
 from gaitdisc.engines.mapping import check_mapping, drafted
+from gaitdisc.engines.motion import Coordinate, part_name
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.parts import Input

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 from texts import says
 
-from gaitdisc.engines.engine import Motion, read_model
+from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.expansion import FASTEST, _slowed, expanded
 from gaitdisc.engines.mapping import drafted, with_input_changed
+from gaitdisc.engines.motion import Motion
 from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, left_by, root_mean_square, stretches_of
 from gaitdisc.engines.written import written_model
 from gaitdisc.simulation.drive import Drive, Rows
@@ -123,7 +124,7 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     whole = sprung.run(Motion(np.array([[0.3]]), np.array([[0.5]]), np.zeros((1, 1))), controls[None], 100.0)
     seen = np.rad2deg(whole[:, :, :1])
     measured = Measured(Drive.of([controls], 100.0), seen, ("1",), ("pivot",))
-    at, units = stretches_of(measured, 50.0, 6), {"pivot": "deg"}
+    at, units = stretches_of(measured, 50.0, fewer=True), {"pivot": "deg"}
     mapping, begun = drafted(plain, degrees=True), whole + np.array([0.02, 0.1])
     by_hand = mapping.with_effect(Term("pivot_moment", "port", "unnamed", "-6*sin(pivot) - (pivot - sin(pivot))*6"))
     forced = written_model(plain, by_hand)
@@ -134,6 +135,16 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     assert after < 1e-4 and pushed < 1e-4 and before > 0.5
     found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), 2)
     assert says(found.said, "MuJoCo", "pivot") and not found.leave_mere_noise
+
+
+def test_no_sample_is_compared_in_two_runs_and_none_at_the_ends_of_a_filtered_one():
+    drive = Drive.of([np.zeros((400, 0)), np.zeros((310, 0))], 100.0)
+    at = stretches_of(Measured(drive, np.zeros((2, 400, 1)), ("1", "2"), ("x",)), 117.0, margin=17)
+    inner = [range(first + 17, first + at.length - 17) for first in at.first]
+    for trial, samples in ((0, 400), (1, 310)):
+        compared = [k for one, of in zip(inner, at.trial, strict=True) if of == trial for k in one]
+        assert len(compared) == len(set(compared)) > 0.7 * samples
+        assert min(compared) == 17 and max(compared) == samples - 18
 
 
 def test_white_noise_is_mere_noise_and_a_slow_bend_of_half_its_size_is_not():

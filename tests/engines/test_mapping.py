@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from texts import says
 
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
-from gaitdisc.engines.engine import Coordinate, Motion, read_model
+from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import (
     drafted,
     names_engine,
@@ -19,6 +19,7 @@ from gaitdisc.engines.mapping import (
     with_input_changed,
     write_mapping,
 )
+from gaitdisc.engines.motion import Coordinate, Motion
 from gaitdisc.engines.tracked_files import drafted_tracked
 from gaitdisc.engines.tracked_mapping import Tracked, read_tracked, write_tracked_mapping
 from gaitdisc.errors import GaitdiscError, SchemaError

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Motion, read_model
+from gaitdisc.engines.engine import read_model
+from gaitdisc.engines.motion import Motion
 from gaitdisc.errors import GaitdiscError
 
 from .conftest import DAMPING, GEAR, GRAVITY, INERTIA, LENGTH, MASS, PENDULUM
@@ -61,7 +62,7 @@ def test_an_activation_lags_as_its_actuator_says(pendulum):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (('type="hinge" axis="0 -1 0"', 'type="ball"'), "joint 'pivot' is a ball or free joint"),
+        (('type="hinge" axis="0 -1 0"', 'type="ball"'), "joint 'pivot' is a ball or free joint and cannot be examined"),
         (("<worldbody>", "<worldbod>"), "a model is one that MuJoCo"),
         (('gear="5.0"', 'gear="5.0" unheard="1"'), "Mend what it names"),
         (("</worldbody>", '</worldbody><equality><joint name="held" joint1="pivot"/></equality>'), "'held' makes one"),

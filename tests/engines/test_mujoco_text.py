@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import ByHand, Motion, read_model
+from gaitdisc.engines.engine import read_model
+from gaitdisc.engines.mapping import drafted
+from gaitdisc.engines.motion import ByHand, Motion
 from gaitdisc.engines.mujoco_text import with_effect, with_value
+from gaitdisc.engines.written import written_model
 from gaitdisc.simulation.parts import Term
 
 from .conftest import DAMPING, INERTIA, LENGTH, MASS, PENDULUM
@@ -79,3 +82,23 @@ def test_what_has_no_form_or_no_name_is_not_written():
     assert with_effect(PENDULUM, odd, "pivot", OWN) is None
     assert with_effect(PENDULUM, effect("viscous_damping"), "elsewhere", OWN) is None
     assert with_value(PENDULUM, "foot_mass", 1.0, "body", "foot") is None
+
+
+BAND = """<tendon><spatial name="band" stiffness="0" springlength="0.2"><site site="above"/><site site="on"/></spatial>
+<fixed name="pivot" damping="0.2"><joint joint="pivot" coef="2"/></fixed></tendon></mujoco>"""
+
+
+def test_a_tendon_is_a_place_also_where_its_spring_is_missing(pendulum):
+    sited = PENDULUM.replace("<body name", '<site name="above" pos="0.3 0 0"/><body name')
+    sited = sited.replace("</body>", '<site name="on" pos="0 0 -0.3"/></body>').replace("</mujoco>", BAND)
+    pendulum.write_text(sited)
+    model = read_model(pendulum)
+    units = {one.name: one.unit for one in model.parameters}
+    assert (units["band_stiffness"], units["pivot_tendon_damping"]) == ("N/m", "N m s/rad")
+    assert {"band_stiffness", "band_damping", "pivot_tendon_damping"} <= set(model.offered)
+    force = model.accelerations(AT, {"pivot_tendon_damping": 0.5}) - model.accelerations(AT, {})
+    assert np.allclose(force, -0.3 * 4 * AT.v / (INERTIA + MASS * LENGTH**2), rtol=1e-9)
+    pulled = model.accelerations(AT, {"band_stiffness": 40.0})
+    assert np.abs(pulled - model.accelerations(AT, {})).min() > 0.1
+    found = written_model(model, drafted(model).with_values({"band_stiffness": 40.0}))
+    assert 'stiffness="40.0"' in found.text and np.allclose(found.engine.accelerations(AT, {}), pulled, rtol=1e-12)

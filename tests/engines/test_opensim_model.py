@@ -10,9 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Coordinate, Motion, read_model
+from gaitdisc.engines.engine import read_model
+from gaitdisc.engines.mapping import drafted, with_strength
+from gaitdisc.engines.motion import ByHand, Coordinate, Motion
 from gaitdisc.engines.opensim_model import with_effect, with_value
 from gaitdisc.engines.opensim_worker import serve
+from gaitdisc.engines.written import written_model
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.parts import Term
 
@@ -59,12 +62,33 @@ def test_its_own_run_starts_with_its_own_acceleration(model):
 
 
 def test_a_force_in_the_file_is_the_force_by_hand(model, tmp_path):
-    term = Term("knee_moment", "port", "spring", "-30*max(0, knee - 0.1) - 0.4*sign(knee_speed)")
     path = tmp_path / "augmented.osim"
-    path.write_text(with_effect(FILE.read_text(), term, Coordinate("knee", "rad", "knee")))
+    path.write_text(with_spring(FILE.read_text(), "-30*max(0, knee - 0.1) - 0.4*sign(knee_speed)"))
     force = -30 * np.maximum(0, AT.q[:, 1] - 0.1) - 0.4 * np.tanh(AT.v[:, 1] / 0.02)
     by_hand = model.accelerations(AT, {}, np.column_stack([np.zeros(2), force]))
     assert np.allclose(read_model(path).accelerations(AT, {}), by_hand, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("name", "term", "element"),
+    [
+        ("linear_stiffness", "-8*knee", "<SpringGeneralizedForce"),
+        ("viscous_damping", "-0.7*knee_speed", "<viscosity>0.7<"),
+        ("one_sided_spring", "-25*max(0, knee - 0.1)", "<CoordinateLimitForce"),
+        ("one_sided_spring", "25*max(0, -0.2 - knee)", "<lower_limit>-11.459"),
+        ("wrong_parameter", "0.8", "<optimal_force>12.0<"),
+    ],
+)
+def test_opensims_own_forces_run_as_the_expression_does(model, monkeypatch, name, term, element):
+    plain, u = drafted(model), 0.2 * np.sin(np.arange(80)[None, :, None] * np.array([0.03, 0.05]))
+    mapping = plain.with_effect(Term("knee_moment", "port", name, term))
+    native = written_model(model, with_strength(plain, model, "knee_motor", 0.8) if term == "0.8" else mapping)
+    assert element in native.text and "is written into the model" in native.notes[0]
+    start = Motion(np.array([[0.2, -0.3]]), np.zeros((1, 2)), u[:, 0])
+    monkeypatch.setattr("gaitdisc.engines.opensim_model.NATIVE", {})
+    other = model if term == "0.8" else written_model(model, mapping).engine
+    run = other.run(start, u * ([1.0, 0.8] if term == "0.8" else 1.0), 100.0)
+    assert np.allclose(native.engine.run(start, u, 100.0), run, atol=1e-6)
 
 
 def test_a_process_that_dies_is_told_and_replaced(model):
@@ -171,13 +195,17 @@ TEXT = """<OpenSimDocument Version="40600"><Model name="arm"><gravity>0 -9.81 0<
 KNEE = Coordinate("knee", "rad", "knee")
 
 
+def with_spring(text, term):
+    return with_effect(text, ByHand(Term("knee_moment", "port", "spring", term), 1, lambda q, v: 0.0), KNEE)
+
+
 def inserted(term):
-    text = with_effect(TEXT, Term("knee_moment", "port", "spring", term), KNEE)
+    text = with_spring(TEXT, term)
     return text and text[text.index("<expression>") + 12 : text.index("</expression>")]
 
 
 def test_a_force_goes_to_the_end_of_the_models_own_forces():
-    text = with_effect(TEXT, Term("knee_moment", "port", "spring", "-2*knee"), KNEE)
+    text = with_spring(TEXT, "-2*knee")
     assert "</CoordinateActuator><ExpressionBasedCoordinateForce" in text
     assert text.replace(text[text.index("<Expr") : text.index("</Expr")], "").count("</objects>") == 2
 
@@ -192,7 +220,7 @@ def test_an_expression_is_written_as_opensim_reads_it():
 def test_what_knows_more_than_its_own_coordinate_has_no_form():
     assert inserted("-2*hip") is None
     assert inserted("-2*step(knee)") is None
-    assert with_effect("<Model/>", Term("knee_moment", "port", "x", "knee"), KNEE) is None
+    assert with_spring("<Model/>", "knee") is None
 
 
 def test_numbers_of_the_model():

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import Motion
+from gaitdisc.engines.motion import Motion
 from gaitdisc.engines.tracked_files import tracked_motion
 from gaitdisc.engines.tracked_mapping import Tracked
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.engines.engine import Coordinate
+from gaitdisc.engines.motion import Coordinate
 from gaitdisc.engines.tracked_files import check_loads, drafted_tracked, tracked_motion
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, SchemaError, UnitError

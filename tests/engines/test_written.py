@@ -6,7 +6,7 @@ import pytest
 from texts import says
 
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import drafted, with_input_changed
+from gaitdisc.engines.mapping import drafted, with_input_changed, with_strength
 from gaitdisc.engines.written import loaded_beside, written_model
 from gaitdisc.simulation.parts import Term
 
@@ -23,14 +23,15 @@ def test_what_has_a_form_is_written_and_what_has_none_is_told(pendulum):
     mapping = mapping.with_effect(term("one_sided_spring", "-4.5*max(0, pivot - 0.1)"))
     mapping = mapping.with_effect(term("gravity_moment", "-0.5*sin(pivot)"))
     mapping = mapping.with_effect(term("coulomb_friction", "-0.4*sign(pivot_speed)"))
-    found = written_model(model, with_input_changed(mapping, "drive", "1.2*drive"))
+    mapping = with_strength(mapping, model, "drive", 0.8)
+    found = written_model(model, with_input_changed(mapping, "drive", "delay(drive, 0.02)"))
     assert "the user's own words stay" in found.text
     assert 'mass="2.2"' in found.text and "frictionloss" in found.text
     assert float(re.search(r'stiffness="([^"]*)"', found.text)[1]) == pytest.approx(4.5)
     said = "\n".join(found.notes)
-    assert said.count("is written into the model") == 3
+    assert said.count("is written into the model") == 4 and 'gear="4.0"' in found.text
     assert says(said, "gravity_moment", "pivot_moment", "no")
-    assert says(said, "drive", "1.2*drive", "no")
+    assert says(said, "drive", "delay(drive, 0.02)", "no")
     assert found.engine.parameters != model.parameters
 
 
@@ -41,6 +42,12 @@ def test_a_form_that_is_not_the_expression_is_not_written(pendulum):
     found = written_model(model, drafted(model).with_effect(wrong))
     assert found.text == PENDULUM
     assert "would differ by" in found.notes[0]
+
+
+def test_a_servo_whose_control_is_no_force_keeps_its_numbers(pendulum):
+    pendulum.write_text(PENDULUM.replace('<motor name="drive"', '<position kp="3" name="drive"'))
+    mapping = with_strength(drafted(read_model(pendulum)), read_model(pendulum), "drive", 0.8)
+    assert mapping.definitions == (("replaced_drive", "0.8*drive"),)
 
 
 def test_files_that_lie_beside_the_model_are_found(pendulum):

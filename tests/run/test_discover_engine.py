@@ -19,7 +19,8 @@ def lab(tmp_path_factory):
     """Return a folder with a model, the truth, and four trials of it in degrees."""
     if find_spec("mujoco") is None:
         pytest.skip("MuJoCo is not installed: gaitdisc[mujoco]")
-    from gaitdisc.engines.engine import Motion, read_model
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.motion import Motion
 
     folder = tmp_path_factory.mktemp("lab")
     (folder / "pendulum.xml").write_text(PENDULUM)
@@ -110,7 +111,8 @@ def test_what_mujoco_warns_of_is_a_finding_said_once():
 def test_half_a_step_of_a_coarse_integrator_is_no_late_sensor(tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
     from gaitdisc import discover
-    from gaitdisc.engines.engine import Motion, read_model
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.motion import Motion
 
     (tmp_path / "coarse.xml").write_text(PENDULUM.replace('timestep="0.001"', 'timestep="0.02"'))
     model, rng, t = read_model(tmp_path / "coarse.xml"), np.random.default_rng(5), np.arange(300) / 50

@@ -12,7 +12,8 @@ pytestmark = pytest.mark.skipif(find_spec("mujoco") is None, reason="MuJoCo is n
 def test_the_truth_differs_from_the_model_by_what_is_hidden(kind, tmp_path):
     import engines
 
-    from gaitdisc.engines.engine import Motion, read_model
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.motion import Motion
 
     case = engines.hidden_in(engines.MODELS["leg"], kind, np.random.default_rng(5))
     (tmp_path / "leg.xml").write_text(case.truth)
