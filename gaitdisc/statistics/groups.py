@@ -11,7 +11,8 @@ from scipy.spatial.distance import pdist, squareform
 
 from gaitdisc.errors import ComparisonError
 
-FEWEST = 6
+FEWEST, MOST = 6, 4  # participants; sub-groups tried
+ALPHA = 0.05  # of the clouds that part as well
 LEAST_STABILITY = 0.75
 SUBSAMPLES = 100
 SHARE_KEPT = 0.8
@@ -30,9 +31,7 @@ class Groups:
     why: str
 
 
-def find_groups(
-    features: NDArray[np.float64], most: int = 4, clouds: int = 199, seed: int = 0, alpha: float = 0.05
-) -> Groups:
+def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0) -> Groups:
     """Look for sub-groups by Ward's method, and believe them only if chance and sampling cannot make them.
 
     Any cloud can be cut in two. The cut is believed where its mean silhouette is rare among normal clouds of the same
@@ -41,7 +40,6 @@ def find_groups(
     none was cut; two groups of six were found in 0, 10 and 75 % of 60 draws where they lay 4, 6 and 8 sd apart.
 
     features (participant, feature): in comparable units; complete
-    most: largest number of sub-groups tried; none smaller than two participants is
     Source: Ward 1963; Rousseeuw 1987 (silhouette); Liu et al. 2008 (clouds of the same covariance); Hubert and Arabie
         1985 (adjusted Rand index). Ebers 2023, section 6.2 raises the question.
 
@@ -58,17 +56,17 @@ def find_groups(
             "Exclude participants with missing features by name.",
         )
     rng = np.random.default_rng(seed)
-    labels, silhouette = best_cut(features, most)
+    labels, silhouette = best_cut(features)
     centred = features - features.mean(axis=0)
     spread = np.linalg.svd(centred, compute_uv=False) / np.sqrt(len(features) - 1)
-    drawn = [best_cut(rng.standard_normal((len(features), len(spread))) * spread, most)[1] for _ in range(clouds)]
+    drawn = [best_cut(rng.standard_normal((len(features), len(spread))) * spread)[1] for _ in range(clouds)]
     p = (1 + sum(value >= silhouette for value in drawn)) / (1 + clouds)
     stability = _stability(features, labels, rng)
     count = int(labels.max())
     measured = f"{count} groups separate with silhouette {silhouette:.2f}, p = {p:.3f}, stability {stability:.2f}"
     if count < 2:
         why = "no feature separates the participants"
-    elif p > alpha:
+    elif p > ALPHA:
         why = f"{measured}; a single normal distribution separates as well by chance"
     elif stability < LEAST_STABILITY:
         why = f"{measured}; the groups change when a fifth of the participants is left out"
@@ -77,8 +75,8 @@ def find_groups(
     return Groups(0, np.zeros_like(labels), silhouette, p, stability, f"No sub-groups: {why}")
 
 
-def best_cut(features: NDArray[np.float64], most: int = 4) -> tuple[NDArray[np.intp], float]:
-    """Cut into two to `most` groups by Ward's method that has the largest mean silhouette.
+def best_cut(features: NDArray[np.float64]) -> tuple[NDArray[np.intp], float]:
+    """Cut into two to four groups, none of a single participant, by Ward's method, of the largest mean silhouette.
 
     features (participant, feature): complete
     returns labels (participant,): from 1; all 1 where no cut leaves two in every group
@@ -87,7 +85,7 @@ def best_cut(features: NDArray[np.float64], most: int = 4) -> tuple[NDArray[np.i
     tree = linkage(between, "ward")
     distances = squareform(between)
     best, highest = np.ones(len(features), np.intp), -1.0
-    for count in range(2, most + 1):
+    for count in range(2, MOST + 1):
         labels = np.asarray(fcluster(tree, count, "maxclust"), np.intp)
         if np.bincount(labels)[1:].min() < 2 or labels.max() < 2:
             continue
