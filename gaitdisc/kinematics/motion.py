@@ -130,13 +130,6 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     joined = joined_poses(free, placed, calibration, walking.rotation)
     spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
-    joints = calibration.marker_set.joints
-    if not poses["pelvis"].known.any():
-        raise ShapeError(
-            f"a body with {joints} joints must lie within {FARTHEST_M * 1000:.0f} mm of the markers",
-            f"{file}: it does so in no frame (root mean square over all markers)",
-            'Check the static trial and the direction of walking, or use joints = "free".',
-        )
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
     bridged = {s: poses[s].known & ~np.isfinite(placed[s][1]).all(axis=(1, 2)) for s in SEGMENTS}
     findings = [
@@ -148,7 +141,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     for segment in SEGMENTS:
         findings += _gaps_and_shape(segment, ~poses[segment].known, bridged[segment], residuals[segment], markers)
     angles = angles_of_poses(markers, poses, bridged, walking)
-    if joints == "planar":  # only what a planar body has
+    if calibration.marker_set.joints == "planar":  # only what a planar body has
         flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
         angles = angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
     return Motion(
@@ -230,6 +223,12 @@ def angles_of_poses(
         add(("foot_progression_angle",), side, foot[:, 2:] * (1 if side == "r" else -1), bridged[f"foot_{side}"])
     # steps, each along its own frame's axes: in a turn the laboratory's origin is behind, then beside the walker
     known = poses["pelvis"].known
+    if not known.any():
+        raise ShapeError(
+            f"angles need a frame in which the body lies within {FARTHEST_M * 1000:.0f} mm of the markers",
+            f"{base.source.file or 'the trial'} has none (root mean square over all markers)",
+            'Check the static trial and the direction of walking, or use joints = "free".',
+        )
     path = np.stack([np.interp(base.time, base.time[known], axis[known]) for axis in poses["pelvis"].origin.T], axis=1)
     place = np.einsum("fji,fj->fi", walking.rotation, np.diff(path, axis=0, prepend=0 * path[:1])).cumsum(axis=0)
     place[~known] = np.nan

@@ -147,11 +147,11 @@ def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
 def _alt(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
     return (
         f"Mean walking curves of {participant}, {counted(numbers['channel'].nunique(), 'channel')}, {run.nominal} "
-        f"and {run.exo}. With the device: {ranges_of(numbers[numbers['walk'] == 'exo'])}."
+        f"and {run.exo}. With the device: {range_words(numbers[numbers['walk'] == 'exo'])}."
     )
 
 
-def ranges_of(numbers: pd.DataFrame) -> str:
+def range_words(numbers: pd.DataFrame) -> str:
     """From where to where the mean curves of the first six channels go, in words."""
     ranges = []
     for channel, rows in list(numbers.groupby("channel", sort=False))[:6]:

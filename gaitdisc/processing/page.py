@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.processing.curves_figure import label_curve, ranges_of, sides_together
+from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
 from gaitdisc.processing.kept_parts import figure_again, hash_cycles, keep_part, read_part
 from gaitdisc.processing.leg_curves import FEET
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
@@ -209,7 +209,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
     key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
     legend(drawn, key)
-    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {ranges_of(shown)}."
+    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
     return Figure(name, _caption(pooled), alt, shown, drawn)
 
 

@@ -305,22 +305,22 @@ def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object
 def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], NDArray[np.float64]]:
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
-    for state in (state for trial in seen for state in trial.states):
-        for channel in state.kept.channels:
-            by_name.setdefault(channel.name, channel)
+    for trial in seen:
+        for shelved in trial.states:
+            for channel in shelved.kept.channels:
+                by_name.setdefault(channel.name, channel)
     names = list(by_name)
     kept = [[cycle for cycle in own if not cycle.reason] for own in cycles]
     whole = np.full((sum(map(len, kept)), len(PERCENT), len(names)), np.nan)
     row = 0
     for trial, own in zip(seen, kept, strict=True):
-        for state in (one.recording() for one in trial.states):
-            same = [c for c in state.channels if c.unit == by_name[c.name].unit]  # the first unit counts
-            columns = [names.index(channel.name) for channel in same]
-            chosen = state.selected([channel.name for channel in same])
+        for shelved in trial.states:  # the first unit counts
+            chosen = shelved.recording().selected_by(lambda channel: channel.unit == by_name[channel.name].unit)
+            columns = [names.index(name) for name in chosen.names]
             for place, cycle in enumerate(own, row):
                 strides = Strides(np.array([cycle.start]), np.array([cycle.end]), cycle.side, trial.steps.detector)
                 values = strides.normalised(chosen)[0]
-                bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in same]
+                bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in chosen.channels]
                 values[:, bare] = np.nan
                 whole[place][:, columns] = values
         row += len(own)

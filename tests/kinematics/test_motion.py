@@ -226,7 +226,7 @@ def test_without_the_markers_of_one_set_in_both_trials_a_body_is_not_followed(ma
 
 
 def test_a_plane_in_which_nobody_walks_is_refused():
-    with pytest.raises(ShapeError, match=r"planar joints.*40 mm.*no frame"):
+    with pytest.raises(ShapeError, match=r"40 mm.*none.*joints = \"free\""):
         moved_body(WALK, static_of(PLUG_IN_GAIT), "plug_in_gait", MEASURES, (0, 0, 1), "planar")
 
 
