@@ -115,11 +115,11 @@ class Panel:
         return self.span * WIDTH // 2 + (self.span - 2) * GAP // 2
 
 
-def ticks(low: float, high: float, most: int = 5) -> list[float]:
-    """Round numbers between two values, at most so many."""
-    rough = (high - low) / most
+def ticks(low: float, high: float) -> list[float]:
+    """Round numbers between two values, in at most five steps."""
+    rough = (high - low) / 5
     power = 10.0 ** np.floor(np.log10(rough))
-    step = next(float(k * power) for k in (1, 2, 5, 10, 20) if (high - low) / (k * power) <= most)
+    step = next(float(k * power) for k in (1, 2, 5, 10, 20) if (high - low) / (k * power) <= 5)
     first = np.ceil(low / step)
     return [float(round(k * step, 10)) + 0.0 for k in np.arange(first, np.floor(high / step) + 1)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 
-from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, PersonSession
+from gaitdisc.clinic.clinical_reference import ClinicalReference, PersonSession
 from gaitdisc.clinic.reading import contrast_of, read_beside
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
@@ -32,8 +32,8 @@ def read_session(
 
 def before_and_after(
     run: StudyRun, reference: ClinicalReference | None, person: str, words: Sequence[str]
-) -> tuple[ClinicalReading, ClinicalReading]:
-    """Two readings of a person by the words of their sessions or conditions, of one condition or of one session."""
+) -> PersonSession:
+    """A person after and before, by the words of two sessions or conditions, of one condition or of one session."""
     cycles = [one for one in run.of(CYCLES) if one.subject == person]
     ordered = sorted(cycles, key=lambda one: one.condition != run.nominal)
     own = [one for one in (read_beside(each, reference) for each in ordered) if one.legs]
@@ -55,4 +55,5 @@ def before_and_after(
             f"found {there}",
             "Name two sessions, or two conditions, of these.",
         )
-    return pairs[0]
+    before, after = pairs[0]
+    return PersonSession(" ".join((person, *words)), (after, before), (contrast_of(before, after),))

@@ -103,7 +103,7 @@ def quality_sentence(reading: ClinicalReading) -> str:
     return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}. {reading.light}{why}."
 
 
-def score_words(score: Score, unit: str = "deg") -> str:
+def score_words(score: Score) -> str:
     """Score with the range of single cycles and the reference's own.
 
     >>> score_words(Score(7.2, 6.5, 8.1, 4, 5.1, 1.0, 20))
@@ -115,7 +115,7 @@ def score_words(score: Score, unit: str = "deg") -> str:
     if np.isfinite(score.reference_mean):
         own = f"{number(score.reference_mean, 1)} ± {number(score.reference_sd, 1)}"
         parts.append(f"reference {own}, {score.people} people")
-    return f"{number(score.value, 1)} {unit}" + (f" ({'; '.join(parts)})" if parts else "")
+    return f"{number(score.value, 1)} deg" + (f" ({'; '.join(parts)})" if parts else "")
 
 
 def score_sentences(reading: ClinicalReading) -> list[str]:

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from gaitdisc.clinic.clinical_reference import ClinicalReference, PersonSession
     from gaitdisc.clinic.laboratory import PageWords
     from gaitdisc.ingest.study import Study
-    from gaitdisc.saved.provenance import Provenance
     from gaitdisc.saved.study_run import StudyRun
 
 LABORATORY = "laboratory"  # folder of a run: what the pages were drawn with
@@ -137,8 +136,8 @@ def write_people(
     from gaitdisc.processing.kept_parts import hash_cycles, keep_part, read_part
     from gaitdisc.report.figure import file_names
 
-    report, reference, people = run_folder / "report", kept_reference(run_folder), cycles_of_people(run)
-    say = kept_words(run_folder)
+    pages, people = _Pages(run, run_folder, pdf), cycles_of_people(run)
+    report, say = pages.report, pages.say
     names, house = file_names(list(people)), say.laboratory
     shared = repr(replace(say, laboratory=replace(house, affected={}, comments={})))
     files = sorted(path for path in (run_folder / REFERENCE).glob("*") if path.is_file())
@@ -154,78 +153,65 @@ def write_people(
             rows += kept
             continue
         try:
-            person = read_session(title, own, run.nominal, reference)
+            person = read_session(title, own, run.nominal, pages.reference)
         except GaitdiscError as error:
             failed.append((title, str(error)))
             continue
         try:
-            pages = _pages(person, name, reference, provenance=run.provenance, report=report, say=say, pdf=pdf)
-            for page in pages:
+            written = pages.write(person, name)
+            for page in written:
                 progress(page)
             drawn = index_rows(person, name, say)
-            files = [*pages, *(report / "people" / name).glob("*.csv")]
+            files = [*written, *(report / "people" / name).glob("*.csv")]
             keep_part(report, f"people-{name}", key, drawn, files)
             rows += drawn
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
             raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
-    return write_index(_with_failed(run, failed, run_folder), rows, reference, report, say)
+    return write_index(_with_failed(run, failed, run_folder), rows, pages.reference, report, say)
 
 
-def write_before_after(
-    run: StudyRun, run_folder: Path, person: str, first: str, second: str, pdf: bool = False
+def write_person(
+    run: StudyRun, run_folder: Path, person: str, words: tuple[str, ...] = (), pdf: bool = False
 ) -> list[Path]:
-    """Write the page of a person before and after, as HTML and where wanted as PDF."""
-    from gaitdisc.clinic.clinical_reference import PersonSession
-    from gaitdisc.clinic.read_people import before_and_after
-    from gaitdisc.clinic.reading import contrast_of
+    """Write the pages of one person, a page a session, or one of two sessions or conditions that are named."""
+    from gaitdisc.clinic.read_people import before_and_after, cycles_of_people, read_session
     from gaitdisc.report.figure import file_names
 
-    reference = kept_reference(run_folder)
-    before, after = before_and_after(run, reference, person, (first, second))
-    title = f"{person} {first} {second}"
-    page = PersonSession(title, (after, before), (contrast_of(before, after),))
-    name = file_names([title])[title]
-    return _pages(page, name, reference, run.provenance, run_folder / "report", say=kept_words(run_folder), pdf=pdf)
-
-
-def write_person(run: StudyRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
-    """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
-    from gaitdisc.clinic.read_people import cycles_of_people, read_session
-    from gaitdisc.report.figure import file_names
-
+    pages = _Pages(run, run_folder, pdf)
+    if words:
+        both = before_and_after(run, pages.reference, person, words)
+        return pages.write(both, file_names([both.title])[both.title])
     people = cycles_of_people(run)
     own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
     if not own:
         known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
         raise SchemaError("a page needs a person of the run", f"{person!r}; there are {known}", "Name one of them.")
-    names, reference, say = file_names(list(people)), kept_reference(run_folder), kept_words(run_folder)
-    report, found = run_folder / "report", []
+    names = file_names(list(people))
+    found = []
     for title, cycles in own.items():
-        session = read_session(title, cycles, run.nominal, reference)
-        found += _pages(session, names[title], reference, provenance=run.provenance, report=report, say=say, pdf=pdf)
+        found += pages.write(read_session(title, cycles, run.nominal, pages.reference), names[title])
     return found
 
 
-def _pages(
-    person: PersonSession,
-    name: str,
-    reference: ClinicalReference | None,
-    provenance: Provenance,
-    report: Path,
-    say: PageWords,
-    pdf: bool,
-) -> list[Path]:
-    """Write the page of a person and session into a report, in these words, as HTML and where wanted as PDF."""
-    from gaitdisc.clinic.person_page import write_person_page
+class _Pages:
+    """What all pages of a run's people are written with, and where."""
 
-    page = write_person_page(person, name, reference, provenance, report, say)
-    if not (pdf or say.laboratory.pdf):
-        return [page]
-    from gaitdisc.clinic.person_pdf import write_person_pdf
+    def __init__(self, run: StudyRun, run_folder: Path, pdf: bool) -> None:
+        self.report, self._provenance, self._pdf = run_folder / "report", run.provenance, pdf
+        self.reference, self.say = kept_reference(run_folder), kept_words(run_folder)
 
-    return [page, write_person_pdf(person, provenance, page.with_suffix(".pdf"), say)]
+    def write(self, person: PersonSession, name: str) -> list[Path]:
+        """Write the page of a person and session as HTML and where wanted as PDF."""
+        from gaitdisc.clinic.person_page import write_person_page
+
+        page = write_person_page(person, name, self.reference, self._provenance, self.report, self.say)
+        if not (self._pdf or self.say.laboratory.pdf):
+            return [page]
+        from gaitdisc.clinic.person_pdf import write_person_pdf
+
+        return [page, write_person_pdf(person, self._provenance, page.with_suffix(".pdf"), self.say)]
 
 
 def _with_failed(run: StudyRun, failed: list[tuple[str, str]], run_folder: Path) -> StudyRun:

@@ -11,7 +11,6 @@ from gaitdisc.commands.clinic_pages import (
     keep_reference,
     keep_words,
     page_of_run,
-    write_before_after,
     write_english,
     write_people,
     write_person,
@@ -80,8 +79,7 @@ def _people(
             "Name all three.",
         )
     if person:
-        where = (run, run_folder, person)
-        for page in write_before_after(*where, before, after, pdf) if before else write_person(*where, pdf):
+        for page in write_person(run, run_folder, person, (before, after) if before else (), pdf):
             _said(page)
     elif pdf:
         typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")

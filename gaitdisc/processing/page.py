@@ -25,8 +25,8 @@ from gaitdisc.processing.tables import (
     spatiotemporal_table,
 )
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.figure import Figure, file_names, largest_inline, save_figures
-from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
+from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
+from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_page
 from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.saved.provenance import Provenance
@@ -116,7 +116,7 @@ def cycles_sentences(run: StudyRun) -> list[str]:
     return sentences
 
 
-def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[SavedBlock]:
+def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     """Part of the page for everybody together, then one for each person, with figures and tables written."""
     if not run.of(CYCLES):
         return []
@@ -145,7 +145,7 @@ def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str
     return f"cycles-{name}", hash_cycles(sets, name)
 
 
-def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> SavedBlock:
+def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> Block[SavedFigure]:
     part, key = _part(sets, name)
     block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
     save_tables(block.tables, folder)
@@ -154,7 +154,7 @@ def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) ->
     if kept is None:
         files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
         keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
-    return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
+    return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 
 def _person(sets: Sequence[PooledCycles]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from gaitdisc._version import __version__
 from gaitdisc.own_files import note_outputs, under_this_guard
@@ -17,6 +17,7 @@ from gaitdisc.report.table import Table, as_markdown, save_tables
 from gaitdisc.whole_file import write_whole
 
 Result = TypeVar("Result")
+Shown = TypeVar("Shown", Figure, SavedFigure)
 MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 
 
@@ -42,41 +43,30 @@ def page_text(template: str, shown: Mapping[str, Any]) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
-    """One part, as it is computed."""
+class Block(Generic[Shown]):
+    """One part, as it is computed, or with its figures and tables on disk."""
 
     anchor: str
     heading: str
     sentences: tuple[str, ...]  # what the figures and tables say; a block without any is not shown
-    figures: tuple[Figure, ...] = ()
+    figures: tuple[Shown, ...] = ()
     tables: tuple[Table, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class SavedBlock:
-    """One part, with its figures and tables on disk."""
-
-    anchor: str
-    heading: str
-    sentences: tuple[str, ...]
-    figures: tuple[SavedFigure, ...]
-    tables: tuple[Table, ...]
-
-
-def save_block(block: Block, folder: Path) -> SavedBlock:
+def save_block(block: Block[Figure], folder: Path) -> Block[SavedFigure]:
     """Write the figures and tables of a part."""
     figures = tuple(save_figures(block.figures, folder))
     save_tables(block.tables, folder)
-    return SavedBlock(block.anchor, block.heading, block.sentences, figures, block.tables)
+    return Block(block.anchor, block.heading, block.sentences, figures, block.tables)
 
 
-def write_blocks(title: str, about: str, blocks: Sequence[Block], folder: Path) -> Path:
+def write_blocks(title: str, about: str, blocks: Sequence[Block[Figure]], folder: Path) -> Path:
     """Write a page of blocks: `report.html`, `figures/` and `tables/`."""
     saved = [save_block(block, folder) for block in blocks]
     return write_page("blocks", {"title": title, "about": about, "blocks": saved}, folder)
 
 
-def write_markdown(blocks: Sequence[Block], folder: Path) -> Path:
+def write_markdown(blocks: Sequence[Block[Figure]], folder: Path) -> Path:
     """Write all tables of a page once more as Markdown, each under the heading of its block: `tables.md`."""
     text = "\n\n".join(f"{block.heading}\n\n{as_markdown(table)}" for block in blocks for table in block.tables)
     return write_whole(folder / "tables.md", text + "\n")

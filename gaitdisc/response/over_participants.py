@@ -39,10 +39,10 @@ TESTED = ("w", "p", "median_first", "median_second", "median_difference", "shift
 MEASURES = ("peak_to_peak", "rms")
 
 
-def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = ALPHA) -> pd.DataFrame:
+def compare_baselines(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
     """Compare the networks' R2 on held-out device walking with ridge regressions' and the null's (`BASELINE_COLUMNS`).
 
-    alpha is of one model's and baseline's variables; a network shown to be no better there earns nothing.
+    Corrected over one model's and baseline's variables; a network shown to be no better there earns nothing.
     """
     if len(responses) < FEWEST:
         return no_rows("baselines")
@@ -52,15 +52,15 @@ def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = A
         network = r2_by_participant(responses, model)
         for kind in BASELINES:
             baseline = null if kind == "null" else r2_by_participant(responses, model, kind)
-            parts.append(compare_columns(baseline, network, alpha).assign(model=model, first=kind, second="network"))
+            parts.append(compare_columns(baseline, network).assign(model=model, first=kind, second="network"))
     return pd.concat(parts, ignore_index=True)[list(BASELINE_COLUMNS)]
 
 
-def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
+def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
     """Compare, at every training length, Augmented with Exo, and Exo with the Exo of the whole training part.
 
-    alpha: of the variables at one length: a family of all would hold 72 tests or more, and at n = 11 at most 52
-        can show something. Who lacks a length is left out of it by name; empty for fewer than six
+    Corrected over the variables at one length: a family of all would hold 72 tests or more, and at n = 11 at most 52
+    can show something. Who lacks a length is left out of it by name; empty for fewer than six.
     Source: Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
     """
     if len(quantities) < FEWEST:
@@ -73,18 +73,13 @@ def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) ->
     for length, rows in table[table["length_s"] < longest].groupby("length_s"):
         augmented, exo = (by_participant(rows[rows["model"] == model]).reindex_like(whole) for model in MODELS[1:])
         for first, second, pair in (("augmented", "exo", (augmented, exo)), ("exo", WHOLE, (exo, whole))):
-            parts.append(compare_columns(*pair, alpha).assign(length_s=length, first=first, second=second))
+            parts.append(compare_columns(*pair).assign(length_s=length, first=first, second=second))
     return pd.concat(parts, ignore_index=True)[list(LENGTH_COLUMNS)]
 
 
 def by_participant(table: pd.DataFrame, values: str = "r2") -> pd.DataFrame:
     """Numbers of a table of one row a participant and variable, as (participant, variable)."""
     return table.pivot_table(index="participant", columns="variable", values=values, sort=False, dropna=False)
-
-
-def why_no_lengths(quantities: Sequence[DataQuantity]) -> str:
-    """Why the lengths are not tested; empty where they are."""
-    return too_few(len(quantities)) if len(quantities) < FEWEST else ""
 
 
 def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
@@ -106,21 +101,21 @@ def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFram
     return pd.concat(tables, ignore_index=True)[list(REDUCTION_COLUMNS)]
 
 
-def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
+def compare_reductions(reductions: pd.DataFrame) -> pd.DataFrame:
     """Test reductions against zero, a family a measure and model; Hodges-Lehmann shift and 95 % interval."""
     if reductions["participant"].nunique() < FEWEST:
         return no_rows("reduction_tests")
     parts = []
     for measure, model in product(MEASURES, MODELS[1:]):
         found = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
-        parts.append(compare_columns(found * 0.0, found, alpha).assign(measure=measure, first="nominal", second=model))
+        parts.append(compare_columns(found * 0.0, found).assign(measure=measure, first="nominal", second=model))
     return pd.concat(parts, ignore_index=True)[list(REDUCTION_TEST_COLUMNS)]
 
 
-def representative(reductions: pd.DataFrame, model: str = "augmented", measure: str = "rms") -> str:
-    """Pseudonym whose reduction, median over variables, is nearest the median one; the first of several, or empty."""
-    own = reductions[reductions["model"] == model]
-    middle = own.groupby("participant", sort=False)[f"{measure}_reduction"].median().dropna()
+def representative(reductions: pd.DataFrame) -> str:
+    """Pseudonym whose reduction of the root mean square by Augmented is nearest the median; the first, or empty."""
+    own = reductions[reductions["model"] == "augmented"]
+    middle = own.groupby("participant", sort=False)["rms_reduction"].median().dropna()
     return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
 
 
@@ -194,7 +189,7 @@ def compare_participants(
         reduction_tests=compare_reductions(reductions),
         baselines=compare_baselines(responses),
         responders=responders,
-        lengths_said=why_no_lengths(quantities) if quantities else "",
+        lengths_said=too_few(len(quantities)) if 0 < len(quantities) < FEWEST else "",
         responders_said=said,
     )
 
@@ -239,7 +234,7 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
     return table
 
 
-def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
+def by_family(tests: pd.DataFrame) -> pd.DataFrame:
     """Tests (first, second, variable, p) of three pairs corrected under every family meant: `FAMILY_COLUMNS`."""
     chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
     families = {
@@ -249,7 +244,7 @@ def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
     }
     parts = []
     for name in FAMILIES:
-        for family, found in holm_sidak_by(chosen["p"].to_numpy(), families[name], alpha).items():
+        for family, found in holm_sidak_by(chosen["p"].to_numpy(), families[name], ALPHA).items():
             rows = chosen.loc[np.array(families[name]) == family, ["first", "second", "variable"]]
             parts.append(
                 rows.assign(

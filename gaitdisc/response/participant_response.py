@@ -15,7 +15,7 @@ from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.notebook import html_of
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.recording import PERCENT
-from gaitdisc.response.participants_result import OVER, TESTS, OverParticipants, PairTests
+from gaitdisc.response.participants_result import OVER, TESTS, OverParticipants, PairTests, table_of_people
 from gaitdisc.response.variants import QUESTIONS
 from gaitdisc.saved.kind import CSV, Kind, keyed_arrays
 from gaitdisc.saved.study_run import StudyRun, load_run_as, save_whole_run
@@ -221,9 +221,7 @@ class ResponseRun(StudyRun):
 
     def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""
-        tables = [r.r2.assign(participant=r.participant) for r in self.responses]
-        columns = ["participant", "variable", "model", "kind", "walk", "r2", "n"]
-        return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+        return table_of_people(self.responses, "r2", R2_COLUMNS)
 
     r2_table = to_frame
 

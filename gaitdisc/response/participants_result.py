@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import pandas as pd
 
@@ -99,6 +101,13 @@ class OverParticipants:
     def tables(self) -> dict[str, pd.DataFrame]:
         """Return every table by its name."""
         return {name: getattr(self, name) for name in TABLES}
+
+
+def table_of_people(people: Sequence[Any], field: str, columns: Sequence[str]) -> pd.DataFrame:
+    """A table that each of some participants has, one below the other, with who it is of; without rows for nobody."""
+    every = ["participant", *columns]
+    tables = [getattr(each, field).assign(participant=each.participant) for each in people]
+    return pd.concat(tables, ignore_index=True)[every] if tables else pd.DataFrame(columns=pd.Index(every))
 
 
 def no_rows(name: str) -> pd.DataFrame:

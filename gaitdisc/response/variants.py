@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.response.participants_result import TEST_COLUMNS
+from gaitdisc.response.participants_result import TEST_COLUMNS, table_of_people
 from gaitdisc.saved.kind import CSV, Kind, Saved, plain
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import load_unit, save_unit, with_words
@@ -56,9 +56,7 @@ class VariantRun(Saved, file="variant_run.json"):
 
     def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variant, variable, model and kind, one row each."""
-        tables = [each.table.assign(participant=each.participant) for each in self.people]
-        columns = ["participant", *VARIANT_COLUMNS]
-        return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+        return table_of_people(self.people, "table", VARIANT_COLUMNS)
 
     r2_table = to_frame
 

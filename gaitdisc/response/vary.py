@@ -24,7 +24,7 @@ from gaitdisc.response.fit_response import (
     report_share,
     training_samples,
 )
-from gaitdisc.response.over_participants import ALPHA, FEWEST, by_participant, compare_columns
+from gaitdisc.response.over_participants import FEWEST, by_participant, compare_columns
 from gaitdisc.response.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
 from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
 from gaitdisc.statistics.r2 import r2
@@ -106,13 +106,13 @@ def fit_without(
     return pd.DataFrame(rows, columns=pd.Index(VARIANT_COLUMNS))
 
 
-def compare_variants(people: Sequence[Variants], question: str, alpha: float = ALPHA) -> pd.DataFrame:
+def compare_variants(people: Sequence[Variants], question: str) -> pd.DataFrame:
     """Test the networks' R2 under every variant, over six participants or more.
 
     question: of `modalities` R2 without a family of inputs against R2 with all: a negative shift (second `without`) is
         a fall. Of `sensitivity` Nominal against Augmented under every setting: R2 under two settings are not of the
         same thing, for the filter makes what is predicted, too
-    alpha: of a family of tests: one variant's and model's variables
+    returns: corrected over one variant's and model's variables
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
@@ -126,9 +126,7 @@ def compare_variants(people: Sequence[Variants], question: str, alpha: float = A
     order = {"index": table["participant"].unique(), "columns": table["variable"].unique()}
     wide = {key: by_participant(rows).reindex(**order) for key, rows in table.groupby(["variant", "model"], sort=False)}
     parts = [
-        compare_columns(wide[before], wide[after], alpha).assign(
-            variant=after[0], model=after[1], first=first, second=second
-        )
+        compare_columns(wide[before], wide[after]).assign(variant=after[0], model=after[1], first=first, second=second)
         for before, after, (first, second) in pairs
     ]
     return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]

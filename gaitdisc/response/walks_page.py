@@ -13,7 +13,8 @@ from gaitdisc.processing.curves_figure import WALKS, walk_of
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import DROPPED, KEPT, SIDES, Room, in_style, legend, panels
 from gaitdisc.report.table import Table
-from gaitdisc.response.participant_response import ResponseRun
+from gaitdisc.response.participant_response import FIT_COLUMNS, ResponseRun
+from gaitdisc.response.participants_result import table_of_people
 from gaitdisc.words import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
 
 if TYPE_CHECKING:
@@ -188,9 +189,7 @@ def dropped_table(run: ResponseRun, participant: str, name: str) -> Table | None
 
 def fits_table(run: ResponseRun) -> Table:
     """What was fitted, on how much, with which decay, in how long."""
-    tables = [r.fits.assign(participant=r.participant) for r in run.responses]
-    columns = ["participant", "model", "kind", "decay", "epochs", "n_training", "n_inner"]
-    numbers = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+    numbers = table_of_people(run.responses, "fits", FIT_COLUMNS)
     rows = [
         (str(row.participant), MODEL_WORDS.get(str(row.model), str(row.model)), str(row.kind), _plain(row.decay),
          _plain(row.epochs), _plain(row.n_training), _plain(row.n_inner))

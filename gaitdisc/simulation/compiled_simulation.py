@@ -70,14 +70,24 @@ class Compiled:
     ) -> NDArray[np.float64]:
         """Right-hand side at many points.
 
-        t (point,): time [s]
+        t (point,) or (): time [s]
         x (point, state): states
         u (point, input): inputs
         values (parameter,) or (point, parameter): parameters; the simulation's own where absent
         late (point, delay): delayed signals, in the order of `right_hand_side.delays`
         """
-        values = self.defaults if values is None else np.asarray(values, float)
-        return at_points(self.right_hand_side, leaf_columns(t, x, u, values), late).T
+        x, values = np.asarray(x, float), self.defaults if values is None else np.asarray(values, float)
+        columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, values)
+        return self._rates_of(x, at_points(self.right_hand_side, columns, late, len(x)).T, values)
+
+    def _rates_of(
+        self,
+        x: NDArray[np.float64],  # noqa: ARG002
+        given: NDArray[np.float64],
+        values: NDArray[np.float64],  # noqa: ARG002
+    ) -> NDArray[np.float64]:
+        """Derivatives (point, state) by what the right-hand side gives (point, output)."""
+        return given
 
     def observe(
         self, drive: Drive, rows: Rows, states: NDArray[np.float64], past: NDArray[np.float64] | None = None

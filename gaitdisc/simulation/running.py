@@ -9,12 +9,12 @@ from types import FunctionType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
-from gaitdisc.simulation.program import at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.program import compiled_program
 from gaitdisc.simulation.python_simulation import PythonSimulation, called
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
@@ -107,17 +107,8 @@ class PythonCompiled(Compiled):
         block = machine.integrate_block.py_func
         return lanes, FunctionType(block.__code__, {**vars(machine), "derive": derive})
 
-    def rates(
-        self,
-        t: ArrayLike,
-        x: NDArray[np.float64],
-        u: NDArray[np.float64],
-        values: NDArray[np.float64] | None = None,
-        late: NDArray[np.float64] | None = None,
+    def _rates_of(
+        self, x: NDArray[np.float64], given: NDArray[np.float64], values: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Right-hand side at many points, as `Compiled.rates`."""
-        x = np.asarray(x, float)
-        given = self.defaults if values is None else np.asarray(values, float)
-        columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, given)
-        fed = at_points(self.right_hand_side, columns, late, len(x)).T
-        return called(self.model, x, fed, np.broadcast_to(given, (len(x), len(self.parameters))))
+        """Derivatives by the function, which is fed with what the right-hand side gives."""
+        return called(self.model, x, given, np.broadcast_to(values, (len(x), len(self.parameters))))

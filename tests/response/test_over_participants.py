@@ -21,7 +21,6 @@ from gaitdisc.response.over_participants import (
     residual_reductions,
     responder_table,
     too_few,
-    why_no_lengths,
 )
 from gaitdisc.response.participant_response import QUANTITY_COLUMNS, DataQuantity
 from gaitdisc.response.participants_result import BASELINE_COLUMNS, LENGTH_COLUMNS, PAIRS, REDUCTION_COLUMNS, WHOLE
@@ -330,8 +329,9 @@ def test_who_lacks_a_length_is_left_out_by_name():
 
 def test_five_are_too_few():
     lengths = [quantity(i) for i in range(6)]
-    assert not len(compare_lengths(lengths[:5])) and "5 participants are too few" in why_no_lengths(lengths[:5])
-    assert why_no_lengths(lengths) == ""
+    assert not len(compare_lengths(lengths[:5]))
+    assert "5 participants are too few" in compare_participants([], lengths[:5]).lengths_said
+    assert compare_participants([], lengths).lengths_said == compare_participants([]).lengths_said == ""
     assert not len(compare_baselines([networked(i) for i in range(5)]))
     assert not len(compare_reductions(residual_reductions([leaving(f"P{i}") for i in range(1, 6)])))
     assert not len(residual_reductions([]))

@@ -18,7 +18,9 @@ def test_one_page_a_person_and_session_the_first_condition_first():
 def test_before_and_after_are_found_by_their_words():
     run = made_run(made_person(session="s1"), made_person(session="s2"), made_person(session="s2", condition="fast"))
     for words in (("s1", "s2"), ("walk", "fast")):
-        first, second = before_and_after(run, None, "P01", words)
+        found = before_and_after(run, None, "P01", words)
+        second, first = found.readings
+        assert found.before_after is not None and found.before_after.first is first
         assert words[0] in first.pooled.where and words[1] in second.pooled.where
     with pytest.raises(SchemaError, match=r"s1 walk, s2 walk, s2.*fast"):
         before_and_after(run, None, "P01", ("s1", "s3"))
