@@ -202,7 +202,7 @@ def with_autocorrelation(
     if not ordered:
         return with_random_pushes(case, as_read, named, rivals)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
-    if shape and found[1] in ordered and (found[0] not in ordered or found[1].bic < found[0].bic - worth):
+    if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
         return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(case, plain, found[1]))
     return None
 
