@@ -75,7 +75,8 @@ def build_oracle(simulation, oracle):
 
 def make_case(name, checkout, out):
     """Writes the five files of one rig."""
-    folder = next(HERE / f for f in ("open", "kept", "second", "third", "fourth") if (HERE / f / f"{name}.py").exists())
+    sets = ("open", "kept", "second", "third", "fourth", "fifth")
+    folder = next(HERE / f for f in sets if (HERE / f / f"{name}.py").exists())
     recipe = runpy.run_path(str(folder / f"{name}.py"))
     learned, unseen = recipe["read_trials"](load_files(recipe, checkout))
     case = Path(out) / name
