@@ -276,7 +276,11 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     now = case.lengthened(now)
     bare = search.with_others(now, ())
     proof = proof_of(case, bare, now, now)
-    verdict, dropped = without_names(replace(verdict, proof=proof), found, now if proof.bears_out else bare)
+    now = now if proof.bears_out else bare
+    # errors that wander are others on unseen data: what takes half of these, and no gain takes as well, is none of them
+    if not now.model.parts and verdict.proof and verdict.proof.closed > CRITERIA.half:
+        return case, verdict
+    verdict, dropped = without_names(replace(verdict, proof=proof), found, now)
     what = f"unstated errors of {listed([repr(one) for one in erring])} explain {dropped} as well"
     finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
     return case.noting(finding), verdict

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, RATE, mass, record, with_load
 
+from gaitdisc.discovery import uncertain_inputs
 from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover import discover, fit_given
 from gaitdisc.discovery.input_errors import with_constant_errors, with_drawn_errors
 from gaitdisc.discovery.uncertain_inputs import covariance_by_inputs, weigh_unstated_errors
@@ -129,6 +131,16 @@ def test_gains_of_two_inputs_together_explain_what_neither_does_alone():
     assert [part.values["gain"] for part in after.found.model.parts] == pytest.approx([1.2, 0.85], rel=0.02)
     (said,) = (one.what for one in weighed.measured.findings if one.kind == "unstated errors")
     assert said == "unstated errors of 'push' and 'pull' explain cubic stiffness at load as well"
+
+
+def test_what_takes_half_of_unseen_errors_is_no_error_that_wanders(monkeypatch):
+    case = set_up_case(mass(), record(with_load("-8*x**3"), SEED))
+    verdict = fit_given(case, case.as_read(), ("cubic_stiffness@load",))
+    assert verdict.proof.closed > 0.5
+    monkeypatch.setattr(uncertain_inputs, "beside_errors", lambda case, now, erring: (0.0, now))  # all are as likely
+    assert weigh_unstated_errors(case, verdict) == (case, verdict)
+    monkeypatch.setattr(uncertain_inputs, "CRITERIA", replace(CRITERIA, half=1.0))
+    assert weigh_unstated_errors(case, verdict)[1].found.labels == ()
 
 
 def test_an_error_that_is_stated_is_not_doubted():
