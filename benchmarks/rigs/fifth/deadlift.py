@@ -27,7 +27,7 @@ def read_trials(files):
         tables.append(np.genfromtxt(io.StringIO("\n".join(lines[head + 1 :])), delimiter="\t"))
     markers, *plates = tables
     shoulders = markers[:, [2 + 3 * 1 + 2, 2 + 3 * 4 + 2]].mean(1) / 1000
-    force = sum(plate[: len(shoulders), 4] for plate in plates)
+    force = np.sum([plate[: len(shoulders), 4] for plate in plates], axis=0)
     lifts = []
     for begin in BEGINS:
         cut = slice(begin, begin + 340, 4)
