@@ -8,7 +8,6 @@ from functools import cached_property, partial
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, changed_moment, foot_mass
@@ -36,7 +35,6 @@ FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
 # the strongest muscles of the hip, and their channels; without them a spring of 80 N m/rad came out as 119 and 125
 DEEP = {"gluteus maximus": ("gmax",), "iliopsoas": ("ilio", "psoas")}
 LEAST_FOOT_KG = 0.3  # three made people show up to 0.2 kg at these joints where there is none
-Values = NDArray[np.float64]
 COLUMNS = ("effect", "place", "number", "unit", "people", "of", "mean", "low", "high", "who")
 NOTHING = "nothing named"
 

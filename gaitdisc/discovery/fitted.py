@@ -152,10 +152,10 @@ class Fitted:
 
         effects (segment, number, effect): what each changes of `white`
         """
-        (left, slopes), flat = self.projected, np.column_stack(self.stacked)
+        flat = np.column_stack(self.stacked)
         effects = without(start_basis(self.slopes[..., : self.starts.shape[1]]), effects)
         strength, axes = np.linalg.eigh(np.swapaxes(effects, 1, 2) @ effects)
-        along = np.swapaxes(effects @ axes, 1, 2) @ np.concatenate([left[..., None], slopes], axis=2)
+        along = np.swapaxes(effects @ axes, 1, 2) @ flat[: self.white.size].reshape(*self.white.shape, -1)
         return RandomEffects(flat.T @ flat, along, np.maximum(strength, 0.0))
 
     @property

@@ -14,7 +14,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import UNNAMED
 from gaitdisc.discovery.candidate_model import Part
@@ -34,6 +33,7 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.words import listed
 
 PIECES = 12  # of held-out runs: their squares are all but independent under the covariance
@@ -46,7 +46,6 @@ SHARES = (0.0, 0.02, 0.05, 0.1, 0.15, 0.25, 0.4)  # of an input and of its sprea
 PERIODS = (1.0, 4.0, 16.0)  # in which such an error is forgotten
 KNOTS_EACH, KNOTS = 4, (8, 60)  # in a period, and in a run: between these such an error is linear
 RUNS = 24  # at most, over which such errors are weighed
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -54,8 +53,8 @@ class Weighed:
     """A model whose numbers were estimated under the stated errors of inputs."""
 
     now: ScoredModel
-    learned: Array  # (run, sample, channel), what it leaves, as independent numbers of unit size
-    held_out: Array  # (run, sample, channel), the same where nothing but starts was fitted
+    learned: Values  # (run, sample, channel), what it leaves, as independent numbers of unit size
+    held_out: Values  # (run, sample, channel), the same where nothing but starts was fitted
     plain: float  # mean square error there, over each channel's noise
 
     @property
@@ -172,7 +171,7 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
     size = case.noise_floor(now.noise.size)
     left = whitener(case, now, now.shooting, fit.starts, size)
 
-    def rows(values: Array) -> Array:
+    def rows(values: Values) -> Values:
         return np.concatenate([left(values).ravel(), fit.prior.left(values)])
 
     columns = [now.model.machine.parameters.index(name) for name in fit.free]
@@ -202,7 +201,9 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
     return Weighed(now, left(values), unseen, float(np.nanmean((held.fit.residual / size) ** 2)))
 
 
-def whitener(case: Case, now: ScoredModel, shooting: Shooting, starts: Array, size: Array) -> Callable[[Array], Array]:
+def whitener(
+    case: Case, now: ScoredModel, shooting: Shooting, starts: Values, size: Values
+) -> Callable[[Values], Values]:
     """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers.
 
     starts (run, state): where the runs begin, up to what is to first order
@@ -214,7 +215,7 @@ def whitener(case: Case, now: ScoredModel, shooting: Shooting, starts: Array, si
     sensors = sensor_covariance(shooting, known) * each[:, None] * each
     measured = known.reshape(len(known), -1)
 
-    def left(values: Array) -> Array:
+    def left(values: Values) -> Values:
         fit = shooting.at(now.model.machine, (), values, starts)
         inputs = covariance_by_inputs(case, now, shooting, fit) * measured[:, :, None] * measured[:, None]
         columns = np.concatenate([np.nan_to_num(fit.residual).reshape(*measured.shape, 1), fit.slopes], axis=2)
@@ -224,7 +225,7 @@ def whitener(case: Case, now: ScoredModel, shooting: Shooting, starts: Array, si
     return left
 
 
-def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Array:
+def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Values:
     """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
     erring, segments = wandering(case.search.base), shooting.segments
     late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
@@ -241,7 +242,7 @@ def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: 
     return total
 
 
-def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Array) -> list[Array]:
+def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Values) -> list[Values]:
     """Return what errors of each of some inputs change in what is seen (run, sample, channel, knot), to first order.
 
     hats (sample, knot): the error that each knot stands for
@@ -262,16 +263,16 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
     if not erring or not names_in(found):
         return case, verdict
-    bare = cut_short(case, found, round(case.rhythm.samples))  # along long runs such errors are not linear
-    best, now = beside_errors(case, bare, erring)
-    while names := names_in(bare):
-        fewer = [search.without(bare, number) for number in names]
+    kept = cut_short(case, found, round(case.rhythm.samples))  # along long runs such errors are not linear
+    best, now = beside_errors(case, kept, erring)
+    while names := names_in(kept):
+        fewer = [search.without(kept, number) for number in names]
         tried = [(*beside_errors(case, one, erring), one) for one in fewer]
         least, gained, less = min(tried, key=lambda one: one[0])
         if least - best > CRITERIA.margin:
             break
-        best, now, bare = min(least, best), gained, less
-    if len(bare.model.parts) == len(found.model.parts):
+        best, now, kept = min(least, best), gained, less
+    if len(kept.model.parts) == len(found.model.parts):
         return case, verdict
     now = case.lengthened(now)
     bare = search.with_others(now, ())

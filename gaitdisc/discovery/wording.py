@@ -79,10 +79,8 @@ def _given(discovery: Discovery) -> str:
     """Say that nothing was searched, and whether held-out data bear out what was given."""
     if not discovery.given:
         return ""
-    size = discovery.held_out
     bear = "support it" if discovery.given == "proven" else "do not support it"
-    worth = f"p = {_chance(size.p)} over {size.pieces} independent samples"
-    said = f"The effect was given, not searched: the held-out data {bear} ({worth})."
+    said = f"The effect was given, not searched: the held-out data {bear} ({_chance(discovery.held_out)})."
     idle = [f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in discovery.effects if one.small]
     return f"{said} They do not need {' or '.join(idle)} in addition to the others." if idle else said
 
@@ -105,8 +103,7 @@ def _nothing(discovery: Discovery) -> str:
             "No effect is named: simulation and data differ by more than the sensors' noise, and no tested explanation "
             f"meets the criteria for a name.{_removes_most(discovery)}"
         )
-    pieces = discovery.held_out.pieces
-    tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} independent samples)" if pieces else ""
+    tested = f" ({_chance(discovery.held_out)})" if discovery.held_out.pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
@@ -249,7 +246,7 @@ def _shown(discovery: Discovery) -> str:
     others = "".join(f"; that of {name} {_goes(discovery, name)}" for name in worse)
     size = discovery.held_out
     few = 0 < size.pieces < FEW and size.after <= size.before
-    tested = f", p = {_chance(size.p)} over {size.pieces} independent samples" if few else ""
+    tested = f", {_chance(size)}" if few else ""
     return (
         f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}."
         f"{_unexplained(discovery.held_out)}"
@@ -286,5 +283,7 @@ def _goes(discovery: Discovery, channel: str) -> str:
     return f"{'falls' if size[1] < size[0] else 'rises'} from {before} to {with_unit(after, unit)}"
 
 
-def _chance(p: float) -> str:
-    return f"{p:.2g}" if math.isfinite(p) else "not computed"
+def _chance(size: GapSize) -> str:
+    """Say the p of held-out data, and of how many samples."""
+    p = f"{size.p:.2g}" if math.isfinite(size.p) else "not computed"
+    return f"p = {p} over {size.pieces} independent samples"

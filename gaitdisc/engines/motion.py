@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.expression import RESERVED
 from gaitdisc.simulation.parts import Term
 
-Values = NDArray[np.float64]
 SPEED = "_speed"
 LONGEST = 40  # characters, which leaves room for what a kind of number is called behind it
 FAR = 1000.0  # [rad, m], beyond all that a joint does

@@ -266,12 +266,12 @@ class MujocoModel:
         along = zip(model.wrap_type[model.tendon_adr], model.wrap_objid[model.tendon_adr], strict=True)
         units = [[*joints.values()][k] if way == int(self._mujoco.mjtWrap.mjWRAP_JOINT) else "m" for way, k in along]
         tendons = dict(zip(self._names("tendon", model.ntendon, set(joints)), units, strict=True))
-        arrays = (model.jnt_stiffness, model.dof_damping, model.dof_frictionloss)
-        for kind, parts in (("joint", joints), ("tendon", tendons)):
+        of_joints = (model.jnt_stiffness, model.dof_damping, model.dof_frictionloss)
+        of_tendons = (model.tendon_stiffness, model.tendon_damping, model.tendon_frictionloss)
+        for kind, parts, arrays in (("joint", joints, of_joints), ("tendon", tendons, of_tendons)):
             for number, (name, unit) in enumerate(parts.items()):
                 for (word, of), array in zip(PASSIVE.items(), arrays, strict=True):
                     places[f"{name}_{word}"] = _Place(array, number, of[unit == "m"], (kind, number))
-            arrays = (model.tendon_stiffness, model.tendon_damping, model.tendon_frictionloss)
         return places
 
     def _places_of_controls(self) -> dict[str, _Place]:

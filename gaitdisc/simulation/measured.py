@@ -84,7 +84,7 @@ def measured_of_trials(
         listed = ", ".join(f"{trial.name!r} ({len(trial.time)})" for trial in short)
         too_few = f"{counted(len(short), 'trial')} with fewer than {SHORTEST} samples: {listed}"
         findings = [*findings, Finding("warning", "short trial", source, too_few, "these trials, which are excluded")]
-        trials = [trial for trial in trials if trial not in short]
+        trials = [trial for trial in trials if len(trial.time) >= SHORTEST]
     even = [on_even_time(trial, tuple(inputs), source) for trial in trials]
     trials, rates = [one for one, _, _ in even], [rate for _, rate, _ in even]
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
