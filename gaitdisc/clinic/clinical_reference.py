@@ -59,7 +59,7 @@ def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
     for variable, own in rows.groupby("variable", sort=False):
         where = f"{file}, {name} {variable}"
         if variable not in BY_NAME:
-            raise SchemaError(f"{where}: a variable is one of {', '.join(BY_NAME)}", "it is none", "Correct the name.")
+            raise SchemaError(f"{where}: a variable must be one of {', '.join(BY_NAME)}", "it is not", "Correct it.")
         curve = own.sort_values("percent")[["percent", "mean", "sd"]].to_numpy(float)
         at, mean, sd = curve.T
         whole = len(at) >= FEWEST_POINTS and np.isfinite(curve).all() and (np.diff(at) > 0).all() and (sd >= 0).all()
@@ -120,7 +120,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("a reference of legs is saved", f"{reference.title} is a published one", "Keep its table.")
+        raise SchemaError("only a reference of single legs can be saved", reference.title, "Keep its table.")
     data = {
         "format": FORMAT,
         "title": reference.title,
@@ -141,7 +141,7 @@ def load_reference(place: Path) -> ClinicalReference:
     path = place / FILE if place.is_dir() else place
     if not path.is_file():
         raise SchemaError(
-            f"a reference is a folder with {FILE}",
+            f"a reference must be a folder with {FILE}",
             f"{place} has none",
             "Make it from the controls' recordings: gaitdisc reference CONTROLS --out FOLDER.",
         )
@@ -155,7 +155,7 @@ def load_reference(place: Path) -> ClinicalReference:
         return ClinicalReference(data["title"], legs, data["settings"], data["versions"], data["created"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SchemaError(
-            "a reference holds legs with curves of 101 points", f"{path}: {error!r}", "Make it again."
+            "a reference must contain legs with curves of 101 points", f"{path}: {error!r}", "Make it again."
         ) from error
 
 
@@ -173,12 +173,12 @@ def _rounded(value: Any) -> Any:
 def _leg(data: Mapping[str, Any]) -> ReferenceLeg:
     curves = {str(name): np.array(curve, float) for name, curve in data["curves"].items()}
     if any(curve.shape != (101,) for curve in curves.values()):
-        raise ValueError("a curve has not 101 points")
+        raise ValueError("a curve does not have 101 points")
     stance = float("nan") if data["stance_percent"] is None else float(data["stance_percent"])
     values = {str(name): float(value) for name, value in data["values"].items()}
     leg_m, age = data.get("leg_m"), data.get("age_years")  # absent in older references
     if not (leg_m is None or isinstance(leg_m, float)) or not (age is None or isinstance(age, int)):
-        raise ValueError(f"leg length {leg_m!r} and age {age!r} are no numbers")
+        raise ValueError(f"leg length {leg_m!r} and age {age!r} are not numbers")
     return ReferenceLeg(
         person=int(data["person"]),
         side=str(data["side"]),

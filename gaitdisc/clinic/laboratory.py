@@ -87,7 +87,7 @@ def _ends(name: str, ends: Any) -> tuple[float, float]:
     numbers = isinstance(ends, list) and len(ends) == 2 and all(isinstance(end, int | float) for end in ends)
     if name not in BY_NAME or not numbers or not ends[0] < ends[1]:
         raise SchemaError(
-            f"an axis is a curve and its ends, the lower first: one of {', '.join(BY_NAME)}",
+            f"an axis must be a curve with its two ends, the lower first: one of {', '.join(BY_NAME)}",
             f"{FILE}, [axes]: {name} = {str(ends)[:60]}",
             "Write, for example, knee_flexion = [-15, 75].",
         )
@@ -99,9 +99,9 @@ def _picture(path: Path) -> str:
     kind = next((kind for start, kind in PICTURES.items() if content.startswith(start)), None)
     if kind is None or len(content) > LARGEST_LOGO:
         raise SchemaError(
-            f"a logo is a PNG or JPEG file beside {FILE}, of at most {LARGEST_LOGO // 1024} KiB",
-            f"{path.name} is not there, of another kind, or larger",
-            "Save it anew.",
+            f"a logo must be a PNG or JPEG file in the folder of {FILE}, of at most {LARGEST_LOGO // 1024} KiB",
+            f"{path.name} is missing, larger, or of another format",
+            "Save it again.",
         )
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
@@ -120,7 +120,7 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
     "curve", "file", "what", "version", "cycle", "to", "state", "person", "condition", "cycles L, R", "Side affected",
     "both", "profile score [deg]", "why",
     "green", "amber", "red", "gait profile score", "Time and distance",
-    "None of {} values lies outside 2 standard deviations of the reference.", "Nothing is said to stand out: {}.",
+    "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
     "A sentence needs {} cycles of a leg; there are {}.",
     "With {} controls the 95 % limits are wide: smaller differences may be there.",
     *TIERS.values(),
@@ -195,13 +195,13 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
         word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:
             raise SchemaError(
-                "each word is one of the pages",
-                f"{path.name}, line {line}: {word[:60]!r} is none",
+                "each text must be one of the pages' texts",
+                f"{path.name}, line {line}: {word[:60]!r} is not",
                 "Delete the line.",
             )
         if said and word.count("{}") != said.count("{}"):
             raise SchemaError(
-                "a sentence keeps its place for a number, {}",
+                "a sentence must keep its place for a number, {}",
                 f"{path.name}, line {line}: {said[:60]!r}",
                 f"Write {{}} as often as in {word!r}.",
             )

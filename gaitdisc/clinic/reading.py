@@ -66,7 +66,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
         there = ", ".join(map(repr, reference.legs))
-        why = f"nobody of the reference walked {pooled.condition!r}; it has {there}"
+        why = f"no person of the reference walked {pooled.condition!r}; it has {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
     profile, no_profile = (None, why) if why else profile_of(legs, like.curves)

@@ -65,7 +65,7 @@ def _each(own: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
 def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = str) -> dict[str, list[str]]:
     """What stands out by its tier, and after it what could not be said, or why nothing is."""
     if reading.silent:
-        return {"": [say("Nothing is said to stand out: {}.").format(reading.silent)]}
+        return {"": [say("No comparison with controls: {}.").format(reading.silent)]}
     tiers = {f"{MARKS[tier]} {say(words)}": noted_sentences(reading.noted, tier, say) for tier, words in TIERS.items()}
     found = {words: sentences for words, sentences in tiers.items() if sentences}
     rest = []

@@ -57,9 +57,9 @@ def discover(simulation: Simulation, measured: Measured, request: Request = ALL)
         explanation = augmented_of(whole.search.base, verdict.found.model.parts)
         kept = agreeing_trials(replace(whole, search=replace(whole.search, base=explanation)), measured)
         if kept.trials != suspected.trials:
-            progress("what was found explains a trial that had been left out: it is searched too")
+            progress("the identified effects explain a trial that was left out: the search is repeated with it")
             case, as_read, verdict = explained(kept)
-    progress("showing it on what was held out")
+    progress("testing the answer on held-out data")
     return answer(case, as_read, verdict, request.refitted)
 
 
@@ -71,14 +71,14 @@ def weigh_explanations(
     progress(f"weighing {len(case.search.candidates)} explanations")
     verdict = decide(case, as_read)
     while hangs_on_step(case, verdict.found) and case.substeps < TRIED_SUBSTEPS[-1]:
-        progress("what was found depends on the integration step: searching once more with half the step")
+        progress("the identified effects depend on the integration step: repeating the search with half the step")
         case = replace(case, substeps=2 * case.substeps)
         as_read = case.as_read()
         verdict = decide(case, as_read)
     if not case.leaves_noise(verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
-            progress("one trial goes with no explanation of the others: it is left out")
+            progress("one trial does not agree with any explanation of the others: it is left out")
             measured, case = kept, begun(kept)
             as_read = case.as_read()
             verdict = decide(case, as_read)
@@ -88,7 +88,7 @@ def weigh_explanations(
             other = begun(split_in_time(measured, last=False))
         else:
             other = holding_out_others(case, as_read, *unproven)
-        progress("what is held out never goes where it would act: other data are held out")
+        progress("the held-out data never reach the range in which the effect acts: other data are held out")
         case, as_read = noted(case, other), other.as_read()
         verdict = decide(case, as_read)
     for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
@@ -122,7 +122,7 @@ def refuse_unknown(search: Search, effects: tuple[str, ...]) -> None:
         if given not in known:
             near = get_close_matches(given, sorted(known), NEAREST, 0.0)
             raise SchemaError(
-                "an effect that is to be fitted is written as effect@place, both of them known",
+                "an effect to be fitted must be written as effect@place, with a known effect and a known place",
                 f"found {given!r}; nearest are {', '.join(near)}",
                 "Give one of these.",
             )
@@ -138,7 +138,7 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
         tried = [one for one in tried if np.isfinite(one.fit.misfit)]
         if not tried:
             raise SchemaError(
-                "an effect that is to be fitted changes what is measured, and is given once",
+                "an effect to be fitted must change a measured channel, and may be given only once",
                 f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
                 "Give another effect or place.",
             )

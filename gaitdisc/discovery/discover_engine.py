@@ -113,7 +113,7 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
     pushed = [f"{one.name} at {one.place}" for one in found.effects if one.name == "process_noise"]
     unchecked = " and ".join((*written.absent, *pushed))
     if unchecked:
-        why = f"{engine.called} itself has not run {unchecked}: that rests on the expansion alone."
+        why = f"{engine.called} itself has not run {unchecked}: this result is based on the expansion alone."
         found = replace(found, sentence=f"{found.sentence} {why}")
         return EngineAnswer(found, augmented, written, runs, engine)
     if found.effects and found.verdict != "wrong_initial_condition":
@@ -200,7 +200,7 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
     for one in engine.coordinates:
         if one.name not in seen:
             raise ChannelError(
-                "every free coordinate of the model is measured",
+                "every free coordinate of the model must be measured",
                 f"no column shows {one.called!r}; the observations show {', '.join(sorted(seen)) or 'none'}",
                 "Name its column under [observations], or lock the coordinate in the model.",
             )
@@ -233,7 +233,7 @@ def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...
     touched = getattr(engine, "contacts", 0)
     if touched:
         what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"
-        found.append(Finding("warning", "contact", "model", what, "what rests on runs through a contact"))
+        found.append(Finding("warning", "contact", "model", what, "results that depend on runs through a contact"))
     return tuple(found)
 
 
@@ -241,6 +241,6 @@ def _warned(*engines: Engine) -> tuple[Finding, ...]:
     """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
     said = dict.fromkeys(what for one in engines for what in getattr(one, "warnings", ()))
     return tuple(
-        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "what rests on such a run")
+        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "results that depend on such a run")
         for what in said
     )

@@ -61,8 +61,8 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
     if request.effects or request.alpha != ALPHA:
         raise SchemaError(
-            "effects and alpha are given for a simulation, a function or a model that runs forward",
-            f"{kinematics.name} is a walk that is tracked",
+            "effects and alpha can be given only for a forward simulation (a file, a function or a model)",
+            f"{kinematics.name} is a tracked walk",
             "Leave them out: each joint is searched.",
         )
     progress = request.progress
@@ -204,7 +204,7 @@ def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     if len(walk.times) < FEWEST:
         raise SamplingError(
-            f"what is left is named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
+            f"residual moments can be named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s of data at a low-pass of "
             f"{walk.cutoff_hz:g} Hz",
             f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
             "Record longer.",
@@ -213,7 +213,7 @@ def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[
     candidates = _candidates(base, walk, request.shapes)
     joints = []
     for number in walk.joints:
-        request.progress(f"weighing what is left at {walk.engine.coordinates[number].called}")
+        request.progress(f"analysing the residual at {walk.engine.coordinates[number].called}")
         joint = _left(walk, base, number, angle_noise)
         joints.append(joint_finding(joint, candidates[number], len(walk.joints)))
     return base, joints
@@ -301,13 +301,13 @@ def shown_by(walk: Pass, number: int, found: JointFinding) -> Finding:
     ]
     left = float(np.sqrt(np.mean(joint.left**2)))
     what = (
-        f"{one.called}: {left:.3g} {unit} are left of {np.std(joint.demanded):.3g}, noise {joint.floor:.2g}; it shows "
-        f"a spring from {spring:.2g} {unit}/{one.unit}, a damper from {damper:.2g} {unit} s/{one.unit}"
+        f"{one.called}: residual {left:.3g} of {np.std(joint.demanded):.3g} {unit}, noise {joint.floor:.2g}; it would "
+        f"show a spring from {spring:.2g} {unit}/{one.unit}, a damper from {damper:.2g} {unit} s/{one.unit}"
         + "".join(f", {each}" for each in shares)
     )
     unexplained = float(np.sqrt(np.mean((joint.left - (found.named.explained if found.named else 0.0)) ** 2)))
     if unexplained > BEYOND * joint.floor and found.named is None:
-        return Finding("warning", "without a name", "model", what, "what is left there: nothing weighed explains it")
+        return Finding("warning", "without a name", "model", what, "the residual there, which no candidate explains")
     return Finding("note", "joint", "model", what, "", one.called)
 
 
@@ -317,7 +317,7 @@ def doubts(shown: list[Finding]) -> list[Finding]:
     if not unnamed:
         return []
     what = (
-        f"{len(unnamed)} of {len(shown)} joints have no name for what is left, {BEYOND:g} times their noise or more: "
+        f"{len(unnamed)} of {len(shown)} joints have an unnamed residual of {BEYOND:g} times their noise or more: "
         "the forces may have been computed for another motion, or for angles of another low-pass (lowpass_hz)"
     )
-    return [Finding("warning", "forces in doubt", "model", what, "what is named at the other joints")]
+    return [Finding("warning", "forces in doubt", "model", what, "effects named at the other joints")]

@@ -152,11 +152,11 @@ def balance(walk: Pass) -> list[Finding]:
     if abs(share) > WRONG_MASS:
         mass = engine.mass_kg
         raise SchemaError(
-            f"the ground carries the model's weight to {100 * WRONG_MASS:.0f} %",
+            f"the ground forces must carry the model's weight within {100 * WRONG_MASS:.0f} %",
             f"{engine.path.name} moves {mass:.1f} kg, {engine.coordinates[up].called} lacks {mean:.0f} N in the mean: "
             f"the forces carry {mass * (1 - share):.1f} kg",
-            "Scale the model to the walker's mass, or correct the plates' scale; what is left at the joints would be "
-            "named after the error.",
+            "Scale the model to the walker's mass, or correct the scale of the force plates. Otherwise this error "
+            "is named as a missing effect.",
         )
     return found
 
@@ -168,9 +168,9 @@ def refuse_other_motion(walk: Pass) -> None:
         one, size = walk.engine.coordinates[k], walk.size(walk.left[:, k])
         if one.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
-                f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
+                f"residual forces must balance the motion within {100 * OTHER_MOTION:.0f} % of the weight",
                 f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
-                "Compute the forces for this motion again: they belong to another one, or were not found.",
+                "Compute the forces for this motion again: these belong to another one, or their computation failed.",
             )
 
 
@@ -179,6 +179,6 @@ def only_residuals(walk: Pass) -> str:
     base = [(k, walk.engine.coordinates[k]) for k in sorted(walk.engine.base)]
     sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}" for k, one in base]
     return (
-        "Nothing can be named at a joint: no file gives the muscles' forces, and whatever acts between two segments is "
-        f"taken for muscles. Ground and body alone leave {', '.join(sizes)} (root mean square)."
+        "Nothing can be named at a joint: no file gives the muscles' forces, so any moment between two segments is "
+        f"attributed to muscles. The residuals of ground and body alone are {', '.join(sizes)} (root mean square)."
     )

@@ -60,7 +60,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
         limited = np.isfinite(one.high)
         if limited or misfit.with_factors(degrees) < misfit.with_factors(np.ones(len(degrees))):
             raise SchemaError(
-                f"coordinate {one.called!r} stays within {_limit(one):.3g} rad",
+                f"coordinate {one.called!r} must stay within {_limit(one):.3g} rad",
                 f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad: these may be degrees",
                 f"Say so in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
                 f"{engine.path.name} --degrees.",
@@ -92,9 +92,9 @@ def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Meas
         for name, other in columns[1:]
     )
     raise SchemaError(
-        "the columns have the units and signs that the mapping says",
-        f"column {column!r} {how.is_so}{more}: as it stands {engine.called} misses the record's accelerations by "
-        f"{as_read**0.5:.3g} times their size, so by {now**0.5:.2g}",
+        "the columns must have the units and signs that the mapping states",
+        f"column {column!r} {how.is_so}{more}: {engine.called} misses the record's accelerations by "
+        f"{as_read**0.5:.3g} times their size, with this corrected by {now**0.5:.2g}",
         f"{how.mend.format(column=column, expression=dict(mapping.observations)[column], name=one.name)} "
         f"A mapping is written by: gaitdisc new {engine.path.with_suffix('.toml').name} --from {engine.path.name}.",
     )

@@ -21,9 +21,9 @@ def read_model(path: Path | str) -> Engine:
     """Model of an engine's file; the engine is imported with it."""
     path = Path(path)
     if not path.is_file():
-        raise ReadError("a model is read from its file", f"there is none at {path}", "Check the path.")
+        raise ReadError("a model file must exist", f"there is none at {path}", "Check the path.")
     if not is_model(path):
         raise ReadError(
-            "a model is a file of MuJoCo (.xml) or OpenSim (.osim)", f"found {path.name}", "Name such a file."
+            "a model must be a MuJoCo (.xml) or OpenSim (.osim) file", f"found {path.name}", "Name such a file."
         )
     return ENGINES[path.suffix.lower()](path)

@@ -35,7 +35,7 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
     found = engine.coordinates
     if len(found) + len(engine.controls) > MOST:
         raise SchemaError(
-            f"a model has at most {MOST} free coordinates and controls together",
+            f"a model may have at most {MOST} free coordinates and controls together",
             f"{engine.path.name} has {len(found)} and {len(engine.controls)}",
             "Lock the joints (MuJoCo: take them out of their bodies) that your record does not show.",
         )
@@ -82,7 +82,7 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
         path = beside
     if read_tracked(path) is not None:
         raise SchemaError(
-            "a mapping that is run forward says what drives the model",
+            "a mapping for a forward simulation must state the model's controls",
             f"{path.name} holds [tracked]: its motion is prescribed, and only discover reads it",
             "Run gaitdisc discover on it; to simulate, write a mapping without [tracked] for a copy of the model.",
         )
@@ -104,7 +104,7 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
     """Refuse a mapping whose names are not the model's."""
     file, coordinates = engine.path.name, engine.coordinates
     known = {
-        "coordinate, or its speed": (
+        "coordinate or speed": (
             tuple(one.name for one in mapping.states),
             (*(one.name for one in coordinates), *(one.speed for one in coordinates)),
         ),
@@ -118,14 +118,14 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
                 near = nearest_word(name, has)
                 hint = f"Did you mean {near!r}? " if near else ""
                 raise SchemaError(
-                    f"a {kind} is one of the model's",
+                    f"each {kind} of a mapping must exist in the model",
                     f"{file} has none called {name!r}",
                     f"{hint}Known: {', '.join(has) or 'none'}.",
                 )
         whole = kind not in ("parameter", "port")
         if whole and given != has:
             raise SchemaError(
-                f"a mapping lists every {kind.partition(',')[0]} of the model, in its order",
+                f"a mapping must list every {kind.partition(' or ')[0]} of the model, in its order",
                 f"it has {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
                 f"Write it anew: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
             )

@@ -109,8 +109,8 @@ class ByHand:
 def refuse_absent(package: str, error: ImportError) -> SchemaError:
     """Say how an engine is installed."""
     return SchemaError(
-        f"a model of this kind is computed by the package {package}",
-        f"it is not installed here ({str(error).splitlines()[0][:120]})",
+        f"this kind of model requires the package {package}",
+        f"it is not installed ({str(error).splitlines()[0][:120]})",
         f"Install it: pip install 'gaitdisc[{package}]'.",
     )
 

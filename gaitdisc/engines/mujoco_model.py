@@ -83,12 +83,12 @@ class MujocoModel:
         if bound.size:
             name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
             raise SchemaError(
-                "every coordinate of the model is free",
+                "every coordinate of the model must be free",
                 f"{self.path.name}: the equality constraint {name!r} makes one depend on others",
                 'Switch it off (active="false"), or take the dependent joint out of the model.',
             )
         if not model.njnt:
-            raise SchemaError("a model has one joint or more", f"{self.path.name} has none", "Give a body a joint.")
+            raise SchemaError("a model must have a joint", f"{self.path.name} has none", "Give a body a joint.")
         ranges = np.where(model.jnt_limited[:, None], model.jnt_range, (-np.inf, np.inf)).tolist()
         turns = model.jnt_type == known[0]
         self.coordinates = tuple(
@@ -231,9 +231,9 @@ class MujocoModel:
             return self._mujoco.MjModel.from_xml_path(str(self.path))
         except ValueError as error:
             raise ReadError(
-                f"a model is one that MuJoCo {self._mujoco.__version__} reads",
+                f"MuJoCo {self._mujoco.__version__} must be able to read the model",
                 f"{self.path.name}: {' '.join(str(error).split())[:300]}",
-                "Mend what it names: a part that this version does not know, or a mesh that does not lie beside it.",
+                "Correct the part that it names: this version may not know it, or a mesh file may be missing.",
             ) from None
 
     def _hear(self, said: str) -> None:

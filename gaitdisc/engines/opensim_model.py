@@ -43,19 +43,19 @@ class OpensimModel:
         described = self._query("described")
         if described["others"]:
             raise SchemaError(
-                "each actuator is a muscle, or acts on a coordinate without a state of its own",
-                f"{self.path.name}: {described['others'][0]!r} has states and is no muscle",
+                "each actuator must be a muscle, or act on a coordinate without a state",
+                f"{self.path.name}: {described['others'][0]!r} has states and is not a muscle",
                 "Drive the model by muscles or by coordinate actuators.",
             )
         if described["dependent"]:
             raise SchemaError(
-                "every unlocked coordinate of the model is free",
-                f"{self.path.name}: {described['dependent'][0]!r} depends on another by no coupler",
+                "every unlocked coordinate of the model must be free",
+                f"{self.path.name}: {described['dependent'][0]!r} depends on another one without a coupler",
                 "Write it as a CoordinateCouplerConstraint, take it out, or lock the coordinate.",
             )
         if not described["coordinates"]:
             raise SchemaError(
-                "a model has one free coordinate or more",
+                "a model must have at least one free coordinate",
                 f"{self.path.name}: all are locked ({', '.join(described['locked']) or 'there is none'})",
                 "Unlock those that were measured.",
             )
@@ -163,9 +163,9 @@ class OpensimModel:
             raise refuse_absent("opensim", ImportError(answer))
         if word == "refused":
             raise ReadError(
-                "a model is one that OpenSim reads and computes",
+                "OpenSim must be able to read and compute the model",
                 f"{self.path.name}: {' '.join(answer.split())[:300]}",
-                "Mend what it names, or open the model in OpenSim and save it in its present version.",
+                "Correct the part that it names, or open the model in OpenSim and save it in its present version.",
             )
         return answer
 

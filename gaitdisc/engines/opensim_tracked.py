@@ -42,7 +42,7 @@ class OpensimTracked(OpensimModel):
         )
         if not self.coordinates:
             raise SchemaError(
-                "a model has one free coordinate or more", f"{self.path.name}: all are locked", "Unlock some."
+                "a model must have at least one free coordinate", f"{self.path.name}: all are locked", "Unlock some."
             )
         self.controls, self.parameters, self.offered = (), (), ()
         self.actuators: tuple[str, ...] = tuple(described["actuators"])

@@ -51,19 +51,19 @@ def drafted_tracked(
     """What a model's walk is tracked with, once model and files have been found to belong together."""
     if model.suffix.lower() != ".osim":
         raise SchemaError(
-            "recorded ground forces are tracked in a model of OpenSim",
-            f"{model.name} is none",
+            "recorded ground forces can be tracked only in an OpenSim model",
+            f"found {model.name}",
             "Leave out --external-loads, --forces and --actuators.",
         )
     if loads is None:
         raise SchemaError(
-            "a walk is tracked with its recorded ground forces",
-            f"{'forces' if forces else 'actuators'} are given without them",
+            "a tracked walk must have recorded ground forces",
+            f"{'--forces' if forces else '--actuators'} is given without them",
             "Add --external-loads grf.xml, the file of OpenSim's inverse dynamics.",
         )
     for path in (model, loads, forces, actuators):
         if path is not None and not path.is_file():
-            raise SchemaError("a walk is tracked with files", f"there is none at {path}", "Check the path.")
+            raise SchemaError("files of a tracked walk must exist", f"there is none at {path}", "Check the path.")
     tracked = Tracked(model, loads_of(loads), forces, actuators)
     check_loads(tracked)
     engine = OpensimTracked(model, tracked.loads, actuators)
@@ -81,7 +81,7 @@ def check_loads(tracked: Tracked) -> None:
         if body.rpartition("/")[2] not in bodies:
             near = nearest_word(body, tuple(bodies))
             raise SchemaError(
-                "a recorded force acts on a body of the model",
+                "a recorded force must act on a body of the model",
                 f"{loads.name}: force {force.get('name')!r} acts on {body!r}; {tracked.model.name} has no such body",
                 f"Did you mean {near!r}? " if near else f"Correct <applied_to_body>: {', '.join(bodies)}.",
             )
@@ -90,7 +90,7 @@ def check_loads(tracked: Tracked) -> None:
             lacking = [f"{prefix}{axis}" for axis in "xyz" if prefix and f"{prefix}{axis}" not in labels]
             if lacking:
                 raise ChannelError(
-                    f"each force of {loads.name} has its columns in {data.name}",
+                    f"each force of {loads.name} must have its columns in {data.name}",
                     f"force {force.get('name')!r} needs {lacking[0]!r}; there is none",
                     f"Correct <{word}>, or export the columns.",
                 )
@@ -114,7 +114,7 @@ def tracked_motion(
     """
     if kinematics.suffix.lower() not in (".mot", ".sto"):
         raise ReadError(
-            "a walk is tracked by the angles of the model's coordinates (.mot, .sto)",
+            "a tracked walk must give the angles of the model's coordinates (.mot, .sto)",
             f"{kinematics.name} is a file of another kind",
             "Run OpenSim's inverse kinematics on the markers first, with this model, and give its .mot.",
         )
@@ -123,8 +123,8 @@ def tracked_motion(
         largest, limit = float(np.nanmax(np.abs(q[:, k]))), MOST_RAD if one.unit == "rad" else MOST_M
         if largest > limit:
             raise SchemaError(
-                f"coordinate {one.called!r} stays within {limit:.3g} {one.unit}",
-                f"{kinematics.name} makes it {largest:.4g} {one.unit}: these may be "
+                f"coordinate {one.called!r} must stay within {limit:.3g} {one.unit}",
+                f"{kinematics.name} has {largest:.4g} {one.unit}: these may be "
                 f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
                 "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Write metres.",
             )
@@ -132,9 +132,9 @@ def tracked_motion(
     moved = np.ptp(q[:, turning], axis=0) if turning else np.ones(1)
     if moved.max() < np.radians(2.0):
         raise SchemaError(
-            "a walk turns some joint by more than 2 deg",
-            f"{kinematics.name}: the most that turns is {np.degrees(moved.max()):.2g} deg, as radians would that are "
-            "said to be degrees",
+            "at least one joint of a walk must turn by more than 2 deg",
+            f"{kinematics.name}: the largest range is {np.degrees(moved.max()):.2g} deg, so the angles may be "
+            "in radians",
             "Write inDegrees=no in the header of the file.",
         )
     named = [(one, word) for one, word in ((tracked.speeds, "/speed"), (tracked.accelerations, "/accel")) if one]
@@ -171,7 +171,7 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
                 degrees = parsed_header(read_raw(path).lines(), path.name).degrees
                 if degrees is None:
                     raise UnitError(
-                        f"{path.name} says whether its angles are degrees",
+                        f"{path.name} must state whether its angles are in degrees",
                         "its header does not",
                         "Write inDegrees=yes or inDegrees=no there, before endheader.",
                     )
@@ -181,7 +181,7 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
         if one.called not in columns:
             near = nearest_word(one.called, tuple(columns))
             raise ChannelError(
-                "every free coordinate of the model is measured",
+                "every free coordinate of the model must be measured",
                 f"{path.name} has no column {one.called!r}",
                 f"Did you mean {near!r}? Rename it, or lock the coordinate in the model."
                 if near
@@ -213,23 +213,23 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
         if name not in known:
             near = nearest_word(name, known)
             raise ChannelError(
-                "every column of the forces' file is an actuator of the model",
-                f"{path.name} has {name!r}, which is none",
+                "every column of the forces file must be an actuator of the model",
+                f"{path.name} has {name!r}, which is not",
                 (f"Did you mean {near!r}? " if near else "")
-                + "Reserves and residuals stand in a file of their own: name it in [tracked] as actuators.",
+                + "If it is a reserve or residual actuator, name the file that defines it in [tracked] as actuators.",
             )
     lacking = [name for name in known if name not in names]
     if lacking:
         raise ChannelError(
-            "the forces' file has a column for every actuator of the model",
+            "the forces file must have a column for every actuator of the model",
             f"{path.name} lacks {lacking[0]!r}" + (f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""),
-            "Export all forces; a muscle that pulls and is not listed would be found missing.",
+            "Export all forces: the force of an unlisted muscle would be reported as missing.",
         )
     values = values[:, kept]
     if not np.isfinite(values).all():
         row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "every force has a number", f"{path.name}: {names[kept[column]]!r} has none in row {row + 1}", "Fill it in."
+            "forces must be complete", f"{path.name}: {names[kept[column]]!r} is empty in row {row + 1}", "Fill it in."
         )
     return tuple(names[k] for k in kept[1:]), values
 
@@ -241,14 +241,14 @@ def _shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArra
     begin, end = float(spans[first][0]), float(spans[last][-1])
     if end - begin < SHORTEST_S:
         raise SamplingError(
-            f"motion and forces cover {SHORTEST_S:g} s or more together",
+            f"motion and forces must overlap by at least {SHORTEST_S:g} s",
             f"{first.name} begins at {begin:.4g} s, {last.name} ends at {end:.4g} s",
             "Put both on one clock, or export the same part of the trial.",
         )
     inside = (time >= max(begin - 1e-9, tracked.start_s)) & (time <= min(end + 1e-9, tracked.end_s))
     if not inside.any() or np.ptp(time[inside]) < SHORTEST_S:
         raise SamplingError(
-            f"a walk lasts {SHORTEST_S:g} s or more",
+            f"a walk must last at least {SHORTEST_S:g} s",
             f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, where "
             f"{inside.sum()} samples are",
             "Correct start_s and end_s in [tracked].",

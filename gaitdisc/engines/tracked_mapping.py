@@ -58,28 +58,28 @@ def read_tracked(path: Path | str) -> Tracked | None:
             return None
         table = parsed_toml(text)
     except (OSError, ValueError) as error:
-        raise ReadError("a mapping is a TOML file", f"{file.name}: {error}", "Correct it there.") from None
+        raise ReadError("a mapping must be a TOML file", f"{file.name}: {error}", "Correct it there.") from None
     given = table["tracked"]
     unknown = [name for name in table if name not in ("title", "model", "tracked")]
     unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
     if unknown:
         near = nearest_word(unknown[0], (*FILES, *NUMBERS))
         raise SchemaError(
-            f"a mapping with [tracked] holds title, model and in that table {', '.join((*FILES, *NUMBERS))}",
+            f"a mapping with [tracked] may have only title, model and, in that table, {', '.join((*FILES, *NUMBERS))}",
             f"{file.name} has {unknown[0]!r}",
             f"Did you mean {near!r}?" if near else "Take it out.",
         )
     if "external_loads" not in given:
         raise SchemaError(
-            "a walk is tracked with its recorded ground forces",
+            "a tracked walk must have recorded ground forces",
             f"[tracked] of {file.name} names no external_loads",
-            'Write external_loads = "grf.xml", the file of OpenSim\'s inverse dynamics; without forces of the ground '
-            "no moment can be said.",
+            'Write external_loads = "grf.xml", the file of OpenSim\'s inverse dynamics; without ground forces '
+            "no joint moment can be computed.",
         )
     for name in NUMBERS:
         value = given.get(name, 1.0)
         if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < 1e3:
-            raise SchemaError(f"{name} is a number", f"{file.name} has {value!r}", "Correct it.")
+            raise SchemaError(f"{name} must be a number", f"{file.name} has {value!r}", "Correct it.")
     paths = {name: _there(file, name, given[name]) for name in FILES if name in given}
     loads, noise = paths["external_loads"], given.get("noise_deg")
     return Tracked(
@@ -97,9 +97,9 @@ def _there(file: Path, what: str, name: object) -> Path:
     path = file.parent / str(name)
     if not path.is_file():
         raise ReadError(
-            f"{what} of {file.name} is a file beside it",
-            f"there is none at {name}",
-            "Correct the path; it counts from the mapping's folder.",
+            f"{what} of {file.name} must name an existing file",
+            f"there is no file {name}",
+            "Correct the path, which is relative to the mapping's folder.",
         )
     return path
 
@@ -108,7 +108,7 @@ def loads_of(loads: Path) -> tuple[Path, Path]:
     """Return an ExternalLoads file, and the storage file that it names."""
     if loads.suffix.lower() in (".mot", ".sto"):
         raise ReadError(
-            "external_loads is the file that says on which body each force acts (.xml, ExternalLoads)",
+            "external_loads must be the .xml file (ExternalLoads) that assigns each force to a body",
             f"{loads.name} holds the forces themselves",
             f"Give the .xml of OpenSim's inverse dynamics, which names {loads.name} in <datafile>.",
         )
@@ -116,9 +116,9 @@ def loads_of(loads: Path) -> tuple[Path, Path]:
     path = loads.parent / named
     if not named or not path.is_file():
         raise ReadError(
-            f"{loads.name} names the file of its forces in <datafile>",
-            f"there is none at {named!r} beside it" if named else "it names none",
-            "Correct <datafile>; it counts from the folder of the file that names it.",
+            f"{loads.name} must name the file of its forces in <datafile>",
+            f"there is no file {named!r} in its folder" if named else "it names none",
+            "Correct <datafile>; the path is relative to the folder of the file that names it.",
         )
     return loads, path
 
@@ -128,7 +128,7 @@ def xml_of(path: Path) -> ElementTree.Element:
     try:
         return ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:
-        raise ReadError("a file of OpenSim is XML", f"{path.name}: {error}", "Export it again.") from None
+        raise ReadError("an OpenSim file must be XML", f"{path.name}: {error}", "Export it again.") from None
 
 
 def write_tracked_mapping(tracked: Tracked, file: Path) -> None:

@@ -66,7 +66,7 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
             elif np.isfinite(deviation):
                 said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
             used = {name for one in more_forces for name in names(parsed(one.term))}
-            notes.append(f"{what} {said}: it stands in {'discovery.json' if used & own else 'augmented.toml'} alone")
+            notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
             if more_forces and not engine.fibres and "delay(" not in more_forces[0].term:
                 by_hand = (*by_hand, *more_forces)
             else:  # a force at each step of a run does not know what was before
@@ -77,7 +77,7 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
         notes.append(f"{what} {said} {deviation:.1g}")
     for name, expression in augmented.definitions:
         control = name.removeprefix(REPLACED)
-        notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
+        notes.append(f"{control}, as {expression}, has no form in the model's file: only augmented.toml contains it")
     if text == engine.path.read_text(encoding="utf-8"):
         notes.append(f"the written model is the same as {engine.path.name}")
     if by_hand:
@@ -100,8 +100,8 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     absent = (*written.absent, *others)
     if absent:
         raise SchemaError(
-            f"{engine.called} runs what stands in the model's own file",
-            f"{Path(path).name} has besides: {'; '.join(absent)}",
+            f"{engine.called} can run only what the model's own file contains",
+            f"{Path(path).name} also has: {'; '.join(absent)}",
             "Take it out of the mapping, or write it into the model by hand.",
         )
     return mapping, written.engine

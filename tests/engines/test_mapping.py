@@ -61,8 +61,8 @@ def test_without_a_mapping_columns_have_the_coordinates_names(pendulum):
     ("change", "words"),
     [
         (("[inputs.drive]", "[inputs.drife]"), "none called 'drife'. Did you mean 'drive'"),
-        (("[states.pivot]", "[states.pivott]"), "a coordinate, or its speed is one of the model's"),
-        (("[ports.pivot_moment]", "[ports.hip_moment]"), "a port is one of the model's"),
+        (("[states.pivot]", "[states.pivott]"), "each coordinate or speed of a mapping must exist in the model"),
+        (("[ports.pivot_moment]", "[ports.hip_moment]"), "each port of a mapping must exist in the model"),
         (("[parameters.rod_mass]", "[parameters.foot_mass]"), "none called 'foot_mass'"),
     ],
 )
@@ -119,7 +119,7 @@ def test_a_mapping_of_recorded_forces_goes_to_its_file_and_back(tmp_path):
     read = read_tracked(tmp_path / "walk.toml")
     assert read is not None and [one.resolve() for one in read.files] == [one.resolve() for one in given.files]
     assert (read.noise_deg, read.start_s, read.end_s) == (0.5, 0.7, float("inf"))
-    with pytest.raises(GaitdiscError, match=r"none.*.tracked. as actuators"):
+    with pytest.raises(GaitdiscError, match=r"which is not.*.tracked. as actuators"):
         drafted_tracked(model, LOADS, forces)  # its reserves are in no file that is named
 
 

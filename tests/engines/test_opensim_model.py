@@ -108,9 +108,9 @@ def test_a_process_that_dies_is_told_and_replaced(model):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (("<Body name", "<Boddy name"), "OpenSim reads and computes"),
+        (("<Body name", "<Boddy name"), "OpenSim must be able to read"),
         (('<Coordinate name="knee">', '<Coordinate name="knee"><locked>true</locked>'), None),
-        (("</OpenSimDocument>", ""), "OpenSim reads and computes"),
+        (("</OpenSimDocument>", ""), "OpenSim must be able to read"),
     ],
 )
 def test_what_opensim_cannot_read_is_refused(needs_opensim, tmp_path, change, words):

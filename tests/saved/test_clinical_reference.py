@@ -41,7 +41,7 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
     [
         (published_table().replace(SOURCE + "\n", ""), "has no source"),
         (published_table().replace(",sd\n", ",spread\n"), "has no column sd"),
-        (published_table().replace("knee_flexion", "knee"), "slow knee: a variable is one of pelvis_tilt"),
+        (published_table().replace("knee_flexion", "knee"), "slow knee: a variable must be one of pelvis_tilt"),
         (published_table(lambda row: "" if ",98," in row or ",100," in row else row), "found 49 from 0 to 96 %"),
         (published_table().replace("2.5\n", "-2.5\n"), "with mean and sd"),
     ],
@@ -74,7 +74,7 @@ def test_no_pseudonym_stands_in_it(tmp_path):
 
 
 def test_what_was_changed_or_is_no_reference_is_refused(tmp_path):
-    with pytest.raises(SchemaError, match=r"reference is a.*reference\.json"):
+    with pytest.raises(SchemaError, match=r"reference must be a.*reference\.json"):
         load_reference(tmp_path)
     path = save_reference(made_controls(2), tmp_path)
     data = json.loads(path.read_text())

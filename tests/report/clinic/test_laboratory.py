@@ -36,7 +36,7 @@ def test_name_logo_axes_side_and_comment_are_read_beside_the_study_file(tmp_path
         ('[people.P07]\naffected = "front"', r"\[people.P07\].*front.*affected is one of left, right, both"),
         ("[axes]\nknee_flexion = [75, -15]", r"the lower first.*knee_flexion = \[75, -15\]"),
         ("[axes]\nelbow = [0, 90]", r"\[axes\]: elbow"),
-        ('logo = "other.png"', r"a logo is a PNG or JPEG.*512 KiB.*other.png"),
+        ('logo = "other.png"', r"a logo must be a PNG or JPEG.*512 KiB.*other.png"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_key(tmp_path, text, said):
