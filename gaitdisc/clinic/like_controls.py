@@ -10,6 +10,7 @@ import numpy as np
 
 from gaitdisc.clinic.clinical_reference import PublishedGroup, ReferenceLeg
 from gaitdisc.processing.leg_curves import BY_NAME, MOMENTS, POWERS, LegCurves
+from gaitdisc.words import counted
 
 GRAVITY = 9.81
 FEWEST = 10  # people of a group
@@ -42,18 +43,18 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     of_age = _nearest(legs, AGES, age_years, _age)
     of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)
     by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
-    why = "the person is of no known age or speed" if groups_of(legs) else f"a group needs {FEWEST} of an age or speed"
-    which = f", the group nearest in {' and '.join(by)}" if by else f": all there are, for {why}"
+    why = "age and speed are unknown" if groups_of(legs) else f"a group needs {FEWEST} controls of similar age or speed"
+    which = f", the group nearest in {' and '.join(by)}" if by else f", all of the reference ({why})"
     said = [f"Compared with {described(of_both)}{which}."]
     if of_both != of_age:
         said.append("Times and distances: with those of any speed.")
     ages = [leg.age_years for leg in of_age if leg.age_years is not None]
     if age_years is not None and ages and not min(ages) <= age_years <= max(ages):
         whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
-        said.append(f"These controls are {whose}, the person is {age_years} years old: what stands out may be the age.")
+        said.append(f"These controls are {whose}, the person is {age_years} years old: deviations may be due to age.")
     unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
     if leg_m is None or unknown:
-        said.append(f"Not scaled by leg length, which is not known of {unknown}: size shows in speeds and lengths.")
+        said.append(f"Not scaled: the leg length of {unknown} is unknown. Speeds and lengths depend on body size.")
         return LikeControls(of_both, of_age, tuple(said))
     said.append("Their times, distances, moments and powers are taken to this person's leg length (Hof 1996).")
     curves, values = (tuple(at_leg_length(leg, leg_m) for leg in one) for one in (of_both, of_age))
@@ -68,7 +69,7 @@ def like_published(
     known = [one for one in groups if np.isfinite(one.speeds).all()] if speed is not None else []
     if speed is None or not known:
         found = max(groups, key=lambda one: one.people)
-        return found, f"Compared with its group “{found.name}”, {found.people} people; no group goes by the speed."
+        return found, f"Compared with its group “{found.name}”, {found.people} people; no group is selected by speed."
     found = min(known, key=lambda one: max(one.speeds[0] - speed, speed - one.speeds[1], 0.0))
     low, high = found.speeds
     whose = f"{found.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"
@@ -105,7 +106,7 @@ def described(legs: Legs) -> str:
     """How many controls, of which ages and speeds."""
     ages = [leg.age_years for leg in legs if leg.age_years is not None]
     speeds = [speed for leg in legs if (speed := dimensionless_speed(leg)) is not None]
-    parts = [f"{len({leg.person for leg in legs})} controls"]
+    parts = [counted(len({leg.person for leg in legs}), "control")]
     parts += [f"aged {min(ages)} to {max(ages)} years"] if ages else []
     parts += [f"dimensionless speed {min(speeds):.2f} to {max(speeds):.2f}"] if speeds else []
     return ", ".join(parts)

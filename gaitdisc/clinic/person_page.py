@@ -189,7 +189,7 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
     if reference.published:
         return ""  # its source stands among what the person is read beside
     count = reference.people(condition)
-    people = f"{count} controls of the laboratory's own" if count else "nobody who walked so"
+    people = f"{counted(count, 'control')} of the laboratory's own" if count else "no controls in this condition"
     return f"Reference: {people}, saved {reference.created[:10]}."
 
 
@@ -276,7 +276,7 @@ def write_index(
 
 def _reference_words(reference: ClinicalReference | None) -> str:
     if reference is None:
-        return "No reference: no bands, no scores, and nothing is said to stand out."
+        return "No reference: the page has no bands, no scores and no comparison."
     if reference.published:
         return f"Published reference: {reference.title}."
     counts = ", ".join(f"{word} {reference.people(word)}" for word in reference.legs)

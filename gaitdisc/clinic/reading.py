@@ -31,7 +31,7 @@ from gaitdisc.words import SIDE_WORDS
 
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
 NO_CYCLE = "no cycle is kept"
-NO_LEGS = "a published reference has means and spreads, no single legs to take limits from"
+NO_LEGS = "a published reference has no single legs, from which limits are computed"
 FEATURES = 15
 FEWEST_PEOPLE = 30  # twice the features; below it directions are those of single people
 FEWEST = 2  # people without whom the reference has no spread of its own
@@ -169,10 +169,7 @@ def profile_of(
     """
     turned = max((leg.turned_deg for leg in legs.values()), default=0.0)
     if turned > TURNED_DEG:
-        return None, (
-            f"the pelvis turns by {turned:.0f} deg in a cycle: its rotation and the foot's progression, two of the "
-            f"nine curves, are about a straight line of walking"
-        )
+        return None, f"the pelvis turns by {turned:.0f} deg: its rotation and foot progression assume a straight path"
     known = published or bands(reference)
     lacking = [name for name in PROFILE if name not in known]
     if lacking:

@@ -164,7 +164,7 @@ def contrast_sentences(contrast: Contrast) -> list[str]:
     if contrast.tested and not spans:
         sides = " and ".join(SIDE_WORDS[side] for side in contrast.tested)
         found.append(
-            f"{sides.capitalize()}: no stretch differs by as much as matters (5 deg) between {first} and {second}."
+            f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between {first} and {second}."
         )
     if small:
         found.append(f"{counted(small, 'stretch').replace('stretchs', 'stretches')} differ by less than 5 deg.")

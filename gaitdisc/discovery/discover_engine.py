@@ -102,7 +102,7 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
     if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
-        request.progress(f"expanding again where {' and '.join(moved)} came to lie")
+        request.progress(f"expanding again about the new value of {' and '.join(moved)}")
         linear, driven = expanded(mapping, engine, data, states, moved)
         found, answer = discovered(linear, driven, request, read)
     request.progress(f"running it by {engine.called}")
@@ -150,8 +150,8 @@ def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
     named = " and ".join(f"the {spoken(one.name)} {at_place(one.kind, one.place)}" for one in found.effects)
     sentence = (
-        f"Not proven: {named}. {runs.engine}'s own runs miss the record as much with as without, by more than the "
-        "sensors' noise; runs of the expanded model spoke for it. Trials of other movement would decide."
+        f"Not proven: {named}. {runs.engine}'s own runs have the same error with and without it, above the sensors' "
+        "noise; only runs of the expanded model supported it. Trials with other movement can decide."
     )
     rivals = (*found.effects, *found.rivals)
     return replace(

@@ -84,7 +84,7 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     for one in found.effects:
         if one.kind == "parameter":  # what muscles do otherwise is no part of the model's file
             number = f"{one.place} = {one.estimates['value'].value:.4g}"
-            notes.append(f"{number} is about the forces' file and stands in discovery.json alone")
+            notes.append(f"{number} belongs to the forces file: only discovery.json contains it")
     said = (stretch_used(walk, kinematics.name), *_gaps(walk, written, found))
     shown = [shown_by(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
     findings += [*shown, *doubts(shown)]
@@ -132,9 +132,9 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
     unit = units[joints.index(first)]
     sentence = (
-        f"Not proven: {spoken(one.name)} {at_place(one.kind, one.place)} explains most of what is left, from "
+        f"Not proven: {spoken(one.name)} {at_place(one.kind, one.place)} explains most of the residual, from "
         f"{amount(before)} to {amount(after)} {unit} where it is fitted (noise floor {amount(first.joint.floor)}). "
-        "It does not bear that out on time held out, or has too little evidence: a longer walk or a second one would."
+        "Held-out data do not support it, or its evidence is too small: a longer walk or a second one can decide."
     )
     return replace(found, verdict="unexplained", sentence=sentence)
 
@@ -196,7 +196,7 @@ def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...
     for k in numbers:
         one = walk.engine.coordinates[k]
         before, now = (f"{amount(walk.size(each[:, k]))} {one.force_unit}" for each in (walk.left, after))
-        said.append(f"{one.called}, computed by OpenSim with the written model: {before} left before, {now} after")
+        said.append(f"{one.called}, computed by OpenSim with the written model: residual {before} before, {now} after")
     return tuple(said)
 
 

@@ -86,7 +86,7 @@ class EngineFit:
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
                 controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
                 lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
-                written = replace(written, notes=(*written.notes, f"{lag}it stands in discovery.json alone"))
+                written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
         return augmented, written, Driven(written.engine, augmented, controls, lags, recorded, self.progress)
 

@@ -52,7 +52,7 @@ def test_a_child_is_not_called_out_for_its_size_but_for_slow_walking():
     unscaled = like_controls(controls(20), tuple(child.values()), None, 8)
     noted, _ = outstanding(child, unscaled.curves, of_values=unscaled.values)
     assert {one.words for one in noted} >= {"reduced walking speed", "short steps"}
-    assert says(" ".join(unscaled.words), "scaled by leg", "not")
+    assert says(" ".join(unscaled.words), "Not scaled", "leg length of the person")
     scaled = like_controls(controls(20), tuple(child.values()), CHILD_LEG, 8)
     noted, _ = outstanding(child, scaled.curves, of_values=scaled.values)
     assert not [one.words for one in noted if one.words]
@@ -96,7 +96,7 @@ def test_all_of_them_and_why():
     assert len(few.curves) == 16 and says(few.words[0], "10", "age or speed")
     legs = controls(12, age=9) + controls(12, first=20)
     unknown = like_controls(legs, (), None, None)
-    assert len(unknown.curves) == 48 and says(unknown.words[0], "no", "age or speed")
+    assert len(unknown.curves) == 48 and says(unknown.words[0], "age and speed", "unknown")
 
 
 def test_what_a_run_knows_of_size_and_age_reaches_the_reading():
