@@ -21,13 +21,13 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.recording.arrays import Values
 
 CONVERGED = 1e-4  # of a number's share of the misfit
-TURNS, AGAIN = 15, 6
-FOLDS = 6
+TURNS, AGAIN = 15, 6  # Gauss-Newton turns of a fit, and again with the noise of its residual
+FOLDS = 6  # groups of runs that are left out in turn
 FEWEST_RUNS = 3  # of which whole runs can be left out; of fewer, pieces of a run
 PIECES = 10  # at least, that the left-out errors are given for
 SHORT_RUN = 100  # numbers, of which a run is cut into few pieces
-FEW, MANY = 6, 12
-WEAK = 1e-11
+FEW, MANY = 6, 12  # pieces of all runs together, where these are short and otherwise
+WEAK = 1e-11  # share of the largest singular value, below which a direction is not estimated
 
 
 @dataclass(frozen=True)
