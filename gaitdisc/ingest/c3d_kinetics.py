@@ -54,7 +54,7 @@ def body_mass(parameters: C3DParameters) -> float | None:
     """Body mass that the file states [kg], or None."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECT", "WEIGHT")):
         mass = parameters.number(group, name)
-        if mass is not None and MASS_KG[0] <= mass <= MASS_KG[1]:
+        if mass is not None and MASS_KG.hold(mass):
             return mass
     return None
 
@@ -133,7 +133,7 @@ def _by_plates(
             words = f"plate {place} carries {plate[at]:.0f} N when {side}GroundReactionForce is {foot[at]:.4g}"
             if abs(ratio - 1) <= AGREES:
                 return Evidence(False, words, True)
-            if MASS_KG[0] <= ratio <= MASS_KG[1]:
+            if MASS_KG.hold(ratio):
                 return Evidence(True, words, True, float(ratio))
     return None
 
@@ -210,11 +210,10 @@ def body_measures_of(parameters: C3DParameters) -> BodyMeasures:
 
 
 def _length(parameters: C3DParameters, name: str, keys: Sequence[str]) -> float | None:
-    low, high = LENGTHS_M[name]
     for group in GROUPS:
         for key in keys:
             number = parameters.number(group, key)
             for factor in FACTORS:
-                if number is not None and low <= number * factor <= high:
+                if number is not None and LENGTHS_M[name].hold(number * factor):
                     return round(number * factor, 9)
     return None

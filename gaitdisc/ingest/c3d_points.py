@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -111,7 +111,7 @@ def point_streams(
     for kind in MODEL_OUTPUTS:
         points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
         if points:
-            named = [(names[at], plain[at]) for at in points]
+            named = {names[at]: plain[at] for at in points}
             part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels)
             add_part(streams, kind.stream, part)
             findings += more
@@ -157,7 +157,7 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
 
 def _model_part(
     rows: NDArray[np.float64],
-    named: Sequence[tuple[str, str]],
+    named: Mapping[str, str],
     kind: ModelOutput,
     parameters: C3DParameters,
     labels: LabelMap,
@@ -174,7 +174,7 @@ def _model_part(
     values = np.asarray(convert(rows, unit, inner), float)
     quantity = kind.quantity if inner != "1" else "signal"
     channels = []
-    for name_in_file, plain in named:
+    for name_in_file, plain in named.items():
         for axis in AXES:
             label = f"{plain}.{axis}"
             mapped = labels.name(f"{name_in_file}.{axis}")

@@ -14,7 +14,7 @@ from typing import Literal
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG
+from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG, Limits
 from gaitdisc.spreadsheet import unquoted
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")
@@ -146,9 +146,9 @@ def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) ->
     """What a row says of a person; a stature in the unit of its label, else in the one in which it is a person's."""
     stated = re.search(r"(?:^|[^a-z])(m|cm|mm)\W*$", stature_label.lower())
     unit, factors = (f" {stated[1]}", [_METRES[stated[1]]]) if stated else (" m, cm or mm", list(_METRES.values()))
-    age = _within(cells["age"], "age", AGE_YEARS, "years", notes)
-    mass = _within(cells["mass"], "body mass", MASS_KG, "kg", notes)
-    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], "m", notes=notes, factors=factors, given=unit)
+    age = _within(cells["age"], "age", AGE_YEARS, notes)
+    mass = _within(cells["mass"], "body mass", MASS_KG, notes)
+    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], notes, factors, unit)
     sex = _SEX.get(cells["sex"].lower(), "")
     if not sex and cells["sex"].lower() not in _MISSING:
         notes.append(f"sex {cells['sex']!r} is neither f nor m; the mean of both is used")
@@ -156,25 +156,24 @@ def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) ->
 
 
 def _within(
-    text: str, what: str, limits: tuple[float, float], unit: str, notes: list[str],
-    factors: Sequence[float] = (1.0,), given: str = "",
-) -> float | None:  # fmt: skip
-    """Number of a cell times the first factor that brings it within the limits [unit]; None, and a note, of another."""
+    text: str, what: str, limits: Limits, notes: list[str], factors: Sequence[float] = (1.0,), given: str = ""
+) -> float | None:
+    """Number of a cell times the first factor that brings it within the limits; None, and a note, of another."""
     if text.lower() in _MISSING:
         return None
     try:
         value = float(text.replace(",", "."))
     except ValueError:
         value = math.nan
-    low, high = limits
     for factor in factors:
-        if low <= value * factor <= high:
+        if limits.hold(value * factor):
             return value * factor
     if not math.isfinite(value):
         notes.append(f"{what} {text!r} is not a number; not used")
     else:
         article = "an" if what[0] in "ae" else "a"
-        notes.append(f"{article} {what} of {value:g}{given} is not between {low:g} and {high:g} {unit}; not used")
+        possible = f"{limits.least:g} and {limits.most:g} {limits.unit}"
+        notes.append(f"{article} {what} of {value:g}{given} is not between {possible}; not used")
     return None
 
 

@@ -14,10 +14,10 @@ from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError, ShapeError, UnitError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import RigidBody
+from gaitdisc.recording.trial import MASS_KG
 
 TABLES = ("dumas2007", "deleva1996")
 LEG: tuple[str, ...] = ("foot", "shank", "thigh")
-LIGHTEST_KG, HEAVIEST_KG = 5.0, 300.0
 # de Leva (1996), Table 4, mean lengths of foot over mean statures of the people measured
 _FOOT_OF_STATURE = {"f": 0.2283 / 1.735, "m": 0.2581 / 1.741}
 _SPREAD_OF_LENGTH = 0.1  # a bone whose length varies by more than a tenth is none
@@ -46,9 +46,9 @@ class Person:
                 "neither the study nor the file states one",
                 "Write it in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
             )
-        if not LIGHTEST_KG <= self.mass_kg <= HEAVIEST_KG:
+        if not MASS_KG.hold(self.mass_kg):
             raise UnitError(
-                f"the body mass must be between {LIGHTEST_KG:g} and {HEAVIEST_KG:g} kg",
+                f"the body mass must be between {MASS_KG.least:g} and {MASS_KG.most:g} kg",
                 f"it is {self.mass_kg:g} kg",
                 "Give it in kg.",
             )

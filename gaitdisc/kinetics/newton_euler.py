@@ -6,6 +6,7 @@ momentum of all segments beyond it, less their weight, less what the ground give
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -125,26 +126,18 @@ def needed_wrench(moving: SegmentMotion, body: RigidBody, up: NDArray[np.float64
     return Wrench.at(moving.pose.to_laboratory(body.centre), force, turning)
 
 
-def joint_wrenches(
-    chain: Sequence[tuple[SegmentMotion, RigidBody]], ground: Wrench, up: NDArray[np.float64]
-) -> list[Wrench]:
+def joint_wrenches(needed: Sequence[Wrench], ground: Wrench) -> list[Wrench]:
     """What each joint of a chain gives to the segments beyond it, from the last joint upwards.
 
-    chain sequence of (SegmentMotion, RigidBody): segments from the one on the ground (foot) to the nearest to the
-        trunk (thigh); each one's proximal joint is the joint that is named after it
-    up (3,): unit vector against gravity
+    needed: `needed_wrench` of the segments from the one on the ground (foot) to the nearest to the trunk (thigh); each
+        one's proximal joint is the joint that is named after it
     returns: one for each segment, by its proximal joint: of the nearer segment on the farther one. `about` the joint's
         centre it is the internal joint moment
     Source: Winter (2009), Biomechanics and Motor Control of Human Movement, chapter 7; Dumas, Aissaoui & de Guise
         (2004), Comput. Methods Biomech. Biomed. Eng. 7, 159-166, compute the same moments with wrenches and
         quaternions.
     """
-    carried, beyond = [], None
-    for moving, body in chain:
-        own = needed_wrench(moving, body, up)
-        beyond = own - ground if beyond is None else beyond + own
-        carried.append(beyond)
-    return carried
+    return list(itertools.accumulate([needed[0] - ground, *needed[1:]]))
 
 
 def _times(tensors: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:

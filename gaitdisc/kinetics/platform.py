@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
 from gaitdisc.recording import Recording, Surface, Trial
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Span, read_only
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import loaded
 
@@ -101,6 +101,11 @@ class Platform:
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
 
     @property
+    def span(self) -> Span:
+        """From its first to its last sample."""
+        return Span(float(self.time[0]), float(self.time[-1]))
+
+    @property
     def load_n(self) -> NDArray[np.float64]:
         """Force against gravity, (sample,) [N]."""
         return self.wrench.force @ self.up
@@ -113,17 +118,15 @@ class Platform:
         """First and last sample (loading, 2) of each loading, from 50 N down to 20 N."""
         return loaded(self.load_n, self.rate_hz, LEAST_LOAD_N / 0.4)
 
-    def smoothed(self, cutoff_hz: float, spans: Sequence[tuple[float, float]]) -> Wrench:
+    def smoothed(self, cutoff_hz: float, spans: Sequence[Span]) -> Wrench:
         """Wrench within spans without what is faster than the cut-off, zero elsewhere.
 
         What an empty plate shows is no force on a foot and is taken as zero before the filter. Force and moment about
         the surface are filtered; the centre of pressure is not, as it is a quotient.
 
-        spans sequence of (float, float) [s]: loadings by the foot that is meant
+        spans: loadings by the foot that is meant
         """
-        on = np.zeros(len(self.time), bool)
-        for start, end in spans:
-            on |= (self.time >= start) & (self.time <= end)
+        on = np.any([span.holds(self.time) for span in spans], axis=0)
         values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]
         if np.isfinite(cutoff_hz):
             channels = tuple(Channel(f"wrench_{place}", "signal", "1") for place in range(6))

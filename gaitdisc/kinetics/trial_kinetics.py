@@ -13,7 +13,7 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, Leg, foot_loads, joint_moments, legs, swings
-from gaitdisc.kinetics.newton_euler import GRAVITY, needed_wrench
+from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weighed_steps
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.recording import Finding, Recording, Trial
@@ -90,9 +90,9 @@ def force_balance(
     needed = np.zeros(loads["r"].wrench.force.shape)
     rest = person.kg
     for leg in found.values():
-        for segment, body in leg.bodies.items():
-            needed = needed + needed_wrench(leg.moving[segment], body, up).force
-            rest -= body.mass_kg
+        for segment, wrench in leg.needed(up).items():
+            needed = needed + wrench.force
+            rest -= leg.bodies[segment].mass_kg
     hips = np.mean([leg.moving["thigh"].acceleration for leg in found.values()], axis=0)
     needed = needed + rest * ((hips if trunk is None else trunk) + GRAVITY * up)
     measured = loads["r"].wrench.force + loads["l"].wrench.force
@@ -155,7 +155,7 @@ def trial_kinetics(
     loads = foot_loads(found, steps, time, settings.force_cutoff_hz, airborne)
     both = legs(poses, feet, person, settings)
     moments = joint_moments(both, loads, time, up, person, settings)
-    balance = ForceBalance(0, *[float("nan")] * 3)
+    balance = ForceBalance(0, np.nan, np.nan, np.nan)
     if len(both) == 2:
         alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, airborne)
         balance = force_balance(both, alike, up, person, _acceleration(markers, trunk, settings.marker_cutoff_hz))

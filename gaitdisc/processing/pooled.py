@@ -79,7 +79,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     """
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []
-    prints: dict[str, tuple[str, int]] = {}  # of each trial that was read: its name and number
+    prints: dict[str, PlannedTrial] = {}  # of the samples of each trial that was read
     for session in dict.fromkeys(one.session for one in sets):
         standing = standing_of(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
@@ -97,24 +97,26 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
 
 
 def _seen_trials(
-    standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, tuple[str, int]]
+    standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, PlannedTrial]
 ) -> tuple[list[_Seen], list[Refusal]]:
     participant = standing.participant
     seen, lost = [], []
     for number, planned in enumerate(one.trials, 1):
-        name = participant.trial_name(planned)
-        where = name.removeprefix(participant.id).strip()
         try:
             trial = read(planned)
             whole = hashlib.sha256()  # equal for two files of one recording, whatever their headers and formats
             for key in sorted(trial.streams):
                 whole.update(trial.stream(key).values.tobytes())
-            twin = prints.setdefault(whole.hexdigest(), (name, number))
-            if twin != (name, number):
-                needed = "a recording must be counted once, for one session and condition"
-                raise StrideError(needed, f"its samples are identical to those of {twin[0]}", "Remove one of the two.")
+            twin = prints.setdefault(whole.hexdigest(), planned)
+            if twin is not planned:
+                raise StrideError(
+                    "a recording must be counted once, for one session and condition",
+                    f"its samples are identical to those of {participant.trial_name(twin)}",
+                    "Remove one of the two.",
+                )
             seen.append(_seen(standing, planned, number, trial, folder))
         except GaitdiscError as error:
+            where = participant.trial_name(planned).removeprefix(participant.id).strip()
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
 

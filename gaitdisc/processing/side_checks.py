@@ -67,7 +67,7 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
             f"{trial.name} has no toes or no forces",
             "Name the markers.",
         )
-    return foot_paths(markers, {"r": (heels["r"], toes[0]), "l": (heels["l"], toes[1])}), platforms(trial), pelvis
+    return foot_paths(markers, heels, dict(zip("rl", toes, strict=True))), platforms(trial), pelvis
 
 
 def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:

@@ -18,7 +18,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Span, runs
 from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.butterworth import lowpassed
@@ -95,7 +95,7 @@ class PlateLoadings:
 
     belts: frozenset[str] = frozenset()  # sides that have a force of their own, as on a split belt
     # from when to when a plate was loaded, whole in the recording [s]; empty where there are belts
-    spans: tuple[tuple[float, float], ...] = ()
+    spans: tuple[Span, ...] = ()
 
 
 def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
@@ -109,13 +109,22 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
         known = force[np.isfinite(force)]
         upward = -force if len(known) and -known.min() > known.max() else force
         found = loaded(upward, forces.rate_hz, rise_n)
-        spans += [(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]
+        spans += [Span(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]
     return PlateLoadings(belts, tuple(spans))
 
 
 def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
-    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance."""
-    return [replace(one, kinetic=one.side in plates.belts or _alone(one, plates.spans)) for one in cycles]
+    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance.
+
+    One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then.
+    """
+    found = []
+    for one in cycles:
+        begun = [span for span in plates.spans if abs(span.start - one.start) <= EDGE_S]
+        alone = len(begun) == 1 and abs(begun[0].end - one.foot_off) <= EDGE_S
+        stance = alone and begun[0].seconds <= LONGEST_STANCE * one.duration_s
+        found.append(replace(one, kinetic=one.side in plates.belts or stance))
+    return found
 
 
 def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
@@ -129,11 +138,14 @@ def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cy
     return [replace(one, kinetic=stance(one)) for one in cycles]
 
 
-def without_doubted(cycles: list[Cycle], spans: Sequence[tuple[float, float]]) -> list[Cycle]:
+def without_doubted(cycles: list[Cycle], spans: Sequence[Span]) -> list[Cycle]:
     """Same cycles, not kinetic where more than half of the stance lies in a step whose force is doubted."""
-    inside = [max([0.0, *(min(end, c.foot_off) - max(start, c.start) for start, end in spans)]) for c in cycles]
-    halves = [0.5 * (one.foot_off - one.start) for one in cycles]
-    return [replace(c, kinetic=c.kinetic and not s > h) for c, s, h in zip(cycles, inside, halves, strict=True)]
+    found = []
+    for one in cycles:
+        stance = Span(one.start, one.foot_off)
+        inside = max([0.0, *(span.shared(stance).seconds for span in spans)])
+        found.append(replace(one, kinetic=one.kinetic and not inside > 0.5 * stance.seconds))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,15 +218,6 @@ def _first(times: tuple[tuple[float, str], ...], start: float, end: float) -> tu
 
 def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
     return vector - np.dot(vector, up) * up
-
-
-def _alone(one: Cycle, spans: Sequence[tuple[float, float]]) -> bool:
-    """One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then."""
-    if not np.isfinite(one.foot_off):
-        return False
-    own = [span for span in spans if abs(span[0] - one.start) <= EDGE_S and abs(span[1] - one.foot_off) <= EDGE_S]
-    at_once = [span for span in spans if abs(span[0] - one.start) <= EDGE_S]
-    return len(own) == 1 and len(at_once) == 1 and own[0][1] - own[0][0] <= LONGEST_STANCE * one.duration_s
 
 
 def cycle_channels(

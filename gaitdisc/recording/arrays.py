@@ -5,7 +5,7 @@ from __future__ import annotations
 import copyreg
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,17 +79,41 @@ def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
     return steps.reshape(-1, 2)
 
 
-def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
+class Span(NamedTuple):
+    """A part of a recording, from its first to its last instant [s].
+
+    >>> Span(1.0, 3.0).shared(Span(2.5, 4.0)).seconds
+    0.5
+    """
+
+    start: float
+    end: float
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts; negative where nothing is shared."""
+        return self.end - self.start
+
+    def holds(self, time: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which instants (time,) [s] lie in it, its ends included."""
+        return (time >= self.start) & (time <= self.end)
+
+    def shared(self, other: Span) -> Span:
+        """Return what two spans have in common."""
+        return Span(max(self.start, other.start), min(self.end, other.end))
+
+
+def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[Span, ...]:
     """Spans of the runs of True, from the first sample of each to one step after its last.
 
     time (time,) [s]: even
     mask (time,): any condition on the samples
 
     >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
-    ((1.0, 3.0),)
+    (Span(start=1.0, end=3.0),)
     """
     step = (time[-1] - time[0]) / (len(time) - 1) if len(time) > 1 else 0.0
-    return tuple((round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))
+    return tuple(Span(round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))
 
 
 def autocorrelation_time(values: NDArray[np.float64], forgotten: float = 0.0) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +17,32 @@ from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
+
+class Limits(NamedTuple):
+    """Between which a measure of a person lies."""
+
+    least: float
+    most: float
+    unit: str
+
+    def hold(self, value: float) -> bool:
+        """Whether a value is possible; NaN is not.
+
+        >>> Limits(5.0, 300.0, "kg").hold(60.3)
+        True
+        """
+        return self.least <= value <= self.most
+
+
 LENGTHS_M = {
-    "height_m": (0.4, 2.5),
-    "inter_asis_m": (0.08, 0.45),
-    "marker_diameter_m": (0.002, 0.04),
-    "leg_length_m": (0.2, 1.4),
-    "knee_width_m": (0.03, 0.25),
-    "ankle_width_m": (0.02, 0.15),
+    "height_m": Limits(0.4, 2.5, "m"),
+    "inter_asis_m": Limits(0.08, 0.45, "m"),
+    "marker_diameter_m": Limits(0.002, 0.04, "m"),
+    "leg_length_m": Limits(0.2, 1.4, "m"),
+    "knee_width_m": Limits(0.03, 0.25, "m"),
+    "ankle_width_m": Limits(0.02, 0.15, "m"),
 }
-MASS_KG, AGE_YEARS = (5.0, 300.0), (1, 120)
+MASS_KG, AGE_YEARS = Limits(5.0, 300.0, "kg"), Limits(1, 120, "years")
 LEG_OF_STATURE = 0.530  # greater trochanter over ground, Winter (2009), figure 4.1
 
 
@@ -61,23 +79,23 @@ class BodyMeasures:
 
     def __post_init__(self) -> None:
         """Refuse what no person measures, once."""
-        _check("mass_kg", self.mass_kg, MASS_KG, "kg")
+        _check("mass_kg", self.mass_kg, MASS_KG)
         for name, limits in LENGTHS_M.items():
             value = getattr(self, name)
             if isinstance(value, Mapping):
                 for side, length in value.items():
-                    _check(f"{name} of side {side!r}", length, limits, "m")
+                    _check(f"{name} of side {side!r}", length, limits)
                 object.__setattr__(self, name, frozen(value))
             else:
-                _check(name, value, limits, "m")
+                _check(name, value, limits)
 
 
-def _check(name: str, value: float | None, limits: tuple[float, float], unit: str) -> None:
-    if value is not None and not limits[0] <= value <= limits[1]:
+def _check(name: str, value: float | None, limits: Limits) -> None:
+    if value is not None and not limits.hold(value):
         raise UnitError(
-            f"a person's {name} must be between {limits[0]:g} and {limits[1]:g} {unit}",
-            f"found {value:g} {unit}",
-            f"Give it in {unit}.",
+            f"a person's {name} must be between {limits.least:g} and {limits.most:g} {limits.unit}",
+            f"found {value:g} {limits.unit}",
+            f"Give it in {limits.unit}.",
         )
 
 

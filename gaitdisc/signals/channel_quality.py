@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Span, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
@@ -60,9 +60,18 @@ def channel_findings(recording: Recording) -> list[Finding]:
             findings.append(Finding("note", "flat", recording.source.file, what, spoils, channel.name))
             continue
         rests = channel.quantity in REST_QUANTITIES
-        for kind, marks in (("clipped", clipped(x, rests)), ("jump", np.zeros(len(x), bool) if rests else jumping(x))):
+        stops = clipped(x, rests)
+        values = " and ".join(f"{value:.4g}" for value in np.unique(x[stops]))
+        jumps = np.zeros(len(x), bool) if rests else jumping(x)
+        for kind, marks, happens, spoils in (
+            ("clipped", stops, f"stops at {values} {channel.unit}", "the peaks, which are lost"),
+            ("jump", jumps, "jumps from one sample to the next", "velocity and acceleration there"),
+        ):
             if marks.any():
-                findings.append(_finding(recording, column, kind, marks))
+                seconds = marks.sum() / recording.rate_hz
+                what = f"{happens}, in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
+                file, spans = recording.source.file, spans_s(recording.time, marks)
+                findings.append(Finding("warning", kind, file, what, spoils, channel.name, spans=spans))
     return findings
 
 
@@ -104,20 +113,6 @@ def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
     for at in np.flatnonzero(bend > JUMP_TIMES * np.percentile(known, 95)):
         marks[max(0, at) : at + 3] = True
     return marks
-
-
-def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.bool_]) -> Finding:
-    channel, x = recording.channels[column], recording.values[:, column]
-    seconds = marks.sum() / recording.rate_hz
-    stops = " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))
-    words = {
-        "clipped": (f"stops at {stops} {channel.unit}", "the peaks, which are lost"),
-        "jump": ("jumps from one sample to the next", "velocity and acceleration there"),
-    }
-    what, spoils = words[kind]
-    where = f"in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
-    spans = spans_s(recording.time, marks)
-    return Finding("warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans=spans)
 
 
 def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:
@@ -173,7 +168,7 @@ def drift_findings(forces: Recording) -> list[Finding]:
         if drifts:
             what += f" and drifts by {drift:+.1f} N in {time[-1] - time[0]:.0f} s ({60 * slope:+.1f} N per minute)"
         spoils = f"contacts near the threshold of {RISE_N:g} N, and moments; subtract the baseline"
-        spans = ((float(time[0]), float(time[-1])),)
+        spans = (Span(float(time[0]), float(time[-1])),)
         findings.append(Finding("warning", "force drift", forces.source.file, what, spoils, channel.name, spans=spans))
     return findings
 

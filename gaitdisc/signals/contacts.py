@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import read_only, runs
+from gaitdisc.recording.arrays import Span, read_only, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
@@ -175,7 +175,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
             if not len(other) or end < other.time[0] or start > other.time[-1]:
                 continue
             if np.sum((other.time > start) & (other.time < end)) != 1:
-                wrong.append((float(start), float(end)))
+                wrong.append(Span(float(start), float(end)))
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
             what = (
@@ -342,14 +342,11 @@ def _contacts(
     upward = -force if downwards else force
     rise = rise_of(body_weight_n)
     spans = loaded(upward, forces.rate_hz, rise)
-    on = np.array([_crossing(time, upward, start, rise) for start, _ in spans if start > 0])
-    off = np.array([time[end - 1] for _, end in spans if end < len(time)])
+    on = []
+    for start in spans[spans[:, 0] > 0, 0]:
+        before = upward[start - 1] if np.isfinite(upward[start - 1]) else 0.0
+        share = np.clip((rise - before) / (upward[start] - before), 0.0, 1.0)  # where the force passes `rise`
+        on.append(time[start - 1] + share * (time[start] - time[start - 1]))
+    off = time[spans[spans[:, 1] < len(time), 1] - 1]
     sign = ", negative when loaded: read as the force on the plate" if downwards else ""
-    return on, off, f"{name} above {rise:.0f} N{sign}"
-
-
-def _crossing(time: NDArray[np.float64], force: NDArray[np.float64], sample: int, rise_n: float) -> float:
-    """Time at which the force passes `rise_n` on its way to `sample`, the first above it."""
-    before = force[sample - 1] if np.isfinite(force[sample - 1]) else 0.0
-    share = (rise_n - before) / (force[sample] - before)
-    return float(time[sample - 1] + np.clip(share, 0.0, 1.0) * (time[sample] - time[sample - 1]))
+    return np.array(on, float), off, f"{name} above {rise:.0f} N{sign}"

@@ -19,19 +19,6 @@ SUPPORT_S = 0.2  # what a spline sees on either side of a gap
 FEWEST_TEMPLATE_STRIDES = 5
 
 
-def gap_spans(recording: Recording, name: str) -> tuple[tuple[float, float], ...]:
-    """Spans without a value in one channel.
-
-    returns tuple of (float, float) [s]
-
-    >>> from gaitdisc.channel import Channel
-    >>> x = np.array([[0.0], [np.nan], [np.nan], [1.0]])
-    >>> gap_spans(Recording(np.arange(4) / 100, x, (Channel("knee_angle_r", "angle", "deg", "r"),)), "knee_angle_r")
-    ((0.01, 0.03),)
-    """
-    return spans_s(recording.time, ~np.isfinite(recording[name]))
-
-
 def filled(
     recording: Recording,
     strides: Strides | None = None,
@@ -56,7 +43,11 @@ def filled(
         missing = ~np.isfinite(values[:, column])
         if not missing.any() or missing.all():
             continue
-        template = None if strides is None else _template(recording, strides, column)
+        template = None
+        if strides is not None:
+            curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
+            whole = curves[np.isfinite(curves).all(axis=1)]
+            template = whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
         for start, end in runs(missing):
             length_s = (end - start) / rate
             put = None
@@ -84,11 +75,10 @@ def gap_findings(recording: Recording) -> list[Finding]:
     for channel in recording.channels:
         if channel.quantity == "marker" and not channel.name.endswith(".x"):
             continue
-        spans = gap_spans(recording, channel.name)
+        spans = spans_s(recording.time, ~np.isfinite(recording[channel.name]))
         if not spans:
             continue
-        longest = max(end - start for start, end in spans)
-        missing = sum(end - start for start, end in spans)
+        longest, missing = max(span.seconds for span in spans), sum(span.seconds for span in spans)
         fits = longest <= MAX_SPLINE_S + 1e-9  # at an end too: a recording that begins so much later lacks nothing
         gaps = counted(len(spans), "gap")
         what = f"{gaps}, {missing:.3f} s of {recording.duration_s:.2f} s, the longest {longest:.3f} s"
@@ -107,12 +97,6 @@ def _spline(x: NDArray[np.float64], start: int, end: int, support: int) -> NDArr
     if np.sum(around < start) < 2 or np.sum(around >= end) < 2:
         return None
     return CubicSpline(around, x[around])(np.arange(start, end))
-
-
-def _template(recording: Recording, strides: Strides, column: int) -> NDArray[np.float64] | None:
-    curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
-    whole = curves[np.isfinite(curves).all(axis=1)]
-    return whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
 
 
 def _on_template(

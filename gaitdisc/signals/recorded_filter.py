@@ -89,7 +89,10 @@ def recorded_filter(
     likelihood, cutoff = found[0] * spectrum.windows, found[1]
     gained = likelihood - fits[0].best(())[0] * spectrum.windows
     steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
-    if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff) or steeper:
+    # the power above the cut-off goes on falling, instead of ending on the noise of a sensor
+    near = above.power[(above.frequency > cutoff) & (above.frequency < 1.5 * cutoff)]
+    falls_far = bool(near.size) and np.median(near) > FALLEN * np.median(above.power[-12:])
+    if gained < CLEARLY or cutoff > HIGHEST or not falls_far or steeper:
         return None
     return RecordedFilter(cutoff * rate_hz, gained, likelihood, found[2])
 
@@ -125,12 +128,6 @@ def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) 
     step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
     length = 2 * (len(spectrum.frequency) - 1)
     return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])
-
-
-def _falls_far(spectrum: Spectrum, cutoff: float) -> bool:
-    """Whether the power above the cut-off goes on falling, instead of ending on the noise of a sensor."""
-    near = spectrum.power[(spectrum.frequency > cutoff) & (spectrum.frequency < 1.5 * cutoff)]
-    return bool(near.size) and float(np.median(near)) > FALLEN * float(np.median(spectrum.power[-12:]))
 
 
 class _Fit:

@@ -16,7 +16,7 @@ from scipy.signal import lfilter
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, runs
+from gaitdisc.recording.arrays import Span, robust_sd, runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8
@@ -90,7 +90,7 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
             f"{distance[worst, column]:.3g} {channel.unit} from the median curve, {times:.1f} times the usual distance"
         )
         spoils = "means and models that include these strides"
-        spans = tuple((float(strides.start[k]), float(strides.end[k])) for k in rows)
+        spans = tuple(Span(float(strides.start[k]), float(strides.end[k])) for k in rows)
         file = recording.source.file
         findings.append(Finding("warning", "outlying stride", file, what, spoils, channel=channel.name, spans=spans))
     return findings
@@ -176,12 +176,14 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     null = _simulated(scores.shape, dependence[0], seed)
     p = (1 + int(np.sum(null >= statistic[0]))) / (1 + len(null))
     after = np.arange(len(scores)) >= split[0]
+    moved = scores[after].mean(axis=0) - scores[~after].mean(axis=0)
+    residual = np.where(after[:, None], scores - scores[after].mean(axis=0), scores - scores[~after].mean(axis=0))
     names = [name for name, moves in zip(recording.names, moving, strict=True) if moves]
     shift = curves[after].mean(axis=0) - curves[~after].mean(axis=0)
     return LateChange(
         float(start[split[0]]),
         float(p),
-        _size(scores, after),
+        float(np.sqrt(np.sum((moved / residual.std(axis=0)) ** 2))),
         dict(zip(names, np.sqrt(np.mean(shift**2, axis=0)).tolist(), strict=True)),
         float(dependence.max()),
     )
@@ -205,7 +207,7 @@ def late_change_findings(recording: Recording, strides: Strides) -> list[Finding
     largest = sorted(change.shifts, key=lambda name: -change.shifts[name])[:3]
     units = {channel.name: channel.unit for channel in recording.channels}
     moved = ", ".join(f"{name} by {change.shifts[name]:.2g} {units[name]}" for name in largest)
-    kind, spans = "late change" if change.size_sd >= CHANGE_SD else "drift", ((change.time, float(strides.end[-1])),)
+    kind, spans = "late change" if change.size_sd >= CHANGE_SD else "drift", (Span(change.time, strides.end[-1]),)
     what = (
         f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} stride-to-stride "
         f"SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"
@@ -266,9 +268,3 @@ def _simulated(shape: tuple[int, ...], dependence: NDArray[np.float64], seed: in
         axis=2,
     )
     return _largest(series)[0]
-
-
-def _size(scores: NDArray[np.float64], after: NDArray[np.bool_]) -> float:
-    shift = scores[after].mean(axis=0) - scores[~after].mean(axis=0)
-    residual = np.where(after[:, None], scores - scores[after].mean(axis=0), scores - scores[~after].mean(axis=0))
-    return float(np.sqrt(np.sum((shift / residual.std(axis=0)) ** 2)))
