@@ -209,7 +209,15 @@ def sorted_trial(
 ) -> Trial:
     """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
     channels = [column.channel for column in columns]
-    _check_names(channels, source.file)
+    names = [channel.name for channel in channels]
+    doubled = next((name for name in names if names.count(name) > 1), None)
+    if doubled:
+        first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
+        raise ChannelError(
+            "each channel must have its own column",
+            f"{source.file} has {doubled!r} in columns {first} and {second}",
+            "Remove one of them, or name them differently in the study's [channels].",
+        )
     _refuse_missing_force(time, values, channels, source.file)
     # too slow to show a step: mostly ms under the name of seconds
     measured = next((one.name for one in channels if one.quantity not in ("signal", "translation")), None)
@@ -230,18 +238,6 @@ def sorted_trial(
     }
     name = source.file.rpartition(".")[0] or source.file
     return Trial(name, streams, findings=tuple(findings))
-
-
-def _check_names(channels: Sequence[Channel], file: str) -> None:
-    names = [channel.name for channel in channels]
-    doubled = next((name for name in names if names.count(name) > 1), None)
-    if doubled:
-        first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
-        raise ChannelError(
-            "each channel must have its own column",
-            f"{file} has {doubled!r} in columns {first} and {second}",
-            "Remove one of them, or name them differently in the study's [channels].",
-        )
 
 
 def _refuse_missing_force(

@@ -72,23 +72,19 @@ class ForcePlate:
             values = values @ self.calibration.T
         columns = [convert(values[:, i], unit, inner_unit(unit)) for i, unit in enumerate(units)]
         values = np.asarray(np.column_stack(columns), float)
-        if self.kind == 3:
-            return _of_pillars(values, self.origin)
+        if self.kind == 3:  # Kistler: pillar 1 stands at (+a, +b), 2 at (-a, +b), as the corners do
+            x12, x34, y14, y23, z1, z2, z3, z4 = values.T
+            a, b = np.abs(self.origin[:2])
+            force = np.column_stack([x12 + x34, y14 + y23, z1 + z2 + z3 + z4])
+            turning = b * (x34 - x12) + a * (y14 - y23)
+            moment = np.column_stack([b * (z1 + z2 - z3 - z4), a * (z2 + z3 - z1 - z4), turning])
+            return force, moment + np.cross(force, [0, 0, self.origin[2]])
         force = values[:, :3]
         if self.kind == 1:
             point = np.column_stack([values[:, 3:5], np.zeros(len(values))])
             free = np.column_stack([np.zeros((len(values), 2)), values[:, 5]])
             return force, np.cross(point, force) + free
         return force, values[:, 3:6] + np.cross(force, self.origin)
-
-
-def _of_pillars(values: NDArray[np.float64], origin: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
-    """Type 3, Kistler: x12, x34, y14, y23, z1 to z4; pillar 1 stands at (+a, +b), 2 at (-a, +b), as the corners do."""
-    x12, x34, y14, y23, z1, z2, z3, z4 = values.T
-    a, b = np.abs(origin[:2])
-    force = np.column_stack([x12 + x34, y14 + y23, z1 + z2 + z3 + z4])
-    moment = np.column_stack([b * (z1 + z2 - z3 - z4), a * (z2 + z3 - z1 - z4), b * (x34 - x12) + a * (y14 - y23)])
-    return force, moment + np.cross(force, [0, 0, origin[2]])
 
 
 def centre_of_pressure(force: NDArray[np.float64], moment: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -207,7 +203,13 @@ def plate_streams(
         pressure = centre_of_pressure(force, moment)
         axes = plate.axes.T
         parts.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.centre + pressure @ axes]))
-        channels += _channels(plate)
+        forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
+        kinds = (("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m"))
+        channels += [
+            Channel(f"plate_{plate.number}_{letter}{axis}", quantity, unit)
+            for letter, quantities, unit in kinds
+            for axis, quantity in zip(AXES, quantities, strict=True)
+        ]
     turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
     if turned:
         what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; its sign is reversed"
@@ -328,13 +330,3 @@ def _beside(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ..
     loaded = np.isfinite(pressure[:, 0])
     outside = np.any(np.abs(pressure[loaded, :2]) > half + BESIDE_M, axis=1)
     return float(outside.mean()) if outside.size else 0.0
-
-
-def _channels(plate: ForcePlate) -> list[Channel]:
-    forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
-    kinds = [("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m")]
-    return [
-        Channel(f"plate_{plate.number}_{letter}{axis}", quantity, unit)
-        for letter, quantities, unit in kinds
-        for axis, quantity in zip(AXES, quantities, strict=True)
-    ]

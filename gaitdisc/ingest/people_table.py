@@ -105,7 +105,11 @@ def person_key(word: str) -> str:
 def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measured]:
     rows = list(csv.reader(lines, delimiter=max("\t;,", key=lines[0].count)))
     labels = [unquoted(label.strip()) for label in rows[0]]
-    folded = [_folded(label) for label in labels]
+    folded = []
+    for label in labels:
+        name, unit = split_unit(re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label))
+        known = re.sub(r"[^a-z0-9]", "", name.lower())
+        folded.append(known if unit is None or unit in ("kg", *_METRES, "m/f", "f/m") else f"{known}_in_{unit}")
     at = {key: next((folded.index(name) for name in names.split() if name in folded), None)
           for key, names in _LABELS.items()}  # fmt: skip
     if at["id"] is None or all(place is None for key, place in at.items() if key != "id"):
@@ -134,12 +138,6 @@ def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) ->
         if len(said) > 1:
             notes.append(f"{file}: {name} of {word!r} differs between rows ({said[0]}, {said[1]}); not used")
     return Measured(**values)  # type: ignore[arg-type]
-
-
-def _folded(label: str) -> str:
-    name, unit = split_unit(re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label))
-    known = re.sub(r"[^a-z0-9]", "", name.lower())
-    return known if unit is None or unit in ("kg", *_METRES, "m/f", "f/m") else f"{known}_in_{unit}"
 
 
 def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) -> Measured:

@@ -102,24 +102,19 @@ def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
             with packed.open(f"{name}.npy") as member:
                 held = np.lib.format.read_array(member, allow_pickle=False)
     else:
-        from scipy.io import loadmat
+        from scipy.io import loadmat, whosmat
 
         if not name:
-            return {"claims": _claims_of_mat(path), "shapes": []}, ()
+            variables = whosmat(path)
+            sizes = [*_element_sizes(path), *[0] * len(variables)]  # a file of v4 has no elements
+            claims = {
+                name: max(size, math.prod((8, *map(int, shape))))
+                for (name, shape, _), size in zip(variables, sizes, strict=False)
+            }
+            return {"claims": claims, "shapes": []}, ()
         held = loadmat(path, variable_names=[name])[name]
     arrays: list[NDArray[Any]] = []
     return {"tree": _tree(held, arrays), "shapes": [values.shape for values in arrays]}, arrays
-
-
-def _claims_of_mat(path: str) -> dict[str, int]:
-    from scipy.io import whosmat
-
-    variables = whosmat(path)
-    sizes = [*_element_sizes(path), *[0] * len(variables)]  # a file of v4 has no elements
-    return {
-        name: max(size, math.prod((8, *map(int, shape))))
-        for (name, shape, _), size in zip(variables, sizes, strict=False)
-    }
 
 
 def _element_sizes(path: str) -> Iterator[int]:

@@ -137,7 +137,13 @@ def leg_inertia(
     if table == "deleva1996":
         for found, sex in zip(bodies, sexes, strict=True):
             found["foot"] = _foot_from_heel(inertia_table(table, sex)["foot"], person, sex, heel, toe)
-    return {segment: _mean([found[segment] for found in bodies]) for segment in LEG}
+    means = {}
+    for segment in LEG:
+        each = [found[segment] for found in bodies]
+        mass = float(np.mean([body.mass_kg for body in each]))
+        centre = np.mean([body.centre for body in each], axis=0)
+        means[segment] = RigidBody(mass, centre, np.mean([body.tensor for body in each], axis=0))
+    return means
 
 
 def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
@@ -195,11 +201,3 @@ def _foot_from_heel(
     across /= np.linalg.norm(across)
     axes = np.column_stack([ahead, np.cross(across, ahead), across])
     return RigidBody(plain.mass_kg, heel + axes @ plain.centre, axes @ plain.tensor @ axes.T)
-
-
-def _mean(bodies: list[RigidBody]) -> RigidBody:
-    return RigidBody(
-        float(np.mean([body.mass_kg for body in bodies])),
-        np.mean([body.centre for body in bodies], axis=0),
-        np.mean([body.tensor for body in bodies], axis=0),
-    )

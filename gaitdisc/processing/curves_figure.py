@@ -95,27 +95,23 @@ def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
 def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("channel", sort=False))
     drawn, cells = panels_for(len(groups), 4, 1.15, Room(left=0.6, across=0.64, down=0.46))
-    ranges = _ranges(numbers)
+    spread, joint = numbers["sd"].fillna(0.0), numbers["channel"].map(sideless)
+    low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
+    room = 0.06 * (high - low).clip(lower=1e-9)
     for axes, (channel, curves) in zip(cells, groups, strict=True):
         draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
         axes.set_title(label(str(channel)).replace("EMG ", ""), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
         label_curve(axes, str(channel), str(curves["unit"].iloc[0]))
-        axes.set_ylim(*ranges[sideless(str(channel))])
+        key = sideless(str(channel))
+        axes.set_ylim(*((low[key] - room[key], high[key] + room[key]) if np.isfinite(low[key]) else (0.0, 1.0)))
     for axes in cells[-4:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, walks_key(run))
-    return Figure(name, _caption(run, participant, numbers), _alt(run, participant, numbers), numbers, drawn)
-
-
-def _ranges(numbers: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    spread = numbers["sd"].fillna(0.0)
-    joint = numbers["channel"].map(sideless)
-    low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
-    room = 0.06 * (high - low).clip(lower=1e-9)
-    return {
-        str(key): (float(low[key] - room[key]), float(high[key] + room[key])) if np.isfinite(low[key]) else (0.0, 1.0)
-        for key in low.index
-    }
+    alt = (
+        f"Mean walking curves of {participant}, {counted(len(groups), 'channel')}, {run.nominal} and {run.exo}. With "
+        f"the device: {range_words(numbers[numbers['walk'] == 'exo'])}."
+    )
+    return Figure(name, _caption(run, participant, numbers), alt, numbers, drawn)
 
 
 def walks_key(run: StudyRun) -> list[Line2D]:
@@ -141,13 +137,6 @@ def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
         f"{', '.join(counts)}; entire walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
         "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
         "direction; left and right of one joint share a scale."
-    )
-
-
-def _alt(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
-    return (
-        f"Mean walking curves of {participant}, {counted(numbers['channel'].nunique(), 'channel')}, {run.nominal} "
-        f"and {run.exo}. With the device: {range_words(numbers[numbers['walk'] == 'exo'])}."
     )
 
 

@@ -84,7 +84,17 @@ class Inspection:
         for finding in self.findings:
             if notes or finding.severity != "note" or finding.kind in SAID:
                 kinds.setdefault((finding.severity, finding.kind), []).append(finding)
-        return [_line_of(severity, kind, same) for (severity, kind), same in kinds.items()]
+        lines = []
+        for (severity, kind), same in kinds.items():
+            first, shown = same[0], same[0].line()
+            if len(same) > 1:
+                channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
+                where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
+                spoils = f"; affects {first.spoils}" if first.spoils else ""
+                said = f"{first.channel}: {first.what}" if first.channel else first.what
+                shown = f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
+            lines.append(shown)
+        return lines
 
 
 def inspected_study(study: Study) -> Iterator[Inspection]:
@@ -230,17 +240,6 @@ def _seen(
 ) -> Inspection:
     counts = {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
     return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sorted(findings), refusal=refusal)
-
-
-def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
-    first = same[0]
-    if len(same) == 1:
-        return first.line()
-    channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
-    where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
-    spoils = f"; affects {first.spoils}" if first.spoils else ""
-    said = f"{first.channel}: {first.what}" if first.channel else first.what
-    return f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
 
 
 def _sorted(findings: Sequence[Finding]) -> tuple[Finding, ...]:

@@ -87,7 +87,11 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
         with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
             for one in (own for own in sets if own.session == session):
                 seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, Path(folder), prints)
-            later = _later([trial for trials in seen.values() for trial in trials])
+            times: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
+            for trial in (trial for trials in seen.values() for trial in trials):
+                for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
+                    times.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
+            later = {of: np.concatenate(parts) for of, parts in times.items()}
             found += [
                 _pooled(standing, one, seen[one.condition], lost[one.condition], later)
                 for one in sets
@@ -180,14 +184,6 @@ def _known(trial: Trial) -> Trial:
         elif key == "forces":
             streams[key] = recording
     return replace(trial, streams=streams)
-
-
-def _later(seen: Sequence[_Seen]) -> Later:
-    found: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
-    for trial in seen:
-        for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
-            found.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
-    return {of: np.concatenate(parts) for of, parts in found.items()}
 
 
 def _offset_s(later: Later, kind: str, detector: str) -> float | None:

@@ -19,6 +19,7 @@ from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
 from gaitdisc.processing.two_sources import KIND as CONTRADICTED
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
+from gaitdisc.recording.arrays import Span
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
@@ -156,8 +157,8 @@ def stride_findings(state: Recording, strides: Strides) -> list[Finding]:
     findings = outlier_findings(angles, strides) + late_change_findings(angles, strides)
     for dropped in strides.dropped:
         what = f"stride of side {strides.side}: {dropped.reason}"
-        span = ((dropped.start, dropped.end),)
-        findings.append(Finding("note", "stride dropped", state.source.file, what, "this stride", spans=span))
+        spans = (Span(dropped.start, dropped.end),)
+        findings.append(Finding("note", "stride dropped", state.source.file, what, "this stride", spans=spans))
     return findings
 
 

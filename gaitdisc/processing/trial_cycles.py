@@ -285,7 +285,10 @@ def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) 
     """Recording as it is shown, and which filter it had; what a file computed has none here."""
     low = f"low-pass {filters.kinematics_hz:g} Hz"
     if key == "emg":
-        return _envelopes(recording, filters)
+        raw, slow = is_raw(recording), f"low-pass {filters.emg_lowpass_hz:g} Hz"
+        how = f"EMG high-pass {filters.emg_highpass_hz:g} Hz, rectified, {slow}" if raw else f"EMG {slow}"
+        live = live_channels(recording) if raw else recording.names
+        return (envelope_of(recording.selected(live), filters, raw), how) if live else (None, "")
     if key == "forces":
         return lowpassed(recording, FORCE_HZ, filters.order, filters.gap_s), f"forces low-pass {FORCE_HZ:g} Hz"
     if key == "moments" and computed:
@@ -296,13 +299,6 @@ def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) 
     if not computed:
         return whole, "angles as in the file"
     return lowpassed(whole, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
-
-
-def _envelopes(emg: Recording, filters: Filters) -> tuple[Recording | None, str]:
-    raw, low = is_raw(emg), f"low-pass {filters.emg_lowpass_hz:g} Hz"
-    how = f"EMG high-pass {filters.emg_highpass_hz:g} Hz, rectified, {low}" if raw else f"EMG {low}"
-    live = live_channels(emg) if raw else emg.names
-    return (envelope_of(emg.selected(live), filters, raw), how) if live else (None, "")
 
 
 def weighed_forces(trial: Trial) -> Recording | None:
