@@ -5,9 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, named_people, without_people
@@ -15,6 +12,7 @@ from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import Streams
 from gaitdisc.ingest.columns import named_channel, split_unit, stream_of
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
 # What devices put before the name that the laboratory typed: `Voltage.L Rect`, `EMG: R TA`.
@@ -89,7 +87,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
 
 
 def analog_streams(
-    rows: NDArray[np.float64], parameters: C3DParameters, plate_channels: set[int], labels: LabelMap
+    rows: Values, parameters: C3DParameters, plate_channels: set[int], labels: LabelMap
 ) -> tuple[Streams, list[Finding]]:
     """Streams `emg`, `signals`, mapped `forces` of rows (sample, channel) in the file's units, without plates."""
     analog = analog_labels(parameters, rows.shape[1])

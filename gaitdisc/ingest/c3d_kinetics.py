@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.stated_units import LEG_MOMENT
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import LENGTHS_M, MASS_KG, BodyMeasures
 
-Kinetics = tuple[NDArray[np.float64], tuple[Channel, ...]]
+Kinetics = tuple[Values, tuple[Channel, ...]]
 
 LOADED_N = 100.0  # a plate that carries a foot
 LOADED_PER_KG = 2.0  # a reaction force that is no noise, in N/kg; in N it is that all the more
@@ -60,7 +60,7 @@ def body_mass(parameters: C3DParameters) -> float | None:
 
 
 def house_kinetics(
-    kinetics: Kinetics, plates_n: NDArray[np.float64], mass_kg: float | None, file: str
+    kinetics: Kinetics, plates_n: Values, mass_kg: float | None, file: str
 ) -> tuple[Kinetics, list[Finding]]:
     """Kinetics of a model in their true unit and with the package's sign: internal, positive as the angle is.
 
@@ -81,7 +81,7 @@ def house_kinetics(
 
 
 def _in_true_unit(
-    kinetics: Kinetics, plates_n: NDArray[np.float64], mass_kg: float | None, file: str
+    kinetics: Kinetics, plates_n: Values, mass_kg: float | None, file: str
 ) -> tuple[Kinetics, list[Finding]]:
     values, channels = kinetics
     reaction = _by_plates(values, channels, plates_n) or _by_size(values, channels, _REACTION, "force")
@@ -113,9 +113,7 @@ def _in_true_unit(
     return (values, channels), findings
 
 
-def _by_plates(
-    values: NDArray[np.float64], channels: tuple[Channel, ...], plates_n: NDArray[np.float64]
-) -> Evidence | None:
+def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) -> Evidence | None:
     """Ratio of a plate's force to a foot's reaction force, where it is the same over a step."""
     for side in "LR":
         own = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
@@ -138,9 +136,7 @@ def _by_plates(
     return None
 
 
-def _by_size(
-    values: NDArray[np.float64], channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str
-) -> Evidence:
+def _by_size(values: Values, channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str) -> Evidence:
     own = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
     sizes = np.abs(values[:, own])
     sizes = sizes[np.isfinite(sizes)]
@@ -171,7 +167,7 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
     return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]
 
 
-def _push_off(values: NDArray[np.float64], channels: tuple[Channel, ...]) -> tuple[int, str]:
+def _push_off(values: Values, channels: tuple[Channel, ...]) -> tuple[int, str]:
     """+1 where the ankle's moment is positive at push-off, -1 where it is negative, 0 where none is seen."""
     ankles = [i for i, c in enumerate(channels) if _ANKLE.fullmatch(c.name) and c.unit in PUSH_OFF]
     moments = values[:, ankles]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import MissingFileError, ReadError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import check_regular
 
 BLOCK = 512  # bytes; a C3D file counts in blocks from 1
@@ -170,7 +171,7 @@ class C3DParameters:
         texts = self.texts(group, name)
         return texts[0].strip() if texts else ""
 
-    def numbers(self, group: str, name: str) -> NDArray[np.float64]:
+    def numbers(self, group: str, name: str) -> Values:
         """Numbers of a parameter in the file's dimensions, empty where there is none."""
         value = self.values.get((group, name))
         if value is None or isinstance(value, tuple):

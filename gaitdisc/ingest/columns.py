@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, folded_label, hint_nearest, side_of, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.recording import Finding, Recording, Source, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, known_units, offset_words, parsed_unit
 
 # quantity -> units it may have inside; the first one is usual, the others are normalised by mass or by a maximum
@@ -57,7 +57,7 @@ class Column:
     unit: str  # unit of the numbers in the file
     guessed: str = ""  # what had to be guessed, in words; empty where nothing was
 
-    def converted(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def converted(self, values: Values) -> Values:
         """Numbers (time,) as read, in the unit used inside."""
         base, rate = (self.unit.partition("/s")[0], True) if "/s" in self.unit else (self.unit, False)
         inside = self.channel.unit.partition("/s")[0] if rate else self.channel.unit
@@ -201,11 +201,7 @@ def stream_of(channel: Channel) -> str:
 
 
 def sorted_trial(
-    source: Source,
-    time: NDArray[np.float64],
-    values: NDArray[np.float64],
-    columns: Sequence[Column],
-    findings: Sequence[Finding] = (),
+    source: Source, time: Values, values: Values, columns: Sequence[Column], findings: Sequence[Finding] = ()
 ) -> Trial:
     """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
     channels = [column.channel for column in columns]
@@ -240,9 +236,7 @@ def sorted_trial(
     return Trial(name, streams, findings=tuple(findings))
 
 
-def _refuse_missing_force(
-    time: NDArray[np.float64], values: NDArray[np.float64], channels: Sequence[Channel], file: str
-) -> None:
+def _refuse_missing_force(time: Values, values: Values, channels: Sequence[Channel], file: str) -> None:
     for i, channel in enumerate(channels):
         missing = np.isnan(values[:, i])
         if channel.quantity in ("force", "vertical_force") and missing.any():

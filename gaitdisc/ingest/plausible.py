@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import runs, spans_s
+from gaitdisc.recording.arrays import Values, runs, spans_s
 
 JOINTS = ("angle", "translation")
 CHANCE = 1e-6  # of a stretch that repeats one value, with the channel's own share of repeated samples; no false one in
@@ -129,7 +129,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
     return kept, findings
 
 
-def _frozen(x: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _frozen(x: Values) -> NDArray[np.bool_]:
     """Samples that repeat a value beyond chance; x (time, axis)."""
     marks = np.zeros(len(x), bool)
     move = np.abs(np.diff(x, axis=0)).max(axis=1)

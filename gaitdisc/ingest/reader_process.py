@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gaitdisc.recording.arrays import Values
 
 WORKER = Path(__file__).with_name("reader_worker.py")
 FILES_A_PROCESS = 100  # ezc3d leaks: a long loop in one process dies (pyomeca/ezc3d#314)
@@ -47,7 +48,7 @@ class ReadRequest:
         return cls(path, reader, wanted, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
 
 
-Arrays = list[NDArray[np.float64]]
+Arrays = list[Values]
 Answer = tuple[dict[str, Any], Arrays]
 
 
@@ -138,7 +139,7 @@ def _ended(process: subprocess.Popen[bytes]) -> int:
     return code
 
 
-def _received(stream: IO[bytes], shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _received(stream: IO[bytes], shape: tuple[int, ...]) -> Values:
     values = np.empty(shape)
     if values.size:
         view = memoryview(values.data).cast("B")

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import (
     QUANTITIES,
@@ -38,6 +37,7 @@ from gaitdisc.ingest.columns import (
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.whole_file import write_whole
 
 _YES_NO = {"yes": True, "y": True, "true": True, "1": True, "no": False, "n": False, "false": False, "0": False}
@@ -118,7 +118,7 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
 
 
 def _in_true_unit(
-    columns: list[Column], degrees: bool | None, time: NDArray[np.float64], values: NDArray[np.float64], file: str
+    columns: list[Column], degrees: bool | None, time: Values, values: Values, file: str
 ) -> tuple[list[Column], list[Finding]]:
     """Columns of angles (and of their rates) in the unit that the file really has."""
     turning = [i for i, c in enumerate(columns) if c.unit.startswith("deg") and "[" not in c.label]

@@ -15,6 +15,7 @@ from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS, Pose, RigidFit, fitted_pose
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 
 ROUNDS = 60
 FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
@@ -23,17 +24,17 @@ SETTLED = 1e-9  # rad and m; the step after is smaller by far
 STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
 LONGEST_STEP_RAD = 0.5
 
-Turns = dict[str, NDArray[np.float64]]
+Turns = dict[str, Values]
 CARRIED_STEADY_M = 0.06  # a thigh of Plug-in Gait that lost its wand has less, and may be wrong by 30 deg
 FROM_STRAIGHT_DEG = 30.0  # a shank that turns by 300 deg/s one way and back again over 0.2 s
-PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+PlacedMarkers = dict[str, tuple[Values, Values]]
 
 
 def held_together(
     first: Mapping[str, Pose],
     placed: PlacedMarkers,
     points: Mapping[str, Points],
-    plane: NDArray[np.float64] | None = None,
+    plane: Values | None = None,
     steady_m: float = STEADY_M,
 ) -> dict[str, Pose]:
     """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
@@ -88,7 +89,7 @@ def _chain(segment: str) -> tuple[str, ...]:
     return ("pelvis", *(f"{one}_{side}" for one in PARTS[1 : PARTS.index(part) + 1]))
 
 
-def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
+def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, Values]:
     """Rotations and the place of the pelvis, where they are unknown between those before and after."""
     turns: Turns = {}
     origin = np.empty(0)
@@ -106,7 +107,7 @@ def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
     return turns, origin
 
 
-def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Points]) -> Turns:
+def _origins(origin: Values, turns: Turns, points: Mapping[str, Points]) -> Turns:
     """Places of the proximal joints, from the pelvis down."""
     origins = {"pelvis": np.array(origin)}
     for segment in SEGMENTS[1:]:
@@ -117,9 +118,7 @@ def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Poi
     return origins
 
 
-def _normal_equations(
-    turns: Turns, origins: Turns, placed: PlacedMarkers
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _normal_equations(turns: Turns, origins: Turns, placed: PlacedMarkers) -> tuple[Values, Values]:
     """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
     frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
     gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
@@ -148,14 +147,14 @@ def _columns(segment: str) -> NDArray[np.intp]:
     return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
 
 
-def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
+def _upright(turn: Values, plane: Values) -> Values:
     """The turn about the normal of the plane that is nearest to a turn."""
     inside = np.swapaxes(plane, 1, 2) @ turn
     angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
     return _turn(angle[:, None] * plane[:, :, 2]) @ plane
 
 
-def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float64]:
+def _allowed(frames: int, plane: Values | None) -> Values:
     """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
     width = 3 + 3 * len(SEGMENTS)
     if plane is None:
@@ -167,7 +166,7 @@ def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float
     return columns
 
 
-def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> NDArray[np.float64]:
+def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> Values:
     """Root mean square distance of all markers from their bodies in each frame."""
     squares, count = 0.0, 0
     for segment, (body, seen) in placed.items():
@@ -177,7 +176,7 @@ def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> NDArray[np.
     return np.sqrt(squares / np.maximum(count, 1))
 
 
-def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
+def levers_m(normal: Values, allowed: Values) -> Turns:
     """Error of a marker over that of the turn it makes, by segment (frame,) [m], about the axis of the shortest."""
     some = _among(normal, allowed)
     spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
@@ -189,13 +188,11 @@ def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns
     return levers
 
 
-def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
+def _among(normal: Values, allowed: Values) -> Values:
     return np.swapaxes(allowed, 1, 2) @ normal @ allowed
 
 
-def _solved(
-    normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _solved(normal: Values, gradient: Values, allowed: Values) -> Values:
     """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
     some = _among(normal, allowed)
     right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
@@ -204,7 +201,7 @@ def _solved(
     return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
 
 
-def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turn(vectors: Values) -> Values:
     """Rotations about vectors by their length [rad] (Rodrigues)."""
     angle = np.linalg.norm(vectors, axis=1)
     axis = vectors / np.maximum(angle, 1e-300)[:, None]
@@ -262,22 +259,20 @@ def carried_over(free: Pose, held: Pose) -> Pose:
     return Pose(origin, rotation)
 
 
-def _between(known: NDArray[np.intp], rotations: NDArray[np.float64], where: NDArray[np.intp]) -> NDArray[np.float64]:
+def _between(known: NDArray[np.intp], rotations: Values, where: NDArray[np.intp]) -> Values:
     """Rotations at frames between known ones, on the shortest way from one to the next."""
     if len(known) == 1:
         return np.tile(rotations, (len(where), 1, 1))
     return Slerp(known, Rotation.from_matrix(rotations))(where).as_matrix()
 
 
-def named_places(markers: Recording, calibration: Calibration) -> dict[str, NDArray[np.float64]]:
+def named_places(markers: Recording, calibration: Calibration) -> dict[str, Values]:
     """Places of a trial's markers, each (frame, 3) [m], by the names of the marker set."""
     names = calibration.marker_set.names(marker_labels(markers))
     return dict(zip(names, marker_places(markers, [*names.values()]).swapaxes(0, 1), strict=True))
 
 
-def placed_markers(
-    places: Mapping[str, NDArray[np.float64]], calibration: Calibration, file: str = ""
-) -> PlacedMarkers:
+def placed_markers(places: Mapping[str, Values], calibration: Calibration, file: str = "") -> PlacedMarkers:
     """By segment, markers that both trials have: own frame (marker, 3), laboratory (frame, marker, 3) [m]."""
     placed = {}
     for segment, body in calibration.body.items():
@@ -323,7 +318,7 @@ def free_poses(
 
 
 def joined_poses(
-    free: Mapping[str, Pose], placed: PlacedMarkers, calibration: Calibration, walker: NDArray[np.float64]
+    free: Mapping[str, Pose], placed: PlacedMarkers, calibration: Calibration, walker: Values
 ) -> dict[str, Pose]:
     """The segments with their joints as the marker set has them: free, held, or in the plane of walking.
 
@@ -337,7 +332,7 @@ def joined_poses(
     return free_poses(placed, calibration, held_in_gaps(free, placed, calibration.points))
 
 
-def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> NDArray[np.float64]:
+def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> Values:
     """A joint centre (frame, 3) [m] as the segment above carries it."""
     name, side = joint.split("_")
     above = {"hip": "pelvis", "knee": f"thigh_{side}", "ankle": f"shank_{side}"}[name]

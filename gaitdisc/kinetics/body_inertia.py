@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError, ShapeError, UnitError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import RigidBody
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import MASS_KG
 
 TABLES = ("dumas2007", "deleva1996")
@@ -107,12 +107,7 @@ def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
 
 
 def leg_inertia(
-    person: Person,
-    side: str,
-    lengths_m: Mapping[str, float],
-    heel: NDArray[np.float64],
-    toe: NDArray[np.float64],
-    table: str = "dumas2007",
+    person: Person, side: str, lengths_m: Mapping[str, float], heel: Values, toe: Values, table: str = "dumas2007"
 ) -> dict[str, RigidBody]:
     """Inertia of foot, shank and thigh of side `r` or `l`; the left leg is the right one's mirror image.
 
@@ -184,9 +179,7 @@ def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBod
     return RigidBody(mass, mirror @ np.array(row.centre) / 100 * length_m, mirror @ tensor @ mirror)
 
 
-def _foot_from_heel(
-    row: TableRow, person: Person, sex: str, heel: NDArray[np.float64], toe: NDArray[np.float64]
-) -> RigidBody:
+def _foot_from_heel(row: TableRow, person: Person, sex: str, heel: Values, toe: Values) -> RigidBody:
     """De Leva's foot: along the line from heel to toes, whose tips are known by the stature."""
     if person.stature_m is None:
         raise UnitError(

@@ -17,7 +17,7 @@ from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenc
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Recording, Trial
-from gaitdisc.recording.arrays import Span, runs
+from gaitdisc.recording.arrays import Span, Values, runs
 
 SWING_AT_MOST_S = 0.7  # between two steps of one foot; a stance between them would not fit
 HOLE_S = 0.06  # between what the file calls foot off and the end of the force
@@ -34,7 +34,7 @@ class FootLoad:
 def foot_loads(
     found: Sequence[Platform],
     steps: Sequence[PlateStep],
-    time: NDArray[np.float64],
+    time: Values,
     cutoff_hz: float,
     airborne: Mapping[str, Sequence[Span]] | None = None,
 ) -> dict[str, FootLoad]:
@@ -74,9 +74,7 @@ def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[Span]]:
     return found
 
 
-def _known(
-    steps: Sequence[PlateStep], side: str, time: NDArray[np.float64], known_spans: Sequence[Span]
-) -> NDArray[np.bool_]:
+def _known(steps: Sequence[PlateStep], side: str, time: Values, known_spans: Sequence[Span]) -> NDArray[np.bool_]:
     own = [step for step in steps if step.side == side and step.clean]
     between = [Span(one.end, after.start) for one, after in itertools.pairwise(own)]
     known = np.zeros(len(time), bool)
@@ -96,7 +94,7 @@ FRAMES = ("joint", "distal")
 ALONG_BONE = [2, 0, 1]  # the segment's own axes that take the places of those of the joint
 
 
-def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
+def joint_axes(nearer: Pose, farther: Pose) -> Values:
     """Unit axes of a joint in the laboratory's frame, (frame, axis, 3); NaN where the first and third lie on one line.
 
     As the joint angles have them: the nearer segment's z (to the right), about which flexion turns; one at right angles
@@ -118,7 +116,7 @@ def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
     return np.stack([flexion, floating, rotation], axis=1)
 
 
-def along(vector: NDArray[np.float64], axes: NDArray[np.float64], joint: str, side: str) -> NDArray[np.float64]:
+def along(vector: Values, axes: Values, joint: str, side: str) -> Values:
     """Parts (frame, 3) of a vector (frame, 3) towards a joint's positive angles about axes of `joint_axes`."""
     parts = [np.einsum("fx,fx->f", vector, axes[:, axis]) for axis in range(3)]
     return np.stack(parts, axis=1) * angle_signs(joint, side)
@@ -164,7 +162,7 @@ class Leg:
     moving: Mapping[str, SegmentMotion]
     bodies: Mapping[str, RigidBody]
 
-    def needed(self, up: NDArray[np.float64]) -> dict[str, Wrench]:
+    def needed(self, up: Values) -> dict[str, Wrench]:
         """Wrench that moves each segment and bears its weight; up (3,) is a unit vector."""
         return {segment: needed_wrench(self.moving[segment], body, up) for segment, body in self.bodies.items()}
 
@@ -187,7 +185,7 @@ def legs(
     return found
 
 
-def _foot_points(path: FootPath, foot: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _foot_points(path: FootPath, foot: Pose) -> tuple[Values, Values]:
     """Heel and toes in the foot's frame, the median over the frames."""
     places = [foot.to_segment(part) for part in (path.heel, path.toe)]
     seen = np.isfinite(places).all(axis=(0, 2))
@@ -203,8 +201,8 @@ def _foot_points(path: FootPath, foot: Pose) -> tuple[NDArray[np.float64], NDArr
 def joint_moments(
     found: Mapping[str, Leg],
     loads: Mapping[str, FootLoad],
-    time: NDArray[np.float64],
-    up: NDArray[np.float64],
+    time: Values,
+    up: Values,
     person: Person,
     settings: KineticsSettings,
 ) -> Recording:
@@ -218,7 +216,7 @@ def joint_moments(
     up (3,): unit vector against gravity
     returns: `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses
     """
-    columns: list[NDArray[np.float64]] = []
+    columns: list[Values] = []
     channels: list[Channel] = []
     for side, leg in found.items():
         needed = leg.needed(up)

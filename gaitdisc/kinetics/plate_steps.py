@@ -13,7 +13,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, read_only, runs
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
 
@@ -33,9 +33,9 @@ class FootPath:
     """Heel and toes of one foot in the laboratory's frame."""
 
     side: str
-    time: NDArray[np.float64]  # (frame,) [s], of the markers
-    heel: NDArray[np.float64]  # (frame, 3) [m], of the markers; NaN where one is missing
-    toe: NDArray[np.float64]  # (frame, 3) [m], of the markers; NaN where one is missing
+    time: Values  # (frame,) [s], of the markers
+    heel: Values  # (frame, 3) [m], of the markers; NaN where one is missing
+    toe: Values  # (frame, 3) [m], of the markers; NaN where one is missing
 
     def __post_init__(self) -> None:
         """Check shapes once."""
@@ -62,13 +62,13 @@ class FootPath:
             both = (heel @ forward > SWINGS_M_PER_S) & (toe @ forward > SWINGS_M_PER_S)
         return [Span(float(self.time[start]), float(self.time[end - 1])) for start, end in runs(both)]
 
-    def still(self, part: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def still(self, part: Values) -> NDArray[np.bool_]:
         """Frames (frame,) in which a part (frame, 3) [m], `heel` or `toe`, hardly moves."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         with np.errstate(invalid="ignore"):
             return np.linalg.norm(differentiated(part, rate_hz), axis=1) < STILL_M_PER_S
 
-    def beside(self, points: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    def beside(self, points: Values, up: Values) -> Values:
         """How far points (frame, 3) [m] lie from the line heel to toe, seen from above, (frame,) [m]; up (3,)."""
         level = np.eye(3) - np.outer(up, up)
         line, off = (self.toe - self.heel) @ level, (points - self.heel) @ level
@@ -145,8 +145,8 @@ class Weight:
     """Weight of a person and how high the pelvis is, which the force on one leg must agree with."""
 
     newton: float  # mass x 9.81
-    time: NDArray[np.float64]  # (frame,) [s], of the markers
-    height: NDArray[np.float64]  # (frame,) [m], of the pelvis
+    time: Values  # (frame,) [s], of the markers
+    height: Values  # (frame,) [m], of the pelvis
 
     def share(self, platform: Platform, span: Span) -> float:
         """Force of a platform that bears a person alone over what weight and motion need; NaN without a pelvis.
@@ -163,10 +163,7 @@ class Weight:
 
 
 def weighed_steps(
-    steps: Sequence[PlateStep],
-    found: Sequence[Platform],
-    airborne: Mapping[str, Sequence[Span]],
-    weight: Weight,
+    steps: Sequence[PlateStep], found: Sequence[Platform], airborne: Mapping[str, Sequence[Span]], weight: Weight
 ) -> list[PlateStep]:
     """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need."""
     named = {platform.name: platform for platform in found}

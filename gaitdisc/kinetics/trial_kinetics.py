@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
@@ -17,6 +16,7 @@ from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weighed_steps
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
@@ -65,11 +65,7 @@ class ForceBalance:
 
 
 def force_balance(
-    found: Mapping[str, Leg],
-    loads: Mapping[str, FootLoad],
-    up: NDArray[np.float64],
-    person: Person,
-    trunk: NDArray[np.float64] | None = None,
+    found: Mapping[str, Leg], loads: Mapping[str, FootLoad], up: Values, person: Person, trunk: Values | None = None
 ) -> ForceBalance:
     """Whether the ground pushes as hard as the motion needs, over the frames in which the load of both feet is known.
 
@@ -164,7 +160,7 @@ def trial_kinetics(
     return TrialKinetics(moments, tuple(steps), balance, findings)
 
 
-def _acceleration(markers: Recording, names: Sequence[str], cutoff_hz: float) -> NDArray[np.float64] | None:
+def _acceleration(markers: Recording, names: Sequence[str], cutoff_hz: float) -> Values | None:
     """Acceleration of the mean of some markers, (frame, 3) [m/s2]; None where none is named."""
     if not names:
         return None

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import side_of
 from gaitdisc.processing.pooled_cycles import WALK, WalkSummary, mean_curve
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
 from gaitdisc.saved.study_run import StudyRun
@@ -163,7 +163,7 @@ def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> No
     axes.legend(frameon=False)
 
 
-def course_numbers(phi: NDArray[np.float64], components: NDArray[np.float64]) -> pd.DataFrame:
+def course_numbers(phi: Values, components: Values) -> pd.DataFrame:
     """Component (from 1), percent in steps of 2 % of the stride, mean and sd [1]."""
     known = np.isfinite(phi)
     place = np.clip(np.digitize(phi[known], BINS) - 1, 0, len(BINS) - 2)

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL, PooledCycles
 from gaitdisc.recording import PERCENT
-from gaitdisc.recording.arrays import mean_where_known
+from gaitdisc.recording.arrays import Values, mean_where_known
 
 FEET = ("l", "r")
 TURNED_DEG = 20.0  # by which the pelvis turns in the laboratory from contact to contact where somebody walks a curve
@@ -58,13 +57,13 @@ class LegCurves:
     stance_percent: float  # mean foot off [% of the cycle]; NaN where none is known
     # each (cycle, phase), clinical variable -> curves on 101 points, in the variable's unit and sign; complete, but for
     # the end of a moment or power
-    cycles: Mapping[str, NDArray[np.float64]]
+    cycles: Mapping[str, Values]
     # each (cycle,), spatiotemporal value -> of the cycles in which it is known
-    values: Mapping[str, NDArray[np.float64]]
+    values: Mapping[str, Values]
     # mean turn of the pelvis from contact to contact; beyond TURNED_DEG angles about the line of walking are left
     turned_deg: float = 0.0
 
-    def mean(self, name: str) -> NDArray[np.float64]:
+    def mean(self, name: str) -> Values:
         """Mean curve of a variable; NaN where no cycle has a value."""
         return mean_where_known(self.cycles[name])
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
 from gaitdisc.processing.kept_parts import figure_again, hash_cycles, keep_part, read_part
@@ -25,6 +24,7 @@ from gaitdisc.processing.tables import (
     spatiotemporal_table,
 )
 from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_page
 from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
@@ -213,9 +213,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     return Figure(name, _caption(pooled), alt, shown, drawn)
 
 
-def draw_cycles(
-    axes: Axes, every: NDArray[np.float64], mean: NDArray[np.float64], sd: NDArray[np.float64], side: str
-) -> None:
+def draw_cycles(axes: Axes, every: Values, mean: Values, sd: Values, side: str) -> None:
     """Draw every cycle (cycle, phase) faint, and their mean (phase,); from three cycles on its spread."""
     look = SIDES[side]
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
@@ -40,6 +39,7 @@ from gaitdisc.processing.trial_cycles import (
     without_doubted,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.signals.contacts import rise_of
 from gaitdisc.signals.sides import verify_sides
@@ -48,7 +48,7 @@ from gaitdisc.signals.strides import LEAST_COVERAGE, duration_reasons, verify_wa
 DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics are shown of
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
 # kind of event and detector -> how much later the ground places each that both see [s], of all trials of a session
-Later = Mapping[tuple[str, str], NDArray[np.float64]]
+Later = Mapping[tuple[str, str], Values]
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
         with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
             for one in (own for own in sets if own.session == session):
                 seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, Path(folder), prints)
-            times: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
+            times: dict[tuple[str, str], list[Values]] = {}
             for trial in (trial for trials in seen.values() for trial in trials):
                 for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
                     times.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
@@ -300,7 +300,7 @@ def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object
     )  # fmt: skip
 
 
-def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], NDArray[np.float64]]:
+def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], Values]:
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
     for trial in seen:

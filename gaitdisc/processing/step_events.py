@@ -22,6 +22,7 @@ from gaitdisc.processing.contact_choice import (
     walking_markers,
 )
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 
@@ -38,7 +39,7 @@ BELT_M = 2.0  # who comes farther walks over ground
 HEEL_M, LEG_DEG = 0.25, 10.0  # least reach of a heel, a hip or a knee within a second of who steps
 LEAST_CUT_S = 1.0
 NO_WALKWAY_S = 10.0  # a walk that lasts longer and does not show its path is one on a treadmill
-Times = NDArray[np.float64]
+Times = Values
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
@@ -18,7 +17,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, runs
+from gaitdisc.recording.arrays import Span, Values, runs
 from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.butterworth import lowpassed
@@ -152,8 +151,8 @@ def without_doubted(cycles: list[Cycle], spans: Sequence[Span]) -> list[Cycle]:
 class HeelPaths:
     """Where the heels of a trial were, and which way the person walked."""
 
-    time: NDArray[np.float64]  # (frame,) [s], of the markers
-    heels: Mapping[str, NDArray[np.float64]]  # each (frame, 3) [m], by side
+    time: Values  # (frame,) [s], of the markers
+    heels: Mapping[str, Values]  # each (frame, 3) [m], by side
     way: Direction
 
 
@@ -216,7 +215,7 @@ def _first(times: tuple[tuple[float, str], ...], start: float, end: float) -> tu
     return next(((at, by) for at, by in times if start <= at <= end), (NAN, ""))
 
 
-def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+def _level(vector: Values, up: Values) -> Values:
     return vector - np.dot(vector, up) * up
 
 
@@ -310,7 +309,7 @@ def weighed_forces(trial: Trial) -> Recording | None:
     if "moments" not in trial.streams:
         return None
     moments = trial.stream("moments")
-    found: dict[Channel, NDArray[np.float64]] = {}
+    found: dict[Channel, Values] = {}
     for side, letter in (("l", "L"), ("r", "R")):
         labels = [f"{letter}NormalisedGRF.{axis}" for axis in "xz"]
         if any(label not in moments.names or moments.channels[moments.index(label)].unit != "%" for label in labels):

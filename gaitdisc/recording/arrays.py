@@ -28,7 +28,7 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     return view
 
 
-def real_array(values: Any) -> NDArray[np.float64]:
+def real_array(values: Any) -> Values:
     """Array of floats; complex numbers are refused, of which numpy would keep the real part."""
     array = np.asarray(values)
     if array.dtype.kind == "c":
@@ -49,7 +49,7 @@ def frozen(mapping: Mapping[str, Any]) -> MappingProxyType[str, Any]:
 copyreg.pickle(MappingProxyType, lambda view: (frozen, (dict(view),)))
 
 
-def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def mean_where_known(values: Values) -> Values:
     """Mean over the first axis of the values that are there; NaN where none is.
 
     >>> mean_where_known(np.array([[1.0, np.nan, np.nan], [3.0, 5.0, np.nan]])).tolist()
@@ -61,7 +61,7 @@ def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def robust_sd(values: NDArray[np.float64]) -> float:
+def robust_sd(values: Values) -> float:
     """Standard deviation by the median absolute deviation: that of normal numbers, whatever a few others are."""
     return 1.4826 * float(np.median(np.abs(values - np.median(values))))
 
@@ -94,7 +94,7 @@ class Span(NamedTuple):
         """How long it lasts; negative where nothing is shared."""
         return self.end - self.start
 
-    def holds(self, time: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def holds(self, time: Values) -> NDArray[np.bool_]:
         """Which instants (time,) [s] lie in it, its ends included."""
         return (time >= self.start) & (time <= self.end)
 
@@ -103,7 +103,7 @@ class Span(NamedTuple):
         return Span(max(self.start, other.start), min(self.end, other.end))
 
 
-def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[Span, ...]:
+def spans_s(time: Values, mask: NDArray[np.bool_]) -> tuple[Span, ...]:
     """Spans of the runs of True, from the first sample of each to one step after its last.
 
     time (time,) [s]: even
@@ -116,7 +116,7 @@ def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[Span, .
     return tuple(Span(round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))
 
 
-def autocorrelation_time(values: NDArray[np.float64], forgotten: float = 0.0) -> NDArray[np.float64]:
+def autocorrelation_time(values: Values, forgotten: float = 0.0) -> Values:
     """Integrated autocorrelation time of each column [samples], (column,): 1 of white noise.
 
     So many numbers in a row say no more together than one that stands alone. Correlations are summed up to the first

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.notebook import html_of
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,8 +67,8 @@ class Recording:
     (100.0, ('knee_angle_r',))
     """
 
-    time: NDArray[np.float64]
-    values: NDArray[np.float64]
+    time: Values
+    values: Values
     channels: tuple[Channel, ...]
     subject: str = ""
     condition: str = ""
@@ -155,7 +155,7 @@ class Recording:
             )
         return self.names.index(name)
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> Values:
         return self.values[:, self.index(name)]
 
     def __contains__(self, name: object) -> bool:
@@ -199,7 +199,7 @@ class Recording:
         rows = slice(int(first), int(last))
         return replace(self, time=self.time[rows], values=self.values[rows], suspect=self.suspect[rows])
 
-    def with_values(self, values: NDArray[np.float64], suspect: NDArray[np.bool_] | None = None) -> Recording:
+    def with_values(self, values: Values, suspect: NDArray[np.bool_] | None = None) -> Recording:
         """Recording with other values on the same time base and channels.
 
         Parameters
@@ -276,7 +276,7 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
         )
 
 
-def _check_steps(time: NDArray[np.float64], file: str) -> None:
+def _check_steps(time: Values, file: str) -> None:
     if len(time) < 2:
         return
     steps = np.diff(time)

@@ -7,11 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
 from gaitdisc.notebook import html_of
-from gaitdisc.recording.arrays import frozen, read_only
+from gaitdisc.recording.arrays import Values, frozen, read_only
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
@@ -113,7 +112,7 @@ class Surface:
     """
 
     name: str  # first part of its channels' names: `plate_1`
-    corners: NDArray[np.float64]  # (4, 3) [m], in order around it
+    corners: Values  # (4, 3) [m], in order around it
 
     def __post_init__(self) -> None:
         """Check the corners once."""
@@ -128,17 +127,17 @@ class Surface:
         object.__setattr__(self, "corners", corners)
 
     @property
-    def centre(self) -> NDArray[np.float64]:
+    def centre(self) -> Values:
         """Its middle, (3,) [m]."""
         return self.corners.mean(axis=0)
 
     @property
-    def normal(self) -> NDArray[np.float64]:
+    def normal(self) -> Values:
         """Unit vector at right angles to it, (3,), to one side or the other."""
         across = np.cross(self.corners[2] - self.corners[0], self.corners[3] - self.corners[1])
         return across / np.linalg.norm(across)
 
-    def outside(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def outside(self, points: Values) -> Values:
         """How far points lie beyond the nearest edge, seen along the normal, (point,) [m]; negative inside.
 
         points (point, 3) [m]: in the laboratory's frame

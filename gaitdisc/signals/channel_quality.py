@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Span, Values, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
@@ -75,7 +75,7 @@ def channel_findings(recording: Recording) -> list[Finding]:
     return findings
 
 
-def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.bool_]:
+def clipped(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
     """Mark where the largest or the smallest value is met, if it is met too often to be chance.
 
     x (time,): one channel
@@ -95,7 +95,7 @@ def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.b
     return marks
 
 
-def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
+def jumping(x: Values) -> NDArray[np.bool_]:
     """Mark the samples beside an implausible second difference.
 
     x (time,): one channel, not filtered
@@ -115,7 +115,7 @@ def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
     return marks
 
 
-def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:
+def swing_baseline(force_n: Values, rate_hz: float) -> Values:
     """Force in the middle half of every unloaded phase: its sample and its median.
 
     force_n (time,) [N]: vertical force of one plate, of either sign
@@ -251,7 +251,7 @@ def plateau_marked(kinematics: Recording) -> Recording:
     return kinematics.with_values(kinematics.values, marks)
 
 
-def _dwells(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_] | None:
+def _dwells(x: Values, rate_hz: float) -> NDArray[np.bool_] | None:
     """Samples on a plateau at the top of x, or None."""
     known = x[np.isfinite(x)]
     reach = float(known.max() - np.percentile(known, 1))
@@ -271,7 +271,7 @@ def _dwells(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_] | None:
     return marks if np.median(corners) >= CORNER else None
 
 
-def _corner(x: NDArray[np.float64], top: int, reach: float) -> float:
+def _corner(x: Values, top: int, reach: float) -> float:
     """Samples in a row about a peak within 1 % of the reach, over those within 4 %."""
     wide = []
     for share in (BAND_SHARE, 4 * BAND_SHARE):

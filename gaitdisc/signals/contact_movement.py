@@ -15,12 +15,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
-from gaitdisc.recording.arrays import Span
+from gaitdisc.recording.arrays import Span, Values
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
@@ -75,9 +74,7 @@ def marker_contacts(
     return found
 
 
-def _of_each_step(
-    time: NDArray[np.float64], swung: NDArray[np.float64], direction: Direction, times: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _of_each_step(time: Values, swung: Values, direction: Direction, times: Values) -> Values:
     """Peaks again, each along one direction: a line that turns moves the peak of a heel that lies beside it."""
     if direction.headings is None:
         return times
@@ -94,7 +91,7 @@ def _of_each_step(
     return np.unique(found)
 
 
-def _prominent(x: NDArray[np.float64], peak: int, prominence: float) -> bool:
+def _prominent(x: Values, peak: int, prominence: float) -> bool:
     """Rises by `prominence` before the peak (the swing), and begins to fall after it (by a fifth of that)."""
     for side, enough in ((x[:peak][::-1], prominence), (x[peak + 1 :], prominence / 5)):
         higher = np.flatnonzero(~(side <= x[peak]))
@@ -104,7 +101,7 @@ def _prominent(x: NDArray[np.float64], peak: int, prominence: float) -> bool:
     return True
 
 
-def _vertex(x: NDArray[np.float64], peak: int) -> float:
+def _vertex(x: Values, peak: int) -> float:
     """How far beside a peak the parabola through it and its neighbours is highest [samples]."""
     left, centre, right = x[peak - 1 : peak + 2]
     bend = left - 2 * centre + right
@@ -142,7 +139,7 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
     return found
 
 
-def _cycles(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], float]:
+def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
     """Time of the one hip peak a stride, and the period [s]."""
     hip = kinematics.selected([name])
     period, regularity = stride_period(hip.values[:, 0], hip.rate_hz)
@@ -165,9 +162,7 @@ def _cycles(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], floa
     return hip.time[peaks], period
 
 
-def _terminal_extensions(
-    kinematics: Recording, knee: str, peaks: NDArray[np.float64], period: float
-) -> NDArray[np.float64]:
+def _terminal_extensions(kinematics: Recording, knee: str, peaks: Values, period: float) -> Values:
     time, x = _smooth(kinematics, knee)
     found = []
     for peak in peaks:
@@ -183,7 +178,7 @@ def _terminal_extensions(
     return np.array(found)
 
 
-def _hip_peaks(kinematics: Recording, hip: str, peaks: NDArray[np.float64], period: float) -> NDArray[np.float64]:
+def _hip_peaks(kinematics: Recording, hip: str, peaks: Values, period: float) -> Values:
     time, x = _smooth(kinematics, hip)
     found = []
     for peak in peaks:
@@ -195,7 +190,7 @@ def _hip_peaks(kinematics: Recording, hip: str, peaks: NDArray[np.float64], peri
     return np.array(found)
 
 
-def stance_windows(contacts: NDArray[np.float64], stride_s: float) -> list[Span]:
+def stance_windows(contacts: Values, stride_s: float) -> list[Span]:
     """Spans in which a foot leaves the ground, one for each contact and one for the stance before the first.
 
     contacts (contact,) [s]: of one foot
@@ -213,7 +208,7 @@ def stance_windows(contacts: NDArray[np.float64], stride_s: float) -> list[Span]
 
 def marker_foot_off(
     markers: Recording, toe: str, pelvis: Sequence[str], direction: Direction, windows: Sequence[Span]
-) -> NDArray[np.float64]:
+) -> Values:
     """Times at which a toe is farthest behind the pelvis, one for each window that has such a time [s].
 
     markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
@@ -228,7 +223,7 @@ def marker_foot_off(
     return _lowest_in(windows, markers.time, lambda middle: direction.ahead(swung, middle))
 
 
-def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -> NDArray[np.float64]:
+def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -> Values:
     """Times at which an ankle is most plantarflexed, one for each window that has such a time [s].
 
     kinematics: with the ankle, dorsiflexion positive [deg]
@@ -238,15 +233,13 @@ def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -
     return _lowest_in(windows, time, lambda _: x)
 
 
-def _smooth(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _smooth(kinematics: Recording, name: str) -> tuple[Values, Values]:
     """Times of one angle, and the angle without what is faster than a step."""
     smooth = lowpassed(kinematics.selected([name]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
     return smooth.time, smooth.values[:, 0]
 
 
-def _lowest_in(
-    windows: Sequence[Span], time: NDArray[np.float64], course: Callable[[int], NDArray[np.float64]]
-) -> NDArray[np.float64]:
+def _lowest_in(windows: Sequence[Span], time: Values, course: Callable[[int], Values]) -> Values:
     """Times [s] at which a course (time,), as it is for the middle sample of a window, is lowest inside each window.
 
     None where the lowest value lies at an end of the window, or a value is missing.

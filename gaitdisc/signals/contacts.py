@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, read_only, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
@@ -53,10 +53,10 @@ class Contacts:
     2
     """
 
-    time: NDArray[np.float64]
+    time: Values
     side: str
     detector: str
-    foot_off: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    foot_off: Values = field(default_factory=lambda: np.empty(0))
     note: str = ""
 
     def __post_init__(self) -> None:
@@ -135,9 +135,9 @@ class Contacts:
 class Agreement:
     """Two detectors on the same walk."""
 
-    difference_s: NDArray[np.float64]  # (pair,) [s], second minus first, of each matched pair
-    missed: NDArray[np.float64]  # [s], contacts of the first that the second does not see, within the span of both
-    extra: NDArray[np.float64]  # [s], contacts of the second that the first does not see, within the span of both
+    difference_s: Values  # (pair,) [s], second minus first, of each matched pair
+    missed: Values  # [s], contacts of the first that the second does not see, within the span of both
+    extra: Values  # [s], contacts of the second that the first does not see, within the span of both
 
     @property
     def median_ms(self) -> float:
@@ -187,7 +187,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
     return findings
 
 
-def _covered(times: NDArray[np.float64], other: Contacts, within_s: float) -> NDArray[np.float64]:
+def _covered(times: Values, other: Contacts, within_s: float) -> Values:
     return times[(times >= other.time[0] - within_s) & (times <= other.time[-1] + within_s)]
 
 
@@ -228,7 +228,7 @@ def rise_of(body_weight_n: float | None) -> float:
     return min(max(RISE_OF_BODY_WEIGHT * body_weight_n, LEAST_RISE_N), RISE_N)
 
 
-def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
+def loaded(force_n: Values, rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
     """First and last sample of each loading of a plate or belt.
 
     A loading begins above `rise_n` and ends below 20 N. What is loaded for less than 0.1 s is chatter and
@@ -333,9 +333,7 @@ def plate_contacts(
     return {s: Contacts(np.unique(times[s]), s, "force", np.unique(offs[s]), note) for s in ("r", "l")}
 
 
-def _contacts(
-    forces: Recording, name: str, body_weight_n: float | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
+def _contacts(forces: Recording, name: str, body_weight_n: float | None) -> tuple[Values, Values, str]:
     force, time = forces[name], forces.time
     known = force[np.isfinite(force)]
     downwards = len(known) > 0 and -known.min() > known.max()

@@ -16,12 +16,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, spans_s
+from gaitdisc.recording.arrays import Values, robust_sd, spans_s
 from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.butterworth import highpassed, lowpassed
 
@@ -185,7 +184,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     return findings
 
 
-def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
+def burst_ratio(x: Values, rate_hz: float) -> float:
     """How far bursts rise above the rest: 99th percentile of the envelope over its median.
 
     x (time,) [V]: raw EMG of one channel
@@ -218,7 +217,7 @@ def live_channels(emg: Recording) -> tuple[str, ...]:
     return tuple(name for name in emg.names if name not in lost | empty)
 
 
-def _quantisation_step(x: NDArray[np.float64]) -> float | None:
+def _quantisation_step(x: Values) -> float | None:
     """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
     known = x[np.isfinite(x)]
     most = float(np.abs(known).max(initial=0.0)) or 1.0

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Values, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 from gaitdisc.words import counted
 
@@ -91,7 +91,7 @@ def gap_findings(recording: Recording) -> list[Finding]:
     return findings
 
 
-def _spline(x: NDArray[np.float64], start: int, end: int, support: int) -> NDArray[np.float64] | None:
+def _spline(x: Values, start: int, end: int, support: int) -> Values | None:
     around = np.r_[max(0, start - support) : start, end : min(len(x), end + support)]
     around = around[np.isfinite(x[around])]
     if np.sum(around < start) < 2 or np.sum(around >= end) < 2:
@@ -99,9 +99,7 @@ def _spline(x: NDArray[np.float64], start: int, end: int, support: int) -> NDArr
     return CubicSpline(around, x[around])(np.arange(start, end))
 
 
-def _on_template(
-    x: NDArray[np.float64], start: int, end: int, phi: NDArray[np.float64], template: NDArray[np.float64]
-) -> NDArray[np.float64] | None:
+def _on_template(x: Values, start: int, end: int, phi: Values, template: Values) -> Values | None:
     """Template plus the line through the residuals of three samples at either end."""
     before, after = np.arange(max(0, start - 3), start), np.arange(end, min(len(x), end + 3))
     rows = np.r_[before, start:end, after]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import other_side
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.direction import marker_position
 
 SWING = (52.0, 92.0)  # % stride between which the knee's peak lies, in walking and running
@@ -178,7 +178,7 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
     return [Finding("warning", "sides", file, what, "every side; exchange the forces or the angles")]
 
 
-def _aside(apart: NDArray[np.float64], right: NDArray[np.float64]) -> float:
+def _aside(apart: Values, right: Values) -> float:
     """How far to the right one marker is of the other, over the trial [m]."""
     metres = np.einsum("tx,tx->t", apart, right)
     metres = metres[np.isfinite(metres)]

@@ -16,7 +16,7 @@ from scipy.signal import lfilter
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Span, robust_sd, runs
+from gaitdisc.recording.arrays import Span, Values, robust_sd, runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8
@@ -33,7 +33,7 @@ LEAST_SD = 1.0
 CHANGE_SD = 2.5  # what slow drift alone does not reach: 2.0 in 34 walks of the cohort's calibration people
 
 
-def stride_distances(recording: Recording, strides: Strides) -> NDArray[np.float64]:
+def stride_distances(recording: Recording, strides: Strides) -> Values:
     """Distance of every stride from the person's median curve, (stride, channel) [channel's unit].
 
     The root mean square over the stride; the median curve is not moved by the strides that are looked for.
@@ -216,7 +216,7 @@ def late_change_findings(recording: Recording, strides: Strides) -> list[Finding
     return [Finding("warning", kind, file, what, spoils, spans=spans)]
 
 
-def _components(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+def _components(curves: Values) -> Values:
     """Scores (stride, component) of the residual curves, each channel scaled by its stride-to-stride sd."""
     residual = curves - curves.mean(axis=0)
     residual /= np.sqrt(np.mean(residual**2, axis=(0, 1)))
@@ -227,7 +227,7 @@ def _components(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     return u[:, :count] * s[:count]
 
 
-def _largest(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64]]:
+def _largest(scores: Values) -> tuple[Values, NDArray[np.intp], Values]:
     """Largest statistic, its split, and the lag-one correlations, of series (series, stride, component)."""
     count, n, _ = scores.shape
     centred = scores - scores.mean(axis=1, keepdims=True)
@@ -254,7 +254,7 @@ def _largest(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
     return statistic[np.arange(count), top], splits[top], dependence
 
 
-def _simulated(shape: tuple[int, ...], dependence: NDArray[np.float64], seed: int) -> NDArray[np.float64]:
+def _simulated(shape: tuple[int, ...], dependence: Values, seed: int) -> Values:
     """Largest statistics of stationary autoregressive series of the same length and dependence."""
     rng = np.random.default_rng(seed)
     n, k = shape

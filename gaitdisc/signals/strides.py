@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, runs
+from gaitdisc.recording.arrays import Values, robust_sd, runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import filled
 from gaitdisc.words import counted
@@ -194,7 +193,7 @@ def verify_walking(
     return found
 
 
-def stride_period(x: NDArray[np.float64], rate_hz: float) -> tuple[float, float]:
+def stride_period(x: Values, rate_hz: float) -> tuple[float, float]:
     """Period at which an angle repeats, and how well.
 
     The autocorrelation is that of the two overlapping parts (each lag has its own means and variances), so a perfectly
@@ -226,7 +225,7 @@ def stride_period(x: NDArray[np.float64], rate_hz: float) -> tuple[float, float]
     return float((lags[first_high] + shift) / rate_hz), float(centre)
 
 
-def _correlation(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+def _correlation(a: Values, b: Values) -> float:
     both = np.isfinite(a) & np.isfinite(b)
     if (count := np.count_nonzero(both)) < 10:
         return 0.0
