@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.pose import Pose, fitted_pose
-from gaitdisc.kinematics.segment_poses import named_places, placed_markers
+from gaitdisc.kinematics.segment_poses import PlacedMarkers, named_places, placed_markers
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import Values
 
@@ -55,14 +55,13 @@ def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[
     return hips, tuple(findings)
 
 
-def _found(pelvis: Pose, thigh: tuple[Values, Values], usual: Values) -> tuple[Pivot | None, str]:
+def _found(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot | None, str]:
     """Centre of one hip, or None and why."""
-    body, seen = thigh
-    whole = pelvis.known & np.isfinite(seen).all(axis=(1, 2))
+    whole = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
     if whole.sum() < FEWEST_FRAMES:
         return None, f"pelvis and thigh are complete in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
-    above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), seen[whole]
-    below, places = fitted_pose(body, markers).pose, above.to_segment(markers)
+    above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), thigh.seen[whole]
+    below, places = fitted_pose(thigh.body, markers).pose, above.to_segment(markers)
     found = fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
     # to each side, in the direction in which the thigh turns less
     way = (places - found.centre).mean(axis=1)

@@ -121,8 +121,8 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
             "Correct the labels, or use the static trial of this person and session.",
         )
     for segment, frames in unfit.items():
-        body, seen = placed[segment]
-        placed[segment] = body, np.where(frames[:, None, None], np.nan, seen)
+        hidden = np.where(frames[:, None, None], np.nan, placed[segment].seen)
+        placed[segment] = placed[segment]._replace(seen=hidden)
     free = free_poses(placed, calibration)
     check_right_handed(free["pelvis"].rotation, up, file)
     facing = free["pelvis"].rotation[:, :, 0]
@@ -131,7 +131,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
-    bridged = {s: poses[s].known & ~np.isfinite(placed[s][1]).all(axis=(1, 2)) for s in SEGMENTS}
+    bridged = {s: poses[s].known & ~np.isfinite(placed[s].seen).all(axis=(1, 2)) for s in SEGMENTS}
     findings = [
         *calibration.findings,
         Finding("note", "marker set", file, _set_words(calibration), ""),
@@ -166,9 +166,9 @@ def _set_words(calibration: Calibration) -> str:
     return f"{chosen.name}: {chosen.title}; joints {chosen.joints}{differs}".replace("{S}", "")
 
 
-def _middle(placed: PlacedMarkers, segments: Sequence[str]) -> Values:
+def _middle(placed: Mapping[str, PlacedMarkers], segments: Sequence[str]) -> Values:
     """Mean place of those markers of some segments that are seen in a frame (frame, 3) [m]."""
-    places = np.concatenate([placed[segment][1] for segment in segments], axis=1)
+    places = np.concatenate([placed[segment].seen for segment in segments], axis=1)
     seen = np.isfinite(places).all(axis=2, keepdims=True)
     count = seen.sum(axis=1)
     return np.where(count > 0, np.where(seen, places, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,12 +28,22 @@ LONGEST_STEP_RAD = 0.5
 Turns = dict[str, Values]
 CARRIED_STEADY_M = 0.06  # a thigh of Plug-in Gait that lost its wand has less, and may be wrong by 30 deg
 FROM_STRAIGHT_DEG = 30.0  # a shank that turns by 300 deg/s one way and back again over 0.2 s
-PlacedMarkers = dict[str, tuple[Values, Values]]
+
+
+class PlacedMarkers(NamedTuple):
+    """Markers of one segment."""
+
+    body: Values  # (marker, 3) [m], in the segment's own frame
+    seen: Values  # (frame, marker, 3) [m], in the laboratory; NaN where one is missing
+
+    def among(self, frames: NDArray[np.intp]) -> PlacedMarkers:
+        """Return the same markers in some frames."""
+        return PlacedMarkers(self.body, self.seen[frames])
 
 
 def held_together(
     first: Mapping[str, Pose],
-    placed: PlacedMarkers,
+    placed: Mapping[str, PlacedMarkers],
     points: Mapping[str, Points],
     plane: Values | None = None,
     steady_m: float = STEADY_M,
@@ -46,8 +57,7 @@ def held_together(
 
     first: each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
         frames before and after
-    placed each ((marker, 3), (frame, marker, 3)) [m]: segment -> its markers in its own frame, and in the laboratory;
-        NaN where one is missing
+    placed: markers by segment
     points each (3,) [m]: segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides
         of the joint
     plane (frame, 3, 3): the walker's forward, up and right, as columns, where only the plane of forward and up is
@@ -58,14 +68,22 @@ def held_together(
     """
     turns, origin = _beginning(first)
     if plane is not None:
-        turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
+        for segment, turn in turns.items():  # the one about the normal of the plane that is nearest
+            inside = np.swapaxes(plane, 1, 2) @ turn
+            angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
+            turns[segment] = _turn(angle[:, None] * plane[:, :, 2]) @ plane
     allowed = _allowed(len(origin), plane)
     moving: NDArray[np.intp] = np.arange(len(origin))
     for _ in range(ROUNDS):
         some = {segment: turn[moving] for segment, turn in turns.items()}
-        there = {segment: (body, seen[moving]) for segment, (body, seen) in placed.items()}
+        there = {segment: one.among(moving) for segment, one in placed.items()}
         gradient, normal = _normal_equations(some, _origins(origin[moving], some, points), there)
-        step = _solved(normal, gradient, allowed[moving])
+        # a Gauss-Newton step, the smallest where markers do not determine all, turning by half a radian at most
+        may = allowed[moving]
+        some_normal, right = _among(normal, may), np.swapaxes(may, 1, 2) @ gradient[..., None]
+        step = (may @ np.linalg.solve(some_normal + DAMPING * np.eye(may.shape[2]), right))[..., 0]
+        longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
+        step *= np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
         origin[moving] += step[:, :3]
         for segment in SEGMENTS:
             for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
@@ -118,7 +136,7 @@ def _origins(origin: Values, turns: Turns, points: Mapping[str, Points]) -> Turn
     return origins
 
 
-def _normal_equations(turns: Turns, origins: Turns, placed: PlacedMarkers) -> tuple[Values, Values]:
+def _normal_equations(turns: Turns, origins: Turns, placed: Mapping[str, PlacedMarkers]) -> tuple[Values, Values]:
     """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
     frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
     gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
@@ -147,13 +165,6 @@ def _columns(segment: str) -> NDArray[np.intp]:
     return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
 
 
-def _upright(turn: Values, plane: Values) -> Values:
-    """The turn about the normal of the plane that is nearest to a turn."""
-    inside = np.swapaxes(plane, 1, 2) @ turn
-    angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
-    return _turn(angle[:, None] * plane[:, :, 2]) @ plane
-
-
 def _allowed(frames: int, plane: Values | None) -> Values:
     """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
     width = 3 + 3 * len(SEGMENTS)
@@ -166,7 +177,7 @@ def _allowed(frames: int, plane: Values | None) -> Values:
     return columns
 
 
-def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> Values:
+def _apart_m(turns: Turns, origins: Turns, placed: Mapping[str, PlacedMarkers]) -> Values:
     """Root mean square distance of all markers from their bodies in each frame."""
     squares, count = 0.0, 0
     for segment, (body, seen) in placed.items():
@@ -192,15 +203,6 @@ def _among(normal: Values, allowed: Values) -> Values:
     return np.swapaxes(allowed, 1, 2) @ normal @ allowed
 
 
-def _solved(normal: Values, gradient: Values, allowed: Values) -> Values:
-    """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
-    some = _among(normal, allowed)
-    right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
-    step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]
-    longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
-    return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
-
-
 def _turn(vectors: Values) -> Values:
     """Rotations about vectors by their length [rad] (Rodrigues)."""
     angle = np.linalg.norm(vectors, axis=1)
@@ -212,7 +214,9 @@ def _turn(vectors: Values) -> Values:
     return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
 
 
-def held_in_gaps(free: Mapping[str, Pose], placed: PlacedMarkers, points: Mapping[str, Points]) -> dict[str, Pose]:
+def held_in_gaps(
+    free: Mapping[str, Pose], placed: Mapping[str, PlacedMarkers], points: Mapping[str, Points]
+) -> dict[str, Pose]:
     """Poses held together at the joints, in frames in which some segment is unknown and beside them; NaN in all others.
 
     free: each segment over its own points, NaN where too few; placed, points: as `held_together` takes them
@@ -221,7 +225,7 @@ def held_in_gaps(free: Mapping[str, Pose], placed: PlacedMarkers, points: Mappin
     beside = np.convolve(unknown, np.ones(3), "same") > 0
     rows: NDArray[np.intp] = np.flatnonzero(beside)
     held = {}
-    some = {segment: (body, seen[rows]) for segment, (body, seen) in placed.items()}
+    some = {segment: one.among(rows) for segment, one in placed.items()}
     part = {segment: Pose(pose.origin[rows], pose.rotation[rows]) for segment, pose in free.items()}
     for segment, pose in held_together(part, some, points, steady_m=CARRIED_STEADY_M).items():
         origin, rotation = np.full((len(unknown), 3), np.nan), np.full((len(unknown), 3, 3), np.nan)
@@ -272,8 +276,8 @@ def named_places(markers: Recording, calibration: Calibration) -> dict[str, Valu
     return dict(zip(names, marker_places(markers, [*names.values()]).swapaxes(0, 1), strict=True))
 
 
-def placed_markers(places: Mapping[str, Values], calibration: Calibration, file: str = "") -> PlacedMarkers:
-    """By segment, markers that both trials have: own frame (marker, 3), laboratory (frame, marker, 3) [m]."""
+def placed_markers(places: Mapping[str, Values], calibration: Calibration, file: str = "") -> dict[str, PlacedMarkers]:
+    """Markers that both trials have, by segment."""
     placed = {}
     for segment, body in calibration.body.items():
         points = [point for point in body if point in METHODS or point in places]
@@ -285,12 +289,13 @@ def placed_markers(places: Mapping[str, Values], calibration: Calibration, file:
                 "Use the marker set with these labels, or name the markers in its [aliases].",
             )
         own = [point for point in points if point in places]
-        placed[segment] = np.array([body[point] for point in own]), np.stack([places[p] for p in own], axis=1)
+        there = np.stack([places[point] for point in own], axis=1)
+        placed[segment] = PlacedMarkers(np.array([body[point] for point in own]), there)
     return placed
 
 
 def free_fits(
-    placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
+    placed: Mapping[str, PlacedMarkers], calibration: Calibration, held: Mapping[str, Pose] | None = None
 ) -> dict[str, RigidFit]:
     """Each segment over its own points, pelvis first; `held` carries one through frames with too few points."""
     fits: dict[str, RigidFit] = {}
@@ -311,14 +316,14 @@ def free_fits(
 
 
 def free_poses(
-    placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
+    placed: Mapping[str, PlacedMarkers], calibration: Calibration, held: Mapping[str, Pose] | None = None
 ) -> dict[str, Pose]:
     """Poses of `free_fits`."""
     return {segment: fit.pose for segment, fit in free_fits(placed, calibration, held).items()}
 
 
 def joined_poses(
-    free: Mapping[str, Pose], placed: PlacedMarkers, calibration: Calibration, walker: Values
+    free: Mapping[str, Pose], placed: Mapping[str, PlacedMarkers], calibration: Calibration, walker: Values
 ) -> dict[str, Pose]:
     """The segments with their joints as the marker set has them: free, held, or in the plane of walking.
 
