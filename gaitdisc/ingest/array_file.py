@@ -288,10 +288,7 @@ def read_arrays(
         base[1].append(values)
         base[2].extend(columns)
     source = file.raw.source(file.raw.name.rpartition(".")[2].lower())
-    return _joined(file, [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases])
-
-
-def _joined(file: ArrayFile, trials: list[Trial]) -> Trial:
+    trials = [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases]
     streams: dict[str, Recording] = {}
     findings: list[Finding] = []
     for trial in trials:

@@ -193,7 +193,11 @@ def plate_streams(
         measured.append((placed, values, units))
         wrenches.append((placed, *placed.wrench(values, units)))
     findings += _exchanged(measured, file)
-    up = [_upward(plate, force) for plate, force, _ in wrenches]
+    up = []  # +1 where a loaded plate pushes up along the laboratory's vertical, -1 where it would pull, 0 unloaded
+    for plate, force, _ in wrenches:
+        vertical = force @ plate.axes[plate.vertical]
+        clear = vertical[np.abs(vertical) > CLEAR_LOAD_N]
+        up.append(float(np.sign(np.sum(clear * np.abs(clear)))))
     most = float(np.sign(sum(up)))
     parts, channels = [], []
     for (plate, force, moment), sense in zip(wrenches, up, strict=True):
@@ -273,13 +277,6 @@ def _zeroed(
         spoils = "the offset of the plate, which is not removed"
         return values, [Finding("note", "plate zero", parameters.file, what, spoils)]
     return values - offset, []
-
-
-def _upward(plate: ForcePlate, force: Values) -> float:
-    """+1 where a loaded plate pushes up along the laboratory's vertical, -1 where it would pull, 0 if not loaded."""
-    vertical = force @ plate.axes[plate.vertical]
-    clear = vertical[np.abs(vertical) > CLEAR_LOAD_N]
-    return float(np.sign(np.sum(clear * np.abs(clear))))
 
 
 def _with_origin(

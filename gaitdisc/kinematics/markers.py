@@ -148,7 +148,15 @@ def walking_frame(
     up (3,): up in the laboratory
     """
     if given is not None:
-        return WalkingFrame(_frames(np.tile(_level_given(given, up), (len(origin), 1)), up), "forward as given")
+        stated = np.asarray(given, float)
+        size = float(np.linalg.norm(stated)) if stated.shape == (3,) else 0.0
+        if not size > 0 or not abs(stated @ up) <= 0.5 * size:
+            raise StrideError(
+                "the direction of walking must be a horizontal vector of three numbers",
+                f"it is {tuple(np.ravel(stated).tolist())}, up is {tuple(up.tolist())}",
+                "Write it in the laboratory's axes, for example 0 -1 0.",
+            )
+        return WalkingFrame(_frames(np.tile(_level(stated, up), (len(origin), 1)), up), "forward as given")
     known = np.isfinite(origin).all(axis=1) & np.isfinite(facing).all(axis=1)
     if not known.any():
         raise StrideError("the direction of walking needs the pelvis", "no frame has it", "Fill its marker gaps.")
@@ -172,18 +180,6 @@ def walking_frame(
     else:
         words += f", which turns by {turned:.0f} deg"
     return WalkingFrame(_frames(paths, up), words)
-
-
-def _level_given(given: Sequence[float], up: Values) -> Values:
-    forward = np.asarray(given, float)
-    size = float(np.linalg.norm(forward)) if forward.shape == (3,) else 0.0
-    if not size > 0 or not abs(forward @ up) <= 0.5 * size:
-        raise StrideError(
-            "the direction of walking must be a horizontal vector of three numbers",
-            f"it is {tuple(np.ravel(forward).tolist())}, up is {tuple(up.tolist())}",
-            "Write it in the laboratory's axes, for example 0 -1 0.",
-        )
-    return _level(forward, up)
 
 
 def _level_part(vector: Values, up: Values) -> Values:

@@ -179,23 +179,18 @@ def legs(
         wanted = {name: poses[name] for name in own.values() if name not in moving}  # the pelvis is filtered once
         moving |= segment_motions(wanted, path.time, settings.marker_cutoff_hz)
         lengths = segment_lengths(poses, side)
-        heel, toe = _foot_points(path, poses[f"foot_{side}"])
+        places = [poses[f"foot_{side}"].to_segment(part) for part in (path.heel, path.toe)]
+        seen = np.isfinite(places).all(axis=(0, 2))
+        if not seen.any():
+            raise ShapeError(
+                f"the inertia of foot_{side} needs a frame with heel, toes and the foot's pose",
+                "no frame has all three",
+                "Fill the gaps in the markers of this foot, or name others.",
+            )
+        heel, toe = (np.median(place[seen], axis=0) for place in places)
         bodies = leg_inertia(person, side, lengths, heel, toe, settings.inertia)
         found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)
     return found
-
-
-def _foot_points(path: FootPath, foot: Pose) -> tuple[Values, Values]:
-    """Heel and toes in the foot's frame, the median over the frames."""
-    places = [foot.to_segment(part) for part in (path.heel, path.toe)]
-    seen = np.isfinite(places).all(axis=(0, 2))
-    if not seen.any():
-        raise ShapeError(
-            f"the inertia of foot_{path.side} needs a frame with heel, toes and the foot's pose",
-            "no frame has all three",
-            "Fill the gaps in the markers of this foot, or name others.",
-        )
-    return np.median(places[0][seen], axis=0), np.median(places[1][seen], axis=0)
 
 
 def joint_moments(

@@ -150,8 +150,16 @@ def platforms(trial: Trial) -> list[Platform]:
             f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
             "Provide plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
         )
-    for platform in found:
-        _check_sign(platform, forces.source.file or trial.name)
+    for platform in found:  # one that carries a foot pushes it up
+        load = platform.load_n
+        lowest = int(np.argmin(load))
+        if load.max() < CLEAR_LOAD_N < -load[lowest]:
+            found_n = f"{load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N"
+            raise UnitError(
+                f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
+                f"{forces.source.file or trial.name} has {found_n}",
+                "The sign is reversed. Export the force of the ground on the foot.",
+            )
     return found
 
 
@@ -202,15 +210,3 @@ def _three(forces: Recording, pattern: str) -> Values:
             "Export force, point and moment of the ground in all three directions, or map them in [channels].",
         )
     return np.stack([forces[name] for name in names], axis=1)
-
-
-def _check_sign(platform: Platform, file: str) -> None:
-    """Refuse a platform that pulls: one that carries a foot pushes it up."""
-    load = platform.load_n
-    lowest = int(np.argmin(load))
-    if load.max() < CLEAR_LOAD_N < -load[lowest]:
-        raise UnitError(
-            f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
-            f"{file} has {load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N",
-            "The sign is reversed. Export the force of the ground on the foot.",
-        )

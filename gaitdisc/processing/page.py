@@ -138,7 +138,13 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
     places = file_names([one.where for one in kept])
     figures = [one for own in kept if drawn for one in cycles_figures(own, f"{name}-{places[own.where]}")]
     tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
-    return Block(f"cycles-{name}", sets[0].subject, (_person(sets),), tuple(figures), tuple(tables))
+    parts = []
+    for one in sets:
+        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
+        ground = "over ground" if one.over_ground else "on a treadmill"
+        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
+        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
+    return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(parts)}.",), tuple(figures), tuple(tables))
 
 
 def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str]:
@@ -155,16 +161,6 @@ def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) ->
         files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
         keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
-
-
-def _person(sets: Sequence[PooledCycles]) -> str:
-    parts = []
-    for one in sets:
-        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in ("l", "r"))
-        ground = "over ground" if one.over_ground else "on a treadmill"
-        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
-        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
-    return f"{'; '.join(parts)}."
 
 
 @in_style
