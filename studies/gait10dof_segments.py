@@ -14,7 +14,7 @@ import gaitdisc as gd
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.body_inertia import LEG, Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import joint_wrenches, needed_wrench, segment_motion
 from gaitdisc.kinetics.plate_steps import foot_paths
@@ -40,10 +40,7 @@ def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial)
         side = platform.side
         both = np.hstack([platform.wrench.force, platform.wrench.moment])
         there = np.stack([np.interp(smooth.time, platform.time, column) for column in both.T], axis=1)
-        needed = [
-            needed_wrench(moving[f"{segment}_{side}"], model.rigid(segment, side), platform.up)
-            for segment in ("foot", "shank", "thigh")
-        ]
+        needed = [needed_wrench(moving[f"{part}_{side}"], model.rigid(part, side), platform.up) for part in LEG]
         carried = joint_wrenches(needed, Wrench(there[:, :3], there[:, 3:]))
         for (name, segment), wrench in zip(JOINTS.items(), carried, strict=True):
             moment = wrench.about(poses[f"{segment}_{side}"].origin)[:, 2]

@@ -75,14 +75,6 @@ def house_kinetics(
     plates_n (frame, plate) [N]: size of the force of each plate; no column where there is none
     Source: Vicon, Plug-in Gait Reference Guide: kinetic outputs are normalised by body mass.
     """
-    kinetics, findings = _in_true_unit(kinetics, plates_n, mass_kg, file)
-    kinetics, more = _internal(kinetics, file)
-    return kinetics, findings + more
-
-
-def _in_true_unit(
-    kinetics: Kinetics, plates_n: Values, mass_kg: float | None, file: str
-) -> tuple[Kinetics, list[Finding]]:
     values, channels = kinetics
     reaction = _by_plates(values, channels, plates_n) or _by_size(values, channels, _REACTION, "force")
     joints = _by_size(values, channels, LEG_MOMENT, "moment")
@@ -110,7 +102,8 @@ def _in_true_unit(
         channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)
         what = f"{', '.join(of_weight[:2])}{', ...' * (len(of_weight) > 2)} are in percent of body weight"
         findings.append(Finding("note", "per body mass", file, what, ""))
-    return (values, channels), findings
+    kinetics, more = _internal((values, channels), file)
+    return kinetics, findings + more
 
 
 def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) -> Evidence | None:

@@ -256,17 +256,15 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     if len(raw) < count * width:
         raise _broken(header, f"parameter {name[:24]!r} has {len(raw)} bytes, but {dimensions} need {count * width}")
     if is_text:
-        length = dimensions[0] if dimensions else 1
-        return tuple(_text(raw[at : at + length]) for at in range(0, len(raw), length)) if length else ()
+        length, texts = dimensions[0] if dimensions else 1, []
+        for cell in (raw[at : at + length] for at in range(0, len(raw), length or 1)):
+            try:
+                text = cell.decode("utf-8")
+            except UnicodeDecodeError:
+                text = cell.decode("latin-1")
+            texts.append(re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", text).rstrip())
+        return tuple(texts)
     return decoded(raw, width, header.processor).reshape(dimensions or (1,), order="F")
-
-
-def _text(raw: bytes) -> str:
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    return re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", text).rstrip()
 
 
 def _broken(header: C3DHeader, found: str) -> ReadError:

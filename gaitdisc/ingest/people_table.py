@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
@@ -126,18 +126,16 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
             said: list[str] = []
             found.setdefault(person_key(unquoted(cells["id"])), []).append(_measured(cells, stature, said))
             notes += [f"{file}, line {number}: {words}" for words in said]
-    return {word: _agreed(rows, word, file, notes) for word, rows in found.items()}
-
-
-def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) -> Measured:
-    """What all rows of a person say; where two differ nothing is taken."""
-    values: dict[str, float | str | None] = {}
-    for name, empty in vars(Measured()).items():
-        said = list(dict.fromkeys(getattr(one, name) for one in rows if getattr(one, name) != empty))
-        values[name] = said[0] if len(said) == 1 else empty
-        if len(said) > 1:
-            notes.append(f"{file}: {name} of {word!r} differs between rows ({said[0]}, {said[1]}); not used")
-    return Measured(**values)  # type: ignore[arg-type]
+    agreed = {}  # what all rows of a person say; where two differ nothing is taken
+    for word, measures in found.items():
+        values: dict[str, Any] = {}
+        for name, empty in vars(Measured()).items():
+            stated = list(dict.fromkeys(getattr(one, name) for one in measures if getattr(one, name) != empty))
+            values[name] = stated[0] if len(stated) == 1 else empty
+            if len(stated) > 1:
+                notes.append(f"{file}: {name} of {word!r} differs between rows ({stated[0]}, {stated[1]}); not used")
+        agreed[word] = Measured(**values)
+    return agreed
 
 
 def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) -> Measured:

@@ -137,17 +137,14 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
         sizes = {name: np.abs(recording[name][np.isfinite(recording[name])]) for name in meant}
         peaks = {name: float(np.quantile(size, 0.999)) if size.size else 0.0 for name, size in sizes.items()}
         most = max(peaks, key=lambda name: peaks[name], default="")
-        walks = recording.duration_s >= STANCE_S[0] and (key == "moments" or (most and _like_steps(recording, most)))
+        walks = recording.duration_s >= STANCE_S[0]
+        if walks and most and key == "forces":
+            force = np.abs(np.nan_to_num(recording[most]))
+            peak = float(force.max())
+            longest = max(((end - start) for start, end in runs(force > SHARE * peak)), default=0) / recording.rate_hz
+            walks = np.mean(force < EMPTY * peak) > EMPTY and STANCE_S[0] <= longest <= STANCE_S[1]
         if most and low <= peaks[most] <= high and walks:
             what = f"peaks at {peaks[most]:.3g} {unit} and {like}: it looks like {unit} per kg of body mass"
             spoils = f"contacts by force, moments and powers; state {unit}/kg, or multiply by body mass"
             found.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
     return found
-
-
-def _like_steps(forces: Recording, name: str) -> bool:
-    force = np.abs(np.nan_to_num(forces[name]))
-    peak = float(force.max())
-    lengths = [(end - start) / forces.rate_hz for start, end in runs(force > SHARE * peak)]
-    empty = float(np.mean(force < EMPTY * peak))
-    return empty > EMPTY and max(lengths, default=0.0) >= STANCE_S[0] and max(lengths, default=0.0) <= STANCE_S[1]

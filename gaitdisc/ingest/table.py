@@ -43,7 +43,19 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     """
     raw = read_raw(path)
     if raw.name.lower().endswith(".parquet"):
-        labels, values = _parquet(raw, channels)
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        try:
+            frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
+        except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
+            said = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+            raise ReadError(
+                f"{raw.name} must be a Parquet table",
+                f"it cannot be read as one: {said}",
+                "Write it again, or correct its ending.",
+            ) from error
+        labels, values = _of_frame(frame, raw.name, channels)
         return _trial(raw.source("parquet"), _timed(labels, values, channels, raw.name), channels)
     labels, cells = _text(raw, channels)
     return _trial(raw.source("csv"), _timed(labels, cells.values, channels, raw.name, cells), channels)
@@ -190,21 +202,6 @@ def _no_time(file: str, found: str) -> ReadError:
         found,
         'Rename the column, or map it in the study\'s [channels]: "Frame time" = "time [s]".',
     )
-
-
-def _parquet(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str], Values]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
-    except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
-        raise ReadError(
-            f"{raw.name} must be a Parquet table",
-            f"it cannot be read as one: {str(error).splitlines()[0][:120] if str(error) else type(error).__name__}",
-            "Write it again, or correct its ending.",
-        ) from error
-    return _of_frame(frame, raw.name, channels)
 
 
 def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None) -> tuple[list[str], Values]:

@@ -194,8 +194,15 @@ def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, s
 
     returns: side; why the step cannot be used; whether that is a doubt
     """
-    beside = {side: _distance(platform, foot) for side, foot in feet.items()}
-    known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
+    pressure, known = platform.pressure_centre(), {}  # side -> how far the centre of pressure is from the foot [m]
+    for side, foot in feet.items():
+        load = np.interp(foot.time, platform.time, platform.load_n)
+        place = np.stack([np.interp(foot.time, platform.time, axis) for axis in pressure.T], axis=1)
+        frames = platform.span.holds(foot.time)
+        frames &= load > CLEAR_LOAD * load[frames].max(initial=0.0)
+        metres = foot.beside(place, platform.up)[frames]
+        if np.isfinite(metres).any():
+            known[side] = float(np.nanmedian(metres))
     side = min(known, key=lambda key: known[key], default="")
     if platform.side:
         own = known.get(platform.side, 0.0)
@@ -213,17 +220,6 @@ def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, s
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm from the nearest foot ({side})", "warning"
     return side, _edge(feet[side], platform), ""
-
-
-def _distance(platform: Platform, foot: FootPath) -> float:
-    pressure = platform.pressure_centre()
-    load = np.interp(foot.time, platform.time, platform.load_n)
-    place = np.stack([np.interp(foot.time, platform.time, axis) for axis in pressure.T], axis=1)
-    frames = platform.span.holds(foot.time)
-    frames &= load > CLEAR_LOAD * load[frames].max(initial=0.0)
-    metres = foot.beside(place, platform.up)[frames]
-    metres = metres[np.isfinite(metres)]
-    return float(np.median(metres)) if len(metres) else np.nan
 
 
 def _stands_s(foot: FootPath, platform: Platform) -> float:

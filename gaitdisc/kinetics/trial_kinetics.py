@@ -153,19 +153,15 @@ def trial_kinetics(
     moments = joint_moments(both, loads, time, up, person, settings)
     balance = ForceBalance(0, np.nan, np.nan, np.nan)
     if len(both) == 2:
-        alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, airborne)
-        balance = force_balance(both, alike, up, person, _acceleration(markers, trunk, settings.marker_cutoff_hz))
+        cutoff_hz, acceleration = settings.marker_cutoff_hz, None
+        alike = foot_loads(found, steps, time, cutoff_hz, airborne)
+        if trunk:
+            mean = np.mean([marker_position(markers, name) for name in trunk], axis=0)
+            channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
+            carried = Recording(time, mean, channels, source=markers.source)
+            smooth = lowpassed(carried, cutoff_hz) if np.isfinite(cutoff_hz) else carried
+            acceleration = differentiated(smooth.values, markers.rate_hz, 2)
+        balance = force_balance(both, alike, up, person, acceleration)
     findings = (*empty_findings(found, file), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)
     return TrialKinetics(moments, tuple(steps), balance, findings)
-
-
-def _acceleration(markers: Recording, names: Sequence[str], cutoff_hz: float) -> Values | None:
-    """Acceleration of the mean of some markers, (frame, 3) [m/s2]; None where none is named."""
-    if not names:
-        return None
-    mean = np.mean([marker_position(markers, name) for name in names], axis=0)
-    channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
-    trunk = Recording(markers.time, mean, channels, source=markers.source)
-    smooth = lowpassed(trunk, cutoff_hz) if np.isfinite(cutoff_hz) else trunk
-    return differentiated(smooth.values, trunk.rate_hz, 2)

@@ -111,7 +111,18 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
         f"Mean walking curves of {participant}, {counted(len(groups), 'channel')}, {run.nominal} and {run.exo}. With "
         f"the device: {range_words(numbers[numbers['walk'] == 'exo'])}."
     )
-    return Figure(name, _caption(run, participant, numbers), alt, numbers, drawn)
+    counts = []
+    for walk, rows in numbers.groupby("walk", sort=False):
+        fewest, most = int(rows["n"].min()), int(rows["n"].max())
+        word = run.nominal if walk == "nominal" else run.exo
+        counts.append(f"{fewest if fewest == most else f'{fewest}-{most}'} strides ({word})")
+    caption = (
+        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, n = "
+        f"{', '.join(counts)}; entire walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
+        "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
+        "direction; left and right of one joint share a scale."
+    )
+    return Figure(name, caption, alt, numbers, drawn)
 
 
 def walks_key(run: StudyRun) -> list[Line2D]:
@@ -124,20 +135,6 @@ def walks_key(run: StudyRun) -> list[Line2D]:
         Line2D([], [], color=SIDES["l"].colour, label=f"{run.exo}, left"),
         Line2D([], [], color=SIDES["r"].colour, label=f"{run.exo}, right"),
     ]
-
-
-def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
-    counts = []
-    for walk, rows in numbers.groupby("walk", sort=False):
-        low, high = int(rows["n"].min()), int(rows["n"].max())
-        word = run.nominal if walk == "nominal" else run.exo
-        counts.append(f"{low if low == high else f'{low}-{high}'} strides ({word})")
-    return (
-        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, n = "
-        f"{', '.join(counts)}; entire walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
-        "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
-        "direction; left and right of one joint share a scale."
-    )
 
 
 def range_words(numbers: pd.DataFrame) -> str:

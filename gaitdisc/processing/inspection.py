@@ -16,7 +16,7 @@ from gaitdisc.notebook import html_of
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.processing.process import ReadWalk, StudyWalks, quality_findings, stride_findings
+from gaitdisc.processing.process import StudyWalks, quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
@@ -124,7 +124,12 @@ def _processed(study: Study, participant: Participant, reader: C3DReader) -> dic
         if not is_walk(study, planned):
             continue
         try:
-            found[place] = _of_study(walks.read_walk(planned), study, _named(planned))
+            read = walks.read_walk(planned)
+            try:
+                walk = read.processed(study)
+                found[place] = _seen(read.trial, _named(planned), walk.strides, walk.findings)
+            except GaitdiscError as error:
+                found[place] = replace(inspected_trial(read.trial, _named(planned)), refusal=str(error))
         except GaitdiscError as error:
             found[place] = Inspection(_named(planned), participant.id, planned.condition, refusal=str(error))
     return found
@@ -196,14 +201,6 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
     except GaitdiscError as error:
         return Inspection(path.name, refusal=str(error))
     return inspected_trial(trial, path.name)
-
-
-def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
-    try:
-        walk = read.processed(study)
-    except GaitdiscError as error:
-        return replace(inspected_trial(read.trial, name), refusal=str(error))
-    return _seen(read.trial, name, walk.strides, walk.findings)
 
 
 def inspected_trial(trial: Trial, name: str) -> Inspection:

@@ -135,30 +135,29 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, f
     steps = step_events(trial, study.strides.detector, direction, weight_n)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
     legs, states, lost = cycle_channels(trial, study.filters, computed.from_markers)
-    strides = _strides(steps, study)
+    strides = {}  # between the contacts as they were seen, without what is too short, too long, or is two
+    for side, times in steps.contacts.items():
+        lengths = np.diff(times)
+        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
+        whole &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
+        if whole.any():
+            strides[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
     _verify(trial, strides, outside)
     sides = side_findings(trial, strides, standing.weighed_n or weight_n)
     if plate_steps is not None:  # whose findings say so already
         sides = [finding for finding in sides if finding.kind != "plate step"]
-    findings = (*trial.findings, *steps.findings, *quality_findings(_known(trial)), *sides, *lost)
+    known = {key: one for key, one in trial.streams.items() if key in ("kinematics", "emg", "forces")}
+    for key in ("kinematics", "emg"):  # channels of the vocabulary are looked at
+        names = [name for name in known[key].names if name in vocabulary().by_name] if key in known else []
+        known |= {key: known[key].selected(names)} if key in known else {}
+    quality = quality_findings(replace(trial, streams=known))
+    findings = (*trial.findings, *steps.findings, *quality, *sides, *lost)
     findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     plates = plate_loadings(trial, rise_of(weight_n))
     feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
     kept = tuple(put_away(one, folder) for one in states)
     return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, plate_steps)
-
-
-def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
-    """Strides of each foot between the contacts as they were seen, without what is too short, too long, or is two."""
-    found = {}
-    for side, times in steps.contacts.items():
-        lengths = np.diff(times)
-        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
-        whole &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
-        if whole.any():
-            found[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
-    return found
 
 
 def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
@@ -171,19 +170,6 @@ def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
             verify_walking(legs, strides, 1, LEAST_COVERAGE if strides.detector == "angles" and not outside else 0.0)
         if f"knee_angle_{side}" in legs.names:
             verify_sides(legs, strides)
-
-
-def _known(trial: Trial) -> Trial:
-    """Channels that are looked at: those of the vocabulary, and markers only where nothing else is there."""
-    words = {channel.name for channel in vocabulary().channels}
-    streams = {}
-    for key, recording in trial.streams.items():
-        if key in ("kinematics", "emg"):
-            names = [name for name in recording.names if name in words]
-            streams |= {key: recording.selected(names)} if names else {}
-        elif key == "forces":
-            streams[key] = recording
-    return replace(trial, streams=streams)
 
 
 def _offset_s(later: Later, kind: str, detector: str) -> float | None:

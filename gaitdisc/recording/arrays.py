@@ -80,11 +80,7 @@ def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
 
 
 class Span(NamedTuple):
-    """A part of a recording, from its first to its last instant [s].
-
-    >>> Span(1.0, 3.0).shared(Span(2.5, 4.0)).seconds
-    0.5
-    """
+    """A part of a recording, from its first to its last instant [s]."""
 
     start: float
     end: float

@@ -99,7 +99,14 @@ class Recording:
                 f"the marks have shape {np.shape(suspect)}, the values {values.shape}",
                 "Give one mark per sample and channel.",
             )
-        _check_names(channels, self.source.file)
+        names = [channel.name for channel in channels]
+        doubled = sorted({name for name in names if names.count(name) > 1})
+        if doubled:
+            raise ChannelError(
+                "each channel must have its own name",
+                f"{self.source.file or 'the recording'} contains {doubled[0]!r} {names.count(doubled[0])} times",
+                "Give the columns different names in the study's [channels].",
+            )
         _check_steps(time, self.source.file)
         for name, value in (("time", time), ("values", values), ("channels", channels)):
             object.__setattr__(self, name, value)
@@ -263,17 +270,6 @@ class Recording:
 def several(names: str | Sequence[str]) -> tuple[str, ...]:
     """Names of which one may be given by itself: a string is one name, and no sequence of letters."""
     return (names,) if isinstance(names, str) else tuple(names)
-
-
-def _check_names(channels: Sequence[Channel], file: str) -> None:
-    names = [channel.name for channel in channels]
-    doubled = sorted({name for name in names if names.count(name) > 1})
-    if doubled:
-        raise ChannelError(
-            "each channel must have its own name",
-            f"{file or 'the recording'} contains {doubled[0]!r} {names.count(doubled[0])} times",
-            "Give the columns different names in the study's [channels].",
-        )
 
 
 def _check_steps(time: Values, file: str) -> None:

@@ -267,17 +267,12 @@ def _dwells(x: Values, rate_hz: float) -> NDArray[np.bool_] | None:
     sine = 2 / np.pi * float(np.arcsin(np.sqrt(BAND_SHARE)))
     if marks.mean() < DWELL_TIMES * sine or robust_sd(highest) > SPREAD_SHARE * reach:
         return None
-    corners = [_corner(x, start + int(np.argmax(x[start:end])), reach) for start, end in spans]
-    return marks if np.median(corners) >= CORNER else None
-
-
-def _corner(x: Values, top: int, reach: float) -> float:
-    """Samples in a row about a peak within 1 % of the reach, over those within 4 %."""
-    wide = []
-    for share in (BAND_SHARE, 4 * BAND_SHARE):
-        below = np.flatnonzero(~(x >= x[top] - share * reach))
-        at = int(np.searchsorted(below, top))
-        first = below[at - 1] if at else -1
-        last = below[at] if at < len(below) else len(x)
-        wide.append(last - first - 1)
-    return wide[0] / wide[1]
+    wide = np.empty((len(spans), 2))  # samples in a row about each peak within 1 % of the reach, and within 4 %
+    for dwell, (start, end) in enumerate(spans):
+        peak = start + int(np.argmax(x[start:end]))
+        for column, share in enumerate((BAND_SHARE, 4 * BAND_SHARE)):
+            below = np.flatnonzero(~(x >= x[peak] - share * reach))
+            at = int(np.searchsorted(below, peak))
+            first = below[at - 1] if at else -1
+            wide[dwell, column] = (below[at] if at < len(below) else len(x)) - first - 1
+    return marks if np.median(wide[:, 0] / wide[:, 1]) >= CORNER else None

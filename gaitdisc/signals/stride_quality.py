@@ -207,7 +207,8 @@ def late_change_findings(recording: Recording, strides: Strides) -> list[Finding
     largest = sorted(change.shifts, key=lambda name: -change.shifts[name])[:3]
     units = {channel.name: channel.unit for channel in recording.channels}
     moved = ", ".join(f"{name} by {change.shifts[name]:.2g} {units[name]}" for name in largest)
-    kind, spans = "late change" if change.size_sd >= CHANGE_SD else "drift", (Span(change.time, strides.end[-1]),)
+    kind = "late change" if change.size_sd >= CHANGE_SD else "drift"
+    spans = (Span(change.time, float(strides.end[-1])),)
     what = (
         f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} stride-to-stride "
         f"SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"

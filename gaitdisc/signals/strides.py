@@ -214,7 +214,13 @@ def stride_period(x: Values, rate_hz: float) -> tuple[float, float]:
     if last <= first + 1 or np.isfinite(x).sum() < first:
         return float("nan"), 0.0
     lags = np.arange(first - 1, last + 2)
-    r = np.array([_correlation(x[:-lag], x[lag:]) for lag in lags])
+    r = np.zeros(len(lags))
+    for place, lag in enumerate(lags):
+        both = np.isfinite(x[:-lag]) & np.isfinite(x[lag:])
+        if np.count_nonzero(both) >= 10:
+            a, b = (part - part.mean() for part in (x[:-lag][both], x[lag:][both]))
+            size = float(np.sqrt((a @ a) * (b @ b)))
+            r[place] = float(a @ b) / size if size > 0 else 0.0
     inner = r[1:-1]
     peaks = np.flatnonzero((inner > r[:-2]) & (inner >= r[2:]) & (inner > 0)) + 1
     if not len(peaks):
@@ -223,12 +229,3 @@ def stride_period(x: Values, rate_hz: float) -> tuple[float, float]:
     left, centre, right = r[first_high - 1 : first_high + 2]
     shift = 0.5 * (left - right) / (left - 2 * centre + right)
     return float((lags[first_high] + shift) / rate_hz), float(centre)
-
-
-def _correlation(a: Values, b: Values) -> float:
-    both = np.isfinite(a) & np.isfinite(b)
-    if (count := np.count_nonzero(both)) < 10:
-        return 0.0
-    a, b = (part - part.mean() for part in ((a, b) if count == len(both) else (a[both], b[both])))
-    size = float(np.sqrt((a @ a) * (b @ b)))
-    return float(a @ b) / size if size > 0 else 0.0

@@ -91,8 +91,7 @@ def test_powers_do_the_work_that_changes_the_energy():
         energy = energy + body.mass_kg * (0.5 * (velocity**2).sum(1) + GRAVITY * centre @ up)
         energy = energy + 0.5 * np.einsum("fi,fij,fj->f", spin, tensor, spin)
     gained = differentiated(energy[:, None], 100.0)[:, 0]
-    needed = found.needed(up)
-    carried = joint_wrenches([needed[segment] for segment in ("foot", "shank", "thigh")], ground)
+    carried = joint_wrenches(list(found.needed(up).values()), ground)
     recording = moments_of((poses, paths, ground, up))
     joints = 70.0 * sum(recording[f"{joint}_power_r"] for joint in ("ankle", "knee", "hip"))
     # at the hip the trunk also moves the leg: force times hip velocity and moment times the pelvis' turning

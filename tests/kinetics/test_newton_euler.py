@@ -23,10 +23,7 @@ from gaitdisc.kinetics.platform import Wrench
 
 UP = np.array([0.0, 1.0, 0.0])
 TIME = np.arange(300) / 100
-
-
-def no_ground(frames):
-    return Wrench(np.zeros((frames, 3)), np.zeros((frames, 3)))
+NO_GROUND = Wrench(np.zeros((len(TIME), 3)), np.zeros((len(TIME), 3)))
 
 
 @pytest.mark.parametrize("seed", [None, 3, 8])
@@ -37,8 +34,8 @@ def test_a_double_pendulum_has_the_moments_of_lagrange_in_every_laboratory(seed)
         shift = np.array([3.0, -1.0, 2.0])
     (upper, lower), expected = links.double_pendulum(TIME, turn, shift)
     near, far = links.bodies()
-    needed = [needed_wrench(lower, far, turn @ UP), needed_wrench(upper, near, turn @ UP)]
-    at_lower, at_upper = joint_wrenches(needed, no_ground(len(TIME)))
+    needed = [needed_wrench(*one, turn @ UP) for one in ((lower, far), (upper, near))]
+    at_lower, at_upper = joint_wrenches(needed, NO_GROUND)
     found = [w.about(m.pose.origin) @ (turn @ links.Z) for w, m in ((at_upper, upper), (at_lower, lower))]
     assert np.abs(np.stack(found, 1) - expected).max() < 1e-9
     assert np.abs(expected).max() > 5
@@ -49,7 +46,7 @@ def test_a_pendulum_from_its_poses_alone_has_its_moment_to_1_percent():
     body = links.bodies()[0]
     pose = Pose(np.tile([0.4, 1.0, -0.2], (len(TIME), 1)), links.rotations(angle))
     moving = segment_motion(smoothed_pose(pose, TIME, 6.0), 100.0)
-    moment = joint_wrenches([needed_wrench(moving, body, UP)], no_ground(len(TIME)))[0].about(pose.origin) @ links.Z
+    moment = joint_wrenches([needed_wrench(moving, body, UP)], NO_GROUND)[0].about(pose.origin) @ links.Z
     inertia = links.INERTIAS[0] + links.MASSES[0] * links.CENTRES[0] ** 2
     expected = -inertia * (2 * np.pi * 1.2) ** 2 * angle + links.MASSES[0] * GRAVITY * links.CENTRES[0] * np.sin(angle)
     inner = slice(50, -50)  # the filter's edges

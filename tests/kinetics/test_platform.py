@@ -17,6 +17,7 @@ from gaitdisc.kinetics.platform import Platform, Wrench, platforms
 from gaitdisc.recording import Recording, Surface, Trial
 from gaitdisc.recording.arrays import Span
 from gaitdisc.recording.trial import Event
+from gaitdisc.signals.contacts import CONTACT, OFF
 
 TIME = np.arange(2000) / 1000
 CORNERS = np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]])
@@ -252,12 +253,7 @@ def test_a_step_that_names_the_wrong_foot_is_unknown():
 
 
 def test_swings_are_from_foot_off_to_the_next_contact():
-    events = [
-        ("initial contact", "r", 0.1),
-        ("foot off", "l", 0.2),
-        ("initial contact", "l", 0.6),
-        ("foot off", "r", 0.7),
-    ]
+    events = [(CONTACT, "r", 0.1), (OFF, "l", 0.2), (CONTACT, "l", 0.6), (OFF, "r", 0.7)]
     trial = Trial("walk", {}, tuple(Event(*event) for event in events))
     assert swings(trial, {}) == {"r": [], "l": [(0.2, 0.6)]}
 

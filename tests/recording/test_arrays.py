@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides, Trial
-from gaitdisc.recording.arrays import autocorrelation_time, mean_where_known, read_only, runs
+from gaitdisc.recording.arrays import Span, autocorrelation_time, mean_where_known, read_only, runs
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped, wrapped
 
 
@@ -35,6 +35,11 @@ def test_runs_give_the_mask_back(mask):
         assert end > start
         back[start:end] = True
     assert np.array_equal(back, mask)
+
+
+def test_a_span_holds_its_ends_and_shares_what_lies_in_both():
+    assert Span(0.5, 1.0).holds(np.array([0.4, 0.5, 1.0, 1.1])).tolist() == [False, True, True, False]
+    assert Span(0.5, 1.0).shared(Span(0.75, 2.0)).seconds == 0.25
 
 
 HEADING = Channel("pelvis_rotation", "angle", "deg")
