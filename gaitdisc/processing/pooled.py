@@ -146,10 +146,10 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, f
     sides = side_findings(trial, strides, standing.weighed_n or weight_n)
     if plate_steps is not None:  # whose findings say so already
         sides = [finding for finding in sides if finding.kind != "plate step"]
-    known = {key: one for key, one in trial.streams.items() if key in ("kinematics", "emg", "forces")}
-    for key in ("kinematics", "emg"):  # channels of the vocabulary are looked at
-        names = [name for name in known[key].names if name in vocabulary().by_name] if key in known else []
-        known |= {key: known[key].selected(names)} if key in known else {}
+    known = {}
+    for key in {"kinematics", "emg", "forces"} & set(trial.streams):  # channels of the vocabulary are looked at
+        names = [name for name in trial.stream(key).names if key == "forces" or name in vocabulary().by_name]
+        known |= {key: trial.stream(key).selected(names)} if names else {}
     quality = quality_findings(replace(trial, streams=known))
     findings = (*trial.findings, *steps.findings, *quality, *sides, *lost)
     findings += standing.findings(trial, legs is not None)

@@ -18,7 +18,7 @@ from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 
 class Limits(NamedTuple):
-    """Between which a measure of a person lies."""
+    """Least and largest value that something can have."""
 
     least: float
     most: float
@@ -27,6 +27,15 @@ class Limits(NamedTuple):
     def hold(self, value: float) -> bool:
         """Whether a value is possible; NaN is not."""
         return self.least <= value <= self.most
+
+    def check(self, name: str, value: float | None) -> None:
+        """Refuse a value that no person has."""
+        if value is not None and not self.hold(value):
+            raise UnitError(
+                f"a person's {name} must be between {self.least:g} and {self.most:g} {self.unit}",
+                f"found {value:g} {self.unit}",
+                f"Give it in {self.unit}.",
+            )
 
 
 LENGTHS_M = {
@@ -74,24 +83,14 @@ class BodyMeasures:
 
     def __post_init__(self) -> None:
         """Refuse what no person measures, once."""
-        _check("mass_kg", self.mass_kg, MASS_KG)
-        for name, limits in LENGTHS_M.items():
+        for name, limits in {"mass_kg": MASS_KG, **LENGTHS_M}.items():
             value = getattr(self, name)
             if isinstance(value, Mapping):
                 for side, length in value.items():
-                    _check(f"{name} of side {side!r}", length, limits)
+                    limits.check(f"{name} of side {side!r}", length)
                 object.__setattr__(self, name, frozen(value))
             else:
-                _check(name, value, limits)
-
-
-def _check(name: str, value: float | None, limits: Limits) -> None:
-    if value is not None and not limits.hold(value):
-        raise UnitError(
-            f"a person's {name} must be between {limits.least:g} and {limits.most:g} {limits.unit}",
-            f"found {value:g} {limits.unit}",
-            f"Give it in {limits.unit}.",
-        )
+                limits.check(name, value)
 
 
 SHOWN = 6  # findings of a notebook's table

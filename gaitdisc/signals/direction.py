@@ -56,6 +56,14 @@ def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> Values:
     return np.mean([marker_position(markers, name) for name in pelvis], axis=0)
 
 
+def nearest_axis(vector: Values) -> Values:
+    """Axis of the laboratory (3,), of length 1, that lies nearest to a vector (3,)."""
+    axis = np.zeros(3)
+    longest = int(np.argmax(np.abs(vector)))
+    axis[longest] = np.copysign(1.0, vector[longest])
+    return axis
+
+
 def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequence[str]) -> Direction:
     """Direction of walking: the path of the pelvis over ground, the swing of the heels about it on a treadmill.
 
@@ -75,12 +83,8 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
             f"{', '.join(pelvis)}",
             "Fill the gaps in the markers, or choose another detector in [strides].",
         )
-    up_axis = int(np.argmax(np.abs(np.nanmean(np.concatenate(swings), axis=0))))
-    up = np.zeros(3)
-    up[up_axis] = 1.0
-    if np.nanmean(np.concatenate(swings)[:, up_axis]) > 0:
-        up = -up
-    level = [i for i in range(3) if i != up_axis]
+    up = nearest_axis(-np.nanmean(np.concatenate(swings), axis=0))
+    level = np.flatnonzero(up == 0).tolist()
     headings = _headings(centre, level, markers.rate_hz)
     if headings is not None:
         angle = np.unwrap(np.arctan2(headings[:, level[1]], headings[:, level[0]]))
