@@ -76,7 +76,7 @@ class ForcePlate:
             force = np.column_stack([x12 + x34, y14 + y23, z1 + z2 + z3 + z4])
             turning = b * (x34 - x12) + a * (y14 - y23)
             moment = np.column_stack([b * (z1 + z2 - z3 - z4), a * (z2 + z3 - z1 - z4), turning])
-            return force, moment + np.cross(force, [0, 0, self.origin[2]])
+            return force, moment + np.cross(force, np.array([0.0, 0.0, self.origin[2]]))
         force = values[:, :3]
         if self.kind == 1:
             point = np.column_stack([values[:, 3:5], np.zeros(len(values))])

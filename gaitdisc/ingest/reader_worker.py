@@ -175,14 +175,7 @@ def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
     """Answer requests, lines of JSON, until there are no more; arrays follow an answer as raw float64."""
     for line in iter(requests.readline, b""):
         request = json.loads(line)
-        # the system ends this process when it takes more memory, or more processor time from now on
-        with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no `resource`
-            import resource
-
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            resource.setrlimit(resource.RLIMIT_AS, (request["cap_bytes"], resource.getrlimit(resource.RLIMIT_AS)[1]))
-            until_s = math.ceil(time.process_time() + request["limit_s"])
-            resource.setrlimit(resource.RLIMIT_CPU, (until_s, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+        _limit(request["cap_bytes"], request["limit_s"])
         with Path(os.devnull).open("w") as nowhere:
             # If the parent is gone there is nobody to stop a reader that waits for ever but this.
             faulthandler.dump_traceback_later(request["clock_s"] + 5, exit=True, file=nowhere)
@@ -198,6 +191,17 @@ def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
             answers.flush()
             del arrays
             faulthandler.cancel_dump_traceback_later()
+
+
+def _limit(cap_bytes: int, limit_s: float) -> None:
+    """Let the system end this process when it takes more memory, or more processor time from now on."""
+    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no `resource`
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (cap_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
+        until_s = math.ceil(time.process_time() + limit_s)
+        resource.setrlimit(resource.RLIMIT_CPU, (until_s, resource.getrlimit(resource.RLIMIT_CPU)[1]))
 
 
 if __name__ == "__main__":

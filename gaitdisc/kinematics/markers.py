@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, ShapeError, StrideError
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.direction import nearest_axis
 
 STILL_S = 0.5
 STEP_S = 0.1
@@ -104,14 +103,16 @@ def up_axis(pelvis: Values, feet: Values, file: str = "") -> Values:
         )
     mean = lines.mean(axis=0)
     size = float(np.linalg.norm(mean))
-    up = nearest_axis(mean)
-    if not size > 0 or mean @ up < UPRIGHT * size:
+    axis = int(np.argmax(np.abs(mean)))
+    if not size > 0 or abs(mean[axis]) < UPRIGHT * size:
         raise ShapeError(
             "one axis of the laboratory must point up, along which the pelvis is above the feet",
             f"{file or 'the recording'}: the vector from feet to pelvis is "
             f"({', '.join(f'{part:.3g}' for part in mean)}) m",
             "Export the markers in a level frame.",
         )
+    up = np.zeros(3)
+    up[axis] = np.sign(mean[axis])
     return up
 
 

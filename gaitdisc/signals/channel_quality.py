@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, Values, robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Span, Values, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
+from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 CLIPPED_SHARE = 1e-3
@@ -63,15 +64,15 @@ def channel_findings(recording: Recording) -> list[Finding]:
         stops = clipped(x, rests)
         values = " and ".join(f"{value:.4g}" for value in np.unique(x[stops]))
         jumps = np.zeros(len(x), bool) if rests else jumping(x)
-        for kind, marks, happens, spoils in (
+        for kind, marks, happens, lost in (
             ("clipped", stops, f"stops at {values} {channel.unit}", "the peaks, which are lost"),
             ("jump", jumps, "jumps from one sample to the next", "velocity and acceleration there"),
         ):
             if marks.any():
                 seconds = marks.sum() / recording.rate_hz
-                what = f"{happens}, in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
+                where = f"{happens}, in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
                 file, spans = recording.source.file, spans_s(recording.time, marks)
-                findings.append(Finding("warning", kind, file, what, spoils, channel.name, spans=spans))
+                findings.append(Finding("warning", kind, file, where, lost, channel.name, spans=spans))
     return findings
 
 

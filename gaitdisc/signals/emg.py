@@ -20,9 +20,10 @@ import numpy as np
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, robust_sd, spans_s
+from gaitdisc.recording.arrays import Values, spans_s
 from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.butterworth import highpassed, lowpassed
+from gaitdisc.signals.series import robust_sd
 
 HIGHPASS_HZ = 40.0
 ENVELOPE_HZ = 10.0

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Values, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
+from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MAX_SPLINE_S = 0.1

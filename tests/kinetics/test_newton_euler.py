@@ -34,8 +34,8 @@ def test_a_double_pendulum_has_the_moments_of_lagrange_in_every_laboratory(seed)
         shift = np.array([3.0, -1.0, 2.0])
     (upper, lower), expected = links.double_pendulum(TIME, turn, shift)
     near, far = links.bodies()
-    needed = [needed_wrench(*one, turn @ UP) for one in ((lower, far), (upper, near))]
-    at_lower, at_upper = joint_wrenches(needed, NO_GROUND)
+    up = turn @ UP
+    at_lower, at_upper = joint_wrenches([needed_wrench(lower, far, up), needed_wrench(upper, near, up)], NO_GROUND)
     found = [w.about(m.pose.origin) @ (turn @ links.Z) for w, m in ((at_upper, upper), (at_lower, lower))]
     assert np.abs(np.stack(found, 1) - expected).max() < 1e-9
     assert np.abs(expected).max() > 5
@@ -71,8 +71,7 @@ def test_a_standing_leg_has_the_moments_of_statics():
     centres = {"foot": [0.06, -0.04, 0.0], "shank": [-0.01, -0.18, 0.0], "thigh": [-0.02, -0.17, 0.01]}
     bodies = {name: RigidBody(masses[name], np.array(centre), np.eye(3)) for name, centre in centres.items()}
     force, point = np.array([12.0, 380.0, -9.0]), np.array([0.07, 0.0, 0.11])
-    needed = [needed_wrench(at[name], bodies[name], UP) for name in ("foot", "shank", "thigh")]
-    carried = joint_wrenches(needed, Wrench.at(point, force[None]))
+    carried = joint_wrenches([needed_wrench(at[n], bodies[n], UP) for n in places], Wrench.at(point, force[None]))
     beyond = []
     for wrench, name in zip(carried, ("foot", "shank", "thigh"), strict=True):
         beyond.append(name)
