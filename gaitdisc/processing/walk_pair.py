@@ -84,15 +84,7 @@ def _with_strides(trial: Trial) -> Trial:
 def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapping[str, Contacts]]]:
     names = PREFERRED if detector == "auto" else (detector,)
     found, reasons = [], []
-    common: list[Recording | None] = [None] * len(trials)
-    if all("kinematics" in trial.streams for trial in trials):
-        # hips and knees that both have: the knee marks another percent of the stride than the hip
-        kinematics = [trial.stream("kinematics") for trial in trials]
-        both = set(kinematics[0].names) & set(kinematics[1].names)
-        hips, knees = ([f"{j}_{s}" for s in "rl" if f"hip_flexion_{s}" in both] for j in ("hip_flexion", "knee_angle"))
-        names_of_both = hips + (knees if set(knees) <= both else [])
-        common = [recording.selected(names_of_both) if hips else None for recording in kinematics]
-    for trial, joints in zip(trials, common, strict=True):
+    for trial, joints in zip(trials, _with_common_joints(trials), strict=True):
         here: dict[str, Mapping[str, Contacts]] = {}
         why = []
         for name in names:
@@ -130,6 +122,18 @@ def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str,
         )
     sides = tuple(channel.side for channel in joints.channels if channel.name.startswith("hip_flexion"))
     return angle_contacts(joints, sides)
+
+
+def _with_common_joints(trials: list[Trial]) -> list[Recording | None]:
+    """Hips and knees that both have: the knee marks another percent of the stride than the hip."""
+    if not all("kinematics" in trial.streams for trial in trials):
+        return [None] * len(trials)
+    kinematics = [trial.stream("kinematics") for trial in trials]
+    both = set(kinematics[0].names) & set(kinematics[1].names)
+    sides = [side for side in "rl" if f"hip_flexion_{side}" in both]
+    knees = [f"knee_angle_{side}" for side in sides]
+    names = [f"hip_flexion_{side}" for side in sides] + (knees if set(knees) <= both else [])
+    return [recording.selected(names) if names else None for recording in kinematics]
 
 
 def _stride_count(contacts: Mapping[str, Contacts]) -> int:
