@@ -17,7 +17,12 @@ class _LenientCache(FunctionCache):
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         """Numba looks at the function's own file alone; what it calls may lie in another, and is compiled into it."""
-        return (*super()._index_key(sig, codegen), tuple(sorted(map(_stamp, _with_called(self._py_func, {})))))
+        stamps = []
+        for function in _with_called(self._py_func, {}):  # file, and the time and size by which a changed one is known
+            file = Path(function.__code__.co_filename)
+            known = file.stat() if file.is_file() else None
+            stamps.append((str(file), known.st_mtime_ns if known else 0, known.st_size if known else 0))
+        return (*super()._index_key(sig, codegen), tuple(sorted(stamps)))
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:
@@ -43,13 +48,6 @@ def _with_called(function: Any, found: dict[Any, None]) -> dict[Any, None]:
         for name in function.__code__.co_names:
             _with_called(getattr(function.__globals__.get(name), "py_func", None), found)
     return found
-
-
-def _stamp(function: Any) -> tuple[str, int, int]:
-    """File of a function, and the time and size by which a changed one is known."""
-    file = Path(function.__code__.co_filename)
-    known = file.stat() if file.is_file() else None
-    return str(file), known.st_mtime_ns if known else 0, known.st_size if known else 0
 
 
 def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,16 +169,16 @@ def unit_factor(unit: str, to: str) -> float | None:
     """
     if "degC" in (unit, to) and offset_words(unit, to):
         return math.nan
-    one, other = _measured(unit_words(unit)), _measured(unit_words(to))
+    one, other = _measured(unit), _measured(to)
     if one is None or other is None:
         return None
     return one[0] / other[0] if one[1] == other[1] else math.nan
 
 
-def _measured(words: Iterable[tuple[str, float]]) -> tuple[float, Dimension] | None:
+def _measured(unit: str | Powers) -> tuple[float, Dimension] | None:
     """Factor to the base units, and the power of each; none where a word is unknown."""
     factor, powers = 1.0, [0.0] * len(_BASES)
-    for word, power in words:
+    for word, power in unit_words(unit) if isinstance(unit, str) else unit.items():
         if word not in _FACTORS:
             return None
         own, dimension = _FACTORS[word]
@@ -206,7 +206,7 @@ def dimension_of(unit: str | Powers) -> Dimension | None:
     >>> dimension_of("N m s/rad") == dimension_of({"kg": 1, "m": 2, "s": -1})
     True
     """
-    found = _measured(unit_words(unit) if isinstance(unit, str) else unit.items())
+    found = _measured(unit)
     if found is None:
         return None
     return tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")

@@ -14,14 +14,14 @@ import gaitdisc as gd
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.body_inertia import LEG, Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.newton_euler import joint_wrenches, segment_motion
+from gaitdisc.kinetics.newton_euler import joint_wrenches, needed_wrench, segment_motion
 from gaitdisc.kinetics.plate_steps import foot_paths
 from gaitdisc.kinetics.platform import Wrench, platforms
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 
-FEET = {"r": ("R.Heel", "R.Toe.Tip"), "l": ("L.Heel", "L.Toe.Tip")}
+HEELS, TOES = {"r": "R.Heel", "l": "L.Heel"}, {"r": "R.Toe.Tip", "l": "L.Toe.Tip"}
 JOINTS = {"ankle_angle": "foot", "knee_angle": "shank", "hip_flexion": "thigh"}
 EDGE = 25  # frames at which the filters of two programs differ
 OPENSIM_ORDER = 3  # of its low-pass, forwards and backwards
@@ -40,8 +40,8 @@ def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial)
         side = platform.side
         both = np.hstack([platform.wrench.force, platform.wrench.moment])
         there = np.stack([np.interp(smooth.time, platform.time, column) for column in both.T], axis=1)
-        chain = [(moving[f"{segment}_{side}"], model.rigid(segment, side)) for segment in ("foot", "shank", "thigh")]
-        carried = joint_wrenches(chain, Wrench(there[:, :3], there[:, 3:]), platform.up)
+        needed = [needed_wrench(moving[f"{part}_{side}"], model.rigid(part, side), platform.up) for part in LEG]
+        carried = joint_wrenches(needed, Wrench(there[:, :3], there[:, 3:]))
         for (name, segment), wrench in zip(JOINTS.items(), carried, strict=True):
             moment = wrench.about(poses[f"{segment}_{side}"].origin)[:, 2]
             if name == "knee_angle":
@@ -61,7 +61,7 @@ def against_opensim(folder: Path) -> list[tuple[str, ...]]:
     own = generalised_forces(model, solved.stream("kinematics"), ground)
     trial = gd.read([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
     static = gd.read(walk / "subject01_static.trc").stream("markers")
-    feet = foot_paths(trial.stream("markers"), FEET)
+    feet = foot_paths(trial.stream("markers"), HEELS, TOES)
     theirs, sources = solved.stream("moments"), {"the model": own}
     for joints in ("free", "held", "planar"):
         body = calibrated(static, replace(marker_set("gait2354"), joints=joints))

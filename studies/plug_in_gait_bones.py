@@ -14,12 +14,12 @@ from gaitdisc.signals.direction import marker_position
 
 WALKERS = ("HC002D", "HC030A", "HC031A", "HC032A", "HC033A", "HC036A")
 TRUNK = ("C7", "T10", "CLAV", "STRN")
-FEET = {side: (f"{side.upper()}HEE", f"{side.upper()}TOE") for side in "rl"}
+HEELS, TOES = {"r": "RHEE", "l": "LHEE"}, {"r": "RTOE", "l": "LTOE"}
 
 
 def feet(trial: gd.Trial) -> dict[str, FootPath]:
     """Paths of both feet by their markers."""
-    return foot_paths(trial.stream("markers"), FEET)
+    return foot_paths(trial.stream("markers"), HEELS, TOES)
 
 
 def static_file(gait: Path, person: str) -> Path:

@@ -31,6 +31,7 @@ from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
 from gaitdisc.ingest.table import checked_trial
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import LARGEST_BYTES, size_in_words
 
 _STEP = re.compile(r"\.([^.(){}]+)|\{(\d{1,9})\}|\((\d{1,9})\)")
@@ -57,7 +58,7 @@ class ArrayFile:
     names: tuple[str, ...]
     opened: Callable[[str], Any]  # gives the node of one of them
 
-    def numbers(self, path: str, part: str = "") -> NDArray[np.float64]:
+    def numbers(self, path: str, part: str = "") -> Values:
         """Numbers at a path.
 
         path: `name`, `struct.field`, `cells{2}`, `structs(3).field`, and at the end columns counted from 1: `x(:,2)`
@@ -116,7 +117,7 @@ class ArrayFile:
         remedy = f'Write part = "1" to "{len(node.held)}" next to the trial\'s files, or path{{1}}.'
         raise self._refused(path, f"it holds {len(node.held)} elements", remedy)
 
-    def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> NDArray[np.float64]:
+    def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:
         if not isinstance(node, np.ndarray):
             raise self._refused(path, f"it is {_what(node)}", "Name another variable, or save it as a numeric array.")
         values = np.array(node, float)
@@ -276,7 +277,7 @@ def read_arrays(
             f"none is mapped; {file.overview()}",
             'Write for example "knee(:,1)" = "knee_angle_r [deg] @ 100 Hz"; see docs/sessions.md.',
         )
-    bases: list[tuple[NDArray[np.float64], list[NDArray[np.float64]], list[Column]]] = []
+    bases: list[tuple[Values, list[Values], list[Column]]] = []
     for label, said in wanted.items():
         columns, values = _columns(file, label, said, part)
         time = _time(file, label, said_clock(said), len(values), part)
@@ -287,10 +288,7 @@ def read_arrays(
         base[1].append(values)
         base[2].extend(columns)
     source = file.raw.source(file.raw.name.rpartition(".")[2].lower())
-    return _joined(file, [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases])
-
-
-def _joined(file: ArrayFile, trials: list[Trial]) -> Trial:
+    trials = [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases]
     streams: dict[str, Recording] = {}
     findings: list[Finding] = []
     for trial in trials:
@@ -308,7 +306,7 @@ def _joined(file: ArrayFile, trials: list[Trial]) -> Trial:
     return Trial(trials[0].name, streams, findings=tuple(findings))
 
 
-def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Column], NDArray[np.float64]]:
+def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Column], Values]:
     """Channel of one column, or the three of a marker."""
     values = file.numbers(label, part)
     flat = values.squeeze()
@@ -328,7 +326,7 @@ def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Co
     )
 
 
-def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> NDArray[np.float64]:
+def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> Values:
     """Even times of a variable [s], from a number of Hz, or a variable that holds a rate or times."""
     text, unit = split_unit(clock)
     number = text.lower().removesuffix("hz").strip()

@@ -9,7 +9,6 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
@@ -21,6 +20,7 @@ from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_stream
 from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
+from gaitdisc.recording.arrays import Values
 
 ANALOG_STREAMS = ("emg", "forces", "signals")
 _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
@@ -155,11 +155,7 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
 
 
 def _streams(
-    points: NDArray[np.float64],
-    raw: NDArray[np.float64],
-    layout: C3DLayout,
-    parameters: C3DParameters,
-    labels: LabelMap,
+    points: Values, raw: Values, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap
 ) -> tuple[Streams, tuple[Surface, ...], list[Finding]]:
     unscaled, seen = unscaled_channels(parameters, layout.channels)
     raw[:, sorted(unscaled)] = np.nan
@@ -206,7 +202,7 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
     return rate, findings
 
 
-def _made_finite(values: NDArray[np.float64], what: str, file: str) -> list[Finding]:
+def _made_finite(values: Values, what: str, file: str) -> list[Finding]:
     infinite = np.isinf(values)
     if not infinite.any():
         return []

@@ -5,9 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, named_people, without_people
@@ -15,9 +12,11 @@ from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import Streams
 from gaitdisc.ingest.columns import named_channel, split_unit, stream_of
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
 # What devices put before the name that the laboratory typed: `Voltage.L Rect`, `EMG: R TA`.
+_NO_NAME = ("voltage", "analog", "raw", "signal", "emg")
 _DEVICE = re.compile(r"^(?:(?:voltage|analog|raw|emg|signal|electric potential)[\s.:_-]+)+(?=\S)", re.IGNORECASE)
 
 
@@ -70,7 +69,8 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
     alike or cut give way to the numbers in the description (`Voltage [5,1]`: `emg_5_1`), and those to the place among
     the analog channels.
     """
-    labels = [_slug(channel.plain) for channel in channels]
+    labels = [re.sub(r"[^a-z0-9]+", "_", channel.plain.lower()).strip("_") for channel in channels]
+    labels = ["" if label in _NO_NAME else re.sub(r"^emg_?", "", label) for label in labels]
     bracketed = [re.search(r"\[([\d\s,]+)\]", channel.description) for channel in channels]
     brackets = ["_".join(re.findall(r"\d+", found[1])) if found else "" for found in bracketed]
     names = []
@@ -87,7 +87,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
 
 
 def analog_streams(
-    rows: NDArray[np.float64], parameters: C3DParameters, plate_channels: set[int], labels: LabelMap
+    rows: Values, parameters: C3DParameters, plate_channels: set[int], labels: LabelMap
 ) -> tuple[Streams, list[Finding]]:
     """Streams `emg`, `signals`, mapped `forces` of rows (sample, channel) in the file's units, without plates."""
     analog = analog_labels(parameters, rows.shape[1])
@@ -172,10 +172,3 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
 def _listed(channels: list[AnalogLabel]) -> str:
     shown = ", ".join(f"#{one.number} {one.label}".strip() for one in channels[:4])
     return shown + (", ..." if len(channels) > 4 else "")
-
-
-def _slug(label: str) -> str:
-    slug = re.sub(r"[^a-z0-9]+", "_", label.lower()).strip("_")
-    if slug in ("voltage", "analog", "raw", "signal", "emg"):
-        return ""
-    return re.sub(r"^emg_?", "", slug)

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.stated_units import LEG_MOMENT
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import LENGTHS_M, MASS_KG, BodyMeasures
 
-Kinetics = tuple[NDArray[np.float64], tuple[Channel, ...]]
+Kinetics = tuple[Values, tuple[Channel, ...]]
 
 LOADED_N = 100.0  # a plate that carries a foot
 LOADED_PER_KG = 2.0  # a reaction force that is no noise, in N/kg; in N it is that all the more
@@ -54,13 +54,13 @@ def body_mass(parameters: C3DParameters) -> float | None:
     """Body mass that the file states [kg], or None."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECT", "WEIGHT")):
         mass = parameters.number(group, name)
-        if mass is not None and MASS_KG[0] <= mass <= MASS_KG[1]:
+        if mass is not None and MASS_KG.hold(mass):
             return mass
     return None
 
 
 def house_kinetics(
-    kinetics: Kinetics, plates_n: NDArray[np.float64], mass_kg: float | None, file: str
+    kinetics: Kinetics, plates_n: Values, mass_kg: float | None, file: str
 ) -> tuple[Kinetics, list[Finding]]:
     """Kinetics of a model in their true unit and with the package's sign: internal, positive as the angle is.
 
@@ -75,14 +75,6 @@ def house_kinetics(
     plates_n (frame, plate) [N]: size of the force of each plate; no column where there is none
     Source: Vicon, Plug-in Gait Reference Guide: kinetic outputs are normalised by body mass.
     """
-    kinetics, findings = _in_true_unit(kinetics, plates_n, mass_kg, file)
-    kinetics, more = _internal(kinetics, file)
-    return kinetics, findings + more
-
-
-def _in_true_unit(
-    kinetics: Kinetics, plates_n: NDArray[np.float64], mass_kg: float | None, file: str
-) -> tuple[Kinetics, list[Finding]]:
     values, channels = kinetics
     reaction = _by_plates(values, channels, plates_n) or _by_size(values, channels, _REACTION, "force")
     joints = _by_size(values, channels, LEG_MOMENT, "moment")
@@ -110,12 +102,11 @@ def _in_true_unit(
         channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)
         what = f"{', '.join(of_weight[:2])}{', ...' * (len(of_weight) > 2)} are in percent of body weight"
         findings.append(Finding("note", "per body mass", file, what, ""))
-    return (values, channels), findings
+    kinetics, more = _internal((values, channels), file)
+    return kinetics, findings + more
 
 
-def _by_plates(
-    values: NDArray[np.float64], channels: tuple[Channel, ...], plates_n: NDArray[np.float64]
-) -> Evidence | None:
+def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) -> Evidence | None:
     """Ratio of a plate's force to a foot's reaction force, where it is the same over a step."""
     for side in "LR":
         own = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
@@ -133,14 +124,12 @@ def _by_plates(
             words = f"plate {place} carries {plate[at]:.0f} N when {side}GroundReactionForce is {foot[at]:.4g}"
             if abs(ratio - 1) <= AGREES:
                 return Evidence(False, words, True)
-            if MASS_KG[0] <= ratio <= MASS_KG[1]:
+            if MASS_KG.hold(ratio):
                 return Evidence(True, words, True, float(ratio))
     return None
 
 
-def _by_size(
-    values: NDArray[np.float64], channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str
-) -> Evidence:
+def _by_size(values: Values, channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str) -> Evidence:
     own = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
     sizes = np.abs(values[:, own])
     sizes = sizes[np.isfinite(sizes)]
@@ -171,7 +160,7 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
     return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]
 
 
-def _push_off(values: NDArray[np.float64], channels: tuple[Channel, ...]) -> tuple[int, str]:
+def _push_off(values: Values, channels: tuple[Channel, ...]) -> tuple[int, str]:
     """+1 where the ankle's moment is positive at push-off, -1 where it is negative, 0 where none is seen."""
     ankles = [i for i, c in enumerate(channels) if _ANKLE.fullmatch(c.name) and c.unit in PUSH_OFF]
     moments = values[:, ankles]
@@ -210,11 +199,10 @@ def body_measures_of(parameters: C3DParameters) -> BodyMeasures:
 
 
 def _length(parameters: C3DParameters, name: str, keys: Sequence[str]) -> float | None:
-    low, high = LENGTHS_M[name]
     for group in GROUPS:
         for key in keys:
             number = parameters.number(group, key)
             for factor in FACTORS:
-                if number is not None and low <= number * factor <= high:
+                if number is not None and LENGTHS_M[name].hold(number * factor):
                     return round(number * factor, 9)
     return None

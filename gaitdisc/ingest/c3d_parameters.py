@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import MissingFileError, ReadError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import check_regular
 
 BLOCK = 512  # bytes; a C3D file counts in blocks from 1
@@ -170,7 +171,7 @@ class C3DParameters:
         texts = self.texts(group, name)
         return texts[0].strip() if texts else ""
 
-    def numbers(self, group: str, name: str) -> NDArray[np.float64]:
+    def numbers(self, group: str, name: str) -> Values:
         """Numbers of a parameter in the file's dimensions, empty where there is none."""
         value = self.values.get((group, name))
         if value is None or isinstance(value, tuple):
@@ -255,17 +256,15 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     if len(raw) < count * width:
         raise _broken(header, f"parameter {name[:24]!r} has {len(raw)} bytes, but {dimensions} need {count * width}")
     if is_text:
-        length = dimensions[0] if dimensions else 1
-        return tuple(_text(raw[at : at + length]) for at in range(0, len(raw), length)) if length else ()
+        length, texts = dimensions[0] if dimensions else 1, []
+        for cell in (raw[at : at + length] for at in range(0, len(raw), length or 1)):
+            try:
+                text = cell.decode("utf-8")
+            except UnicodeDecodeError:
+                text = cell.decode("latin-1")
+            texts.append(re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", text).rstrip())
+        return tuple(texts)
     return decoded(raw, width, header.processor).reshape(dimensions or (1,), order="F")
-
-
-def _text(raw: bytes) -> str:
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    return re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", text).rstrip()
 
 
 def _broken(header: C3DHeader, found: str) -> ReadError:

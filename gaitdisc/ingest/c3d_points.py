@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,9 +18,10 @@ from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, deco
 from gaitdisc.ingest.columns import named_channel
 from gaitdisc.ingest.stated_units import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
 from gaitdisc.recording import Finding, Recording, Source
+from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
-Part = tuple[NDArray[np.float64], tuple[Channel, ...]]
+Part = tuple[Values, tuple[Channel, ...]]
 Streams = dict[str, Part]
 AXES = "xyz"
 NUMBERS = 17  # 4 x 4, first index fastest, and how sure it is; negative where the pose is not known
@@ -53,7 +54,7 @@ def point_names(parameters: C3DParameters, count: int) -> list[str]:
     return made_unique([*labels, *[""] * (count - len(labels))], "point")
 
 
-def length_unit(parameters: C3DParameters, places: NDArray[np.float64]) -> tuple[str, list[Finding]]:
+def length_unit(parameters: C3DParameters, places: Values) -> tuple[str, list[Finding]]:
     """Unit of markers as stated, or by places (frame, coordinate) of some thousand frames where nothing is stated."""
     far, file = distance_from_origin(places), parameters.file
     text = parameters.text("POINT", "UNITS")
@@ -76,9 +77,7 @@ def length_unit(parameters: C3DParameters, places: NDArray[np.float64]) -> tuple
     return unit, [Finding("warning", "unit", file, what, "all lengths if this is wrong; set POINT:UNITS")]
 
 
-def point_streams(
-    rows: NDArray[np.float64], parameters: C3DParameters, labels: LabelMap
-) -> tuple[Streams, str, list[Finding]]:
+def point_streams(rows: Values, parameters: C3DParameters, labels: LabelMap) -> tuple[Streams, str, list[Finding]]:
     """Streams `markers`, `kinematics` and `moments` of the points.
 
     rows (frame, 3 * point): in the file's units, NaN where a point was not seen
@@ -111,7 +110,7 @@ def point_streams(
     for kind in MODEL_OUTPUTS:
         points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
         if points:
-            named = [(names[at], plain[at]) for at in points]
+            named = {names[at]: plain[at] for at in points}
             part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels)
             add_part(streams, kind.stream, part)
             findings += more
@@ -156,11 +155,7 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
 
 
 def _model_part(
-    rows: NDArray[np.float64],
-    named: Sequence[tuple[str, str]],
-    kind: ModelOutput,
-    parameters: C3DParameters,
-    labels: LabelMap,
+    rows: Values, named: Mapping[str, str], kind: ModelOutput, parameters: C3DParameters, labels: LabelMap
 ) -> tuple[Part, list[Finding]]:
     text, file = parameters.text("POINT", kind.units), parameters.file
     unit = parsed_unit(text) if text else kind.usual
@@ -174,7 +169,7 @@ def _model_part(
     values = np.asarray(convert(rows, unit, inner), float)
     quantity = kind.quantity if inner != "1" else "signal"
     channels = []
-    for name_in_file, plain in named:
+    for name_in_file, plain in named.items():
         for axis in AXES:
             label = f"{plain}.{axis}"
             mapped = labels.name(f"{name_in_file}.{axis}")

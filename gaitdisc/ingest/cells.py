@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 
 MISSING = ("", "nan", "NaN", "NAN", "-nan", "-nan(ind)", "nan(ind)", "1.#QNAN", "-1.#IND", "1.#IND")
 _NUMBER = re.compile(r"[-+]?\d*(?:[.,](\d*))?(?:[eEdD]([-+]?\d+))?")
@@ -22,7 +23,7 @@ ALREADY_EVEN = 1e-6  # of a step
 class Cells:
     """Numbers of a table and the lines they stand in."""
 
-    values: NDArray[np.float64]  # (row, column), numbers; NaN for blank cells
+    values: Values  # (row, column), numbers; NaN for blank cells
     lines: NDArray[np.intp]  # (row,), line of the file that each row stands in, counted from 1
     rows: list[str]  # as printed
     form: Form
@@ -86,7 +87,7 @@ def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp]
     return even
 
 
-def _numbers(rows: list[str], form: Form) -> NDArray[np.float64] | None:
+def _numbers(rows: list[str], form: Form) -> Values | None:
     """Numbers by numpy's parser, the blank cells filled in if there are any; None where that does not do."""
     if form.decimal != ".":
         rows = [row.replace(form.decimal, ".") for row in rows]
@@ -103,9 +104,7 @@ def _numbers(rows: list[str], form: Form) -> NDArray[np.float64] | None:
     return None
 
 
-def _numbers_cell_by_cell(
-    rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp], form: Form
-) -> NDArray[np.float64]:
+def _numbers_cell_by_cell(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp], form: Form) -> Values:
     values = np.full((len(rows), len(labels)), np.nan)
     for i, row in enumerate(rows):
         for j, (label, cell) in enumerate(zip(labels, form.split(row), strict=False)):
@@ -159,9 +158,7 @@ def printed_digit(texts: Iterable[str]) -> float:
     return float(10.0 ** -min(finest, 300))
 
 
-def even_time(
-    time: NDArray[np.float64], digit_s: float, file: str, lines: NDArray[np.intp] | None = None
-) -> NDArray[np.float64]:
+def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] | None = None) -> Values:
     """Even time base that a column of printed times rounds.
 
     A column is taken as even when no step differs from the mean one by more than one printed digit, and no time from
@@ -209,7 +206,7 @@ def even_time(
     return whole if np.abs(time - whole).max() <= 1.01 * digit_s else even
 
 
-def _check_rounding(time: NDArray[np.float64], digit_s: float, file: str, place) -> None:
+def _check_rounding(time: Values, digit_s: float, file: str, place) -> None:
     steps = np.diff(time)
     step = (time[-1] - time[0]) / len(steps)
     off = np.abs(steps - step)

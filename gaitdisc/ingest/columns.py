@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, folded_label, hint_nearest, side_of, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.recording import Finding, Recording, Source, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, known_units, offset_words, parsed_unit
 
 # quantity -> units it may have inside; the first one is usual, the others are normalised by mass or by a maximum
@@ -57,7 +57,7 @@ class Column:
     unit: str  # unit of the numbers in the file
     guessed: str = ""  # what had to be guessed, in words; empty where nothing was
 
-    def converted(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def converted(self, values: Values) -> Values:
         """Numbers (time,) as read, in the unit used inside."""
         base, rate = (self.unit.partition("/s")[0], True) if "/s" in self.unit else (self.unit, False)
         inside = self.channel.unit.partition("/s")[0] if rate else self.channel.unit
@@ -201,15 +201,19 @@ def stream_of(channel: Channel) -> str:
 
 
 def sorted_trial(
-    source: Source,
-    time: NDArray[np.float64],
-    values: NDArray[np.float64],
-    columns: Sequence[Column],
-    findings: Sequence[Finding] = (),
+    source: Source, time: Values, values: Values, columns: Sequence[Column], findings: Sequence[Finding] = ()
 ) -> Trial:
     """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
     channels = [column.channel for column in columns]
-    _check_names(channels, source.file)
+    names = [channel.name for channel in channels]
+    doubled = next((name for name in names if names.count(name) > 1), None)
+    if doubled:
+        first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
+        raise ChannelError(
+            "each channel must have its own column",
+            f"{source.file} has {doubled!r} in columns {first} and {second}",
+            "Remove one of them, or name them differently in the study's [channels].",
+        )
     _refuse_missing_force(time, values, channels, source.file)
     # too slow to show a step: mostly ms under the name of seconds
     measured = next((one.name for one in channels if one.quantity not in ("signal", "translation")), None)
@@ -232,21 +236,7 @@ def sorted_trial(
     return Trial(name, streams, findings=tuple(findings))
 
 
-def _check_names(channels: Sequence[Channel], file: str) -> None:
-    names = [channel.name for channel in channels]
-    doubled = next((name for name in names if names.count(name) > 1), None)
-    if doubled:
-        first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
-        raise ChannelError(
-            "each channel must have its own column",
-            f"{file} has {doubled!r} in columns {first} and {second}",
-            "Remove one of them, or name them differently in the study's [channels].",
-        )
-
-
-def _refuse_missing_force(
-    time: NDArray[np.float64], values: NDArray[np.float64], channels: Sequence[Channel], file: str
-) -> None:
+def _refuse_missing_force(time: Values, values: Values, channels: Sequence[Channel], file: str) -> None:
     for i, channel in enumerate(channels):
         missing = np.isnan(values[:, i])
         if channel.quantity in ("force", "vertical_force") and missing.any():

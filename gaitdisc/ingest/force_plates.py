@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import AXES, Streams
 from gaitdisc.recording import Finding, Surface
+from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
 LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
@@ -33,11 +33,11 @@ class ForcePlate:
     kind: int
     columns: tuple[int, ...]
     # (4, 3) [m], in the laboratory's axes; the first lies towards the plate's +x and +y, the second towards -x and +y
-    corners: NDArray[np.float64]
+    corners: Values
     # (3,) [m], from the origin of the sensors to the centre of the surface, in the plate's axes; type 3: half the
     # distances between the pillars, and the depth of the sensors
-    origin: NDArray[np.float64]
-    calibration: NDArray[np.float64]  # (6, 6) or (0, 0), type 4 only; gives N and N times the file's unit of length
+    origin: Values
+    calibration: Values  # (6, 6) or (0, 0), type 4 only; gives N and N times the file's unit of length
 
     @property
     def surface(self) -> Surface:
@@ -45,12 +45,12 @@ class ForcePlate:
         return Surface(f"plate_{self.number}", self.corners)
 
     @property
-    def centre(self) -> NDArray[np.float64]:
+    def centre(self) -> Values:
         """Centre of the surface, (3,) [m], in the laboratory's axes."""
         return self.corners.mean(axis=0)
 
     @property
-    def axes(self) -> NDArray[np.float64]:
+    def axes(self) -> Values:
         """The plate's axes as columns, (3, 3), in the laboratory's axes; NaN where the corners span no surface."""
         first, second, third, fourth = self.corners
         x = first + fourth - second - third
@@ -64,16 +64,19 @@ class ForcePlate:
         """Which of the laboratory's axes, 0 to 2, is nearest to the plate's normal."""
         return int(np.argmax(np.abs(self.axes[:, 2])))
 
-    def wrench(
-        self, values: NDArray[np.float64], units: tuple[str, ...]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def wrench(self, values: Values, units: tuple[str, ...]) -> tuple[Values, Values]:
         """Force [N], moment about the surface's centre [N m], each (sample, 3) in the plate's axes, of its channels."""
         if self.kind == 4:
             values = values @ self.calibration.T
         columns = [convert(values[:, i], unit, inner_unit(unit)) for i, unit in enumerate(units)]
         values = np.asarray(np.column_stack(columns), float)
-        if self.kind == 3:
-            return _of_pillars(values, self.origin)
+        if self.kind == 3:  # Kistler: pillar 1 stands at (+a, +b), 2 at (-a, +b), as the corners do
+            x12, x34, y14, y23, z1, z2, z3, z4 = values.T
+            a, b = np.abs(self.origin[:2])
+            force = np.column_stack([x12 + x34, y14 + y23, z1 + z2 + z3 + z4])
+            turning = b * (x34 - x12) + a * (y14 - y23)
+            moment = np.column_stack([b * (z1 + z2 - z3 - z4), a * (z2 + z3 - z1 - z4), turning])
+            return force, moment + np.cross(force, np.array([0.0, 0.0, self.origin[2]]))
         force = values[:, :3]
         if self.kind == 1:
             point = np.column_stack([values[:, 3:5], np.zeros(len(values))])
@@ -82,16 +85,7 @@ class ForcePlate:
         return force, values[:, 3:6] + np.cross(force, self.origin)
 
 
-def _of_pillars(values: NDArray[np.float64], origin: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
-    """Type 3, Kistler: x12, x34, y14, y23, z1 to z4; pillar 1 stands at (+a, +b), 2 at (-a, +b), as the corners do."""
-    x12, x34, y14, y23, z1, z2, z3, z4 = values.T
-    a, b = np.abs(origin[:2])
-    force = np.column_stack([x12 + x34, y14 + y23, z1 + z2 + z3 + z4])
-    moment = np.column_stack([b * (z1 + z2 - z3 - z4), a * (z2 + z3 - z1 - z4), b * (x34 - x12) + a * (y14 - y23)])
-    return force, moment + np.cross(force, [0, 0, origin[2]])
-
-
-def centre_of_pressure(force: NDArray[np.float64], moment: NDArray[np.float64]) -> NDArray[np.float64]:
+def centre_of_pressure(force: Values, moment: Values) -> Values:
     """Centre of pressure (sample, 3) [m] of force [N] and moment [N m] in the plate's axes; NaN below 20 N.
 
     >>> centre_of_pressure(np.array([[0, 0, -500.0], [0, 0, -1.0]]), np.array([[50.0, 25, 0], [1, 1, 0]]))
@@ -173,7 +167,7 @@ def _undescribed(parameters: C3DParameters, used: int, described: int) -> list[F
 
 
 def plate_streams(
-    rows: NDArray[np.float64], plates: list[ForcePlate], parameters: C3DParameters, length_unit: str
+    rows: Values, plates: list[ForcePlate], parameters: C3DParameters, length_unit: str
 ) -> tuple[Streams, set[int], list[Finding]]:
     """Stream `forces` of the plates: ground on foot, vertical positive up.
 
@@ -199,7 +193,11 @@ def plate_streams(
         measured.append((placed, values, units))
         wrenches.append((placed, *placed.wrench(values, units)))
     findings += _exchanged(measured, file)
-    up = [_upward(plate, force) for plate, force, _ in wrenches]
+    up = []  # +1 where a loaded plate pushes up along the laboratory's vertical, -1 where it would pull, 0 unloaded
+    for plate, force, _ in wrenches:
+        vertical = force @ plate.axes[plate.vertical]
+        clear = vertical[np.abs(vertical) > CLEAR_LOAD_N]
+        up.append(float(np.sign(np.sum(clear * np.abs(clear)))))
     most = float(np.sign(sum(up)))
     parts, channels = [], []
     for (plate, force, moment), sense in zip(wrenches, up, strict=True):
@@ -207,7 +205,13 @@ def plate_streams(
         pressure = centre_of_pressure(force, moment)
         axes = plate.axes.T
         parts.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.centre + pressure @ axes]))
-        channels += _channels(plate)
+        forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
+        kinds = (("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m"))
+        channels += [
+            Channel(f"plate_{plate.number}_{letter}{axis}", quantity, unit)
+            for letter, quantities, unit in kinds
+            for axis, quantity in zip(AXES, quantities, strict=True)
+        ]
     turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
     if turned:
         what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; its sign is reversed"
@@ -219,7 +223,7 @@ def plate_streams(
     return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
 
 
-def plate_loads(streams: Streams, samples_per_frame: int) -> NDArray[np.float64]:
+def plate_loads(streams: Streams, samples_per_frame: int) -> Values:
     """Size of each plate's force at the frames of the points, (frame, plate) [N]."""
     if "forces" not in streams:
         return np.empty((0, 0))
@@ -230,7 +234,7 @@ def plate_loads(streams: Streams, samples_per_frame: int) -> NDArray[np.float64]
     return np.column_stack([np.linalg.norm(at_frames[:, i : i + 3], axis=1) for i in first])
 
 
-def _last_axis(numbers: NDArray[np.float64], inner: int) -> list[NDArray[np.float64]]:
+def _last_axis(numbers: Values, inner: int) -> list[Values]:
     """One array a plate; a file with one plate may leave the last dimension out."""
     if numbers.ndim == inner:
         return [numbers] if numbers.size else []
@@ -259,8 +263,8 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
 
 
 def _zeroed(
-    values: NDArray[np.float64], units: tuple[str, ...], plate: ForcePlate, parameters: C3DParameters
-) -> tuple[NDArray[np.float64], list[Finding]]:
+    values: Values, units: tuple[str, ...], plate: ForcePlate, parameters: C3DParameters
+) -> tuple[Values, list[Finding]]:
     """Channels of a plate without their mean over FORCE_PLATFORM:ZERO, unless the plate was loaded then."""
     span = parameters.numbers("FORCE_PLATFORM", "ZERO").ravel()[:2]
     if len(span) < 2 or not 1 <= span[0] < span[1] <= len(values):
@@ -275,15 +279,8 @@ def _zeroed(
     return values - offset, []
 
 
-def _upward(plate: ForcePlate, force: NDArray[np.float64]) -> float:
-    """+1 where a loaded plate pushes up along the laboratory's vertical, -1 where it would pull, 0 if not loaded."""
-    vertical = force @ plate.axes[plate.vertical]
-    clear = vertical[np.abs(vertical) > CLEAR_LOAD_N]
-    return float(np.sign(np.sum(clear * np.abs(clear))))
-
-
 def _with_origin(
-    plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...], file: str
+    plate: ForcePlate, values: Values, units: tuple[str, ...], file: str
 ) -> tuple[ForcePlate, list[Finding]]:
     """Plate with its origin turned around if only then the centre of pressure lies on it."""
     beside = _beside(plate, values, units)
@@ -298,7 +295,7 @@ def _with_origin(
     return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
 
 
-def _exchanged(measured: Sequence[tuple[ForcePlate, NDArray[np.float64], tuple[str, ...]]], file: str) -> list[Finding]:
+def _exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ...]]], file: str) -> list[Finding]:
     """Say which two plates bear each other's channels: with these exchanged each has its centre of pressure on it."""
     findings = []
     for (one, own, units), (other, others, their_units) in itertools.combinations(measured, 2):
@@ -315,26 +312,16 @@ def _exchanged(measured: Sequence[tuple[ForcePlate, NDArray[np.float64], tuple[s
     return findings
 
 
-def _beside_either(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...]) -> float:
+def _beside_either(plate: ForcePlate, values: Values, units: tuple[str, ...]) -> float:
     """As `_beside`, whichever way the origin points."""
     turned = replace(plate, origin=-plate.origin)
     return min(_beside(one, values, units) for one in (plate, turned))
 
 
-def _beside(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...]) -> float:
+def _beside(plate: ForcePlate, values: Values, units: tuple[str, ...]) -> float:
     """Share of the loaded samples whose centre of pressure lies beside the plate."""
     pressure = centre_of_pressure(*plate.wrench(values, units))
     half = np.abs((plate.corners - plate.centre) @ plate.axes)[:, :2].max(axis=0)
     loaded = np.isfinite(pressure[:, 0])
     outside = np.any(np.abs(pressure[loaded, :2]) > half + BESIDE_M, axis=1)
     return float(outside.mean()) if outside.size else 0.0
-
-
-def _channels(plate: ForcePlate) -> list[Channel]:
-    forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
-    kinds = [("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m")]
-    return [
-        Channel(f"plate_{plate.number}_{letter}{axis}", quantity, unit)
-        for letter, quantities, unit in kinds
-        for axis, quantity in zip(AXES, quantities, strict=True)
-    ]

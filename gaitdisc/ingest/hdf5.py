@@ -82,23 +82,24 @@ def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dic
     A text of variable length is read by another process under a time limit: where its heap is damaged the library
     runs in a circle, and nothing can stop it from within.
     """
+    found = {}
     with _in_words(path):
         held = file[name].attrs
-        there = [one for one in wanted if one in held]
-        return {
-            one: _text_in_time(path, name, one) if held.get_id(one).dtype.kind == "O" else held[one] for one in there
-        }
-
-
-def _text_in_time(path: Path, name: str, attribute: str) -> str:
-    size = check_regular(path)
-    wanted = replace(ReadRequest.of_size(str(path), "hdf5 text", (name, attribute), size), limit_s=TEXT_LIMIT_S)
-    with closing(ReaderProcess()) as process:
-        answer, _ = process.read(wanted)
-    if "text" in answer:
-        return str(answer["text"])
-    found = f"attribute {attribute!r} of {name!r} cannot be read: {answer['said']}"
-    raise ReadError(f"{path.name} must be an HDF5 file", found, "Download or copy the file again. It is damaged.")
+        for one in (one for one in wanted if one in held):
+            if held.get_id(one).dtype.kind != "O":
+                found[one] = held[one]
+                continue
+            request = ReadRequest.of_size(str(path), "hdf5 text", (name, one), check_regular(path))
+            with closing(ReaderProcess()) as process:
+                answer, _ = process.read(replace(request, limit_s=TEXT_LIMIT_S))
+            if "text" not in answer:
+                raise ReadError(
+                    f"{path.name} must be an HDF5 file",
+                    f"attribute {one!r} of {name!r} cannot be read: {answer['said']}",
+                    "Download or copy the file again. It is damaged.",
+                )
+            found[one] = str(answer["text"])
+    return found
 
 
 @contextmanager

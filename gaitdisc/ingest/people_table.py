@@ -9,12 +9,12 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG
+from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG, Limits
 from gaitdisc.spreadsheet import unquoted
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")
@@ -105,7 +105,11 @@ def person_key(word: str) -> str:
 def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measured]:
     rows = list(csv.reader(lines, delimiter=max("\t;,", key=lines[0].count)))
     labels = [unquoted(label.strip()) for label in rows[0]]
-    folded = [_folded(label) for label in labels]
+    folded = []
+    for label in labels:
+        name, unit = split_unit(re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label))
+        known = re.sub(r"[^a-z0-9]", "", name.lower())
+        folded.append(known if unit is None or unit in ("kg", *_METRES, "m/f", "f/m") else f"{known}_in_{unit}")
     at = {key: next((folded.index(name) for name in names.split() if name in folded), None)
           for key, names in _LABELS.items()}  # fmt: skip
     if at["id"] is None or all(place is None for key, place in at.items() if key != "id"):
@@ -122,33 +126,25 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
             said: list[str] = []
             found.setdefault(person_key(unquoted(cells["id"])), []).append(_measured(cells, stature, said))
             notes += [f"{file}, line {number}: {words}" for words in said]
-    return {word: _agreed(rows, word, file, notes) for word, rows in found.items()}
-
-
-def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) -> Measured:
-    """What all rows of a person say; where two differ nothing is taken."""
-    values: dict[str, float | str | None] = {}
-    for name, empty in vars(Measured()).items():
-        said = list(dict.fromkeys(getattr(one, name) for one in rows if getattr(one, name) != empty))
-        values[name] = said[0] if len(said) == 1 else empty
-        if len(said) > 1:
-            notes.append(f"{file}: {name} of {word!r} differs between rows ({said[0]}, {said[1]}); not used")
-    return Measured(**values)  # type: ignore[arg-type]
-
-
-def _folded(label: str) -> str:
-    name, unit = split_unit(re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label))
-    known = re.sub(r"[^a-z0-9]", "", name.lower())
-    return known if unit is None or unit in ("kg", *_METRES, "m/f", "f/m") else f"{known}_in_{unit}"
+    agreed = {}  # what all rows of a person say; where two differ nothing is taken
+    for word, measures in found.items():
+        values: dict[str, Any] = {}
+        for name, empty in vars(Measured()).items():
+            stated = list(dict.fromkeys(getattr(one, name) for one in measures if getattr(one, name) != empty))
+            values[name] = stated[0] if len(stated) == 1 else empty
+            if len(stated) > 1:
+                notes.append(f"{file}: {name} of {word!r} differs between rows ({stated[0]}, {stated[1]}); not used")
+        agreed[word] = Measured(**values)
+    return agreed
 
 
 def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) -> Measured:
     """What a row says of a person; a stature in the unit of its label, else in the one in which it is a person's."""
     stated = re.search(r"(?:^|[^a-z])(m|cm|mm)\W*$", stature_label.lower())
     unit, factors = (f" {stated[1]}", [_METRES[stated[1]]]) if stated else (" m, cm or mm", list(_METRES.values()))
-    age = _within(cells["age"], "age", AGE_YEARS, "years", notes)
-    mass = _within(cells["mass"], "body mass", MASS_KG, "kg", notes)
-    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], "m", notes=notes, factors=factors, given=unit)
+    age = _within(cells["age"], "age", AGE_YEARS, notes)
+    mass = _within(cells["mass"], "body mass", MASS_KG, notes)
+    height = _within(cells["height"], "stature", LENGTHS_M["height_m"], notes, factors, unit)
     sex = _SEX.get(cells["sex"].lower(), "")
     if not sex and cells["sex"].lower() not in _MISSING:
         notes.append(f"sex {cells['sex']!r} is neither f nor m; the mean of both is used")
@@ -156,25 +152,24 @@ def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) ->
 
 
 def _within(
-    text: str, what: str, limits: tuple[float, float], unit: str, notes: list[str],
-    factors: Sequence[float] = (1.0,), given: str = "",
-) -> float | None:  # fmt: skip
-    """Number of a cell times the first factor that brings it within the limits [unit]; None, and a note, of another."""
+    text: str, what: str, limits: Limits, notes: list[str], factors: Sequence[float] = (1.0,), given: str = ""
+) -> float | None:
+    """Number of a cell times the first factor that brings it within the limits; None, and a note, of another."""
     if text.lower() in _MISSING:
         return None
     try:
         value = float(text.replace(",", "."))
     except ValueError:
         value = math.nan
-    low, high = limits
     for factor in factors:
-        if low <= value * factor <= high:
+        if limits.hold(value * factor):
             return value * factor
     if not math.isfinite(value):
         notes.append(f"{what} {text!r} is not a number; not used")
     else:
         article = "an" if what[0] in "ae" else "a"
-        notes.append(f"{article} {what} of {value:g}{given} is not between {low:g} and {high:g} {unit}; not used")
+        possible = f"{limits.least:g} and {limits.most:g} {limits.unit}"
+        notes.append(f"{article} {what} of {value:g}{given} is not between {possible}; not used")
     return None
 
 

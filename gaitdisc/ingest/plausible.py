@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import runs, spans_s
+from gaitdisc.recording.arrays import Values, runs, spans_s
 
 JOINTS = ("angle", "translation")
 CHANCE = 1e-6  # of a stretch that repeats one value, with the channel's own share of repeated samples; no false one in
@@ -83,7 +83,14 @@ def without_impossible(
                 beyond[:, place] = (values < limits.low) | (values > limits.high)  # NaN is neither
         counted = [i for i, c in enumerate(recording.channels) if c.quantity == "emg" and beyond[:, i].any()]
         if any(beyond[:, i].mean() > FEW for i in counted):
-            findings += [_other_unit(recording, i, ranges[i]) for i in counted]
+            for i in counted:
+                channel, high = recording.channels[i], ranges[i].high
+                most = float(np.nanmax(np.abs(recording.values[:, i])))
+                thousandth = channel.unit == "V" and most <= 1e3 * high
+                looks = "it looks like mV or counts" if thousandth else "it may be in counts"
+                what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} stays within {high:g}, so {looks}"
+                spoils = "its amplitude; state the unit in the file or in [channels]"
+                findings.append(Finding("warning", "unit", recording.source.file, what, spoils, channel.name))
             beyond[:, counted] = False
         before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
         frames = round(before_s * recording.rate_hz) if before_s else 0
@@ -124,12 +131,21 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
             here = _dropped(recording, load) if key == "forces" else _frozen(recording.values[:, columns])
             if here.any():
                 still[np.ix_(here, columns)] = True
-                findings.append(_frozen_finding(recording, (load or columns)[0], here))
+                place = (load or columns)[0]
+                channel, spans = recording.channels[place], spans_s(recording.time, here)
+                marker, others = channel.quantity == "marker", len(spans) - 1
+                value = f"{recording.values[int(np.argmax(here)), place]:.4g} {channel.unit}"
+                more = f", and in {others} more stretch{'es' if others > 1 else ''}" if others else ""
+                what = f"is constant at {'one place' if marker else value} from {spans[0].start:.3f} to "
+                what += f"{spans[0].end:.3f} s{more}; no measurement is constant for so long; treated as missing"
+                name, file = channel.name.removesuffix(".x") if marker else channel.name, recording.source.file
+                spoils = "these frames; fill the gap"
+                findings.append(Finding("warning", "frozen", file, what, spoils, name, spans=spans))
         kept[key] = recording.with_values(np.where(still, np.nan, recording.values)) if still.any() else recording
     return kept, findings
 
 
-def _frozen(x: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _frozen(x: Values) -> NDArray[np.bool_]:
     """Samples that repeat a value beyond chance; x (time, axis)."""
     marks = np.zeros(len(x), bool)
     move = np.abs(np.diff(x, axis=0)).max(axis=1)
@@ -165,28 +181,6 @@ def _dropped(forces: Recording, columns: Sequence[int]) -> NDArray[np.bool_]:
             if start > 0 and end < len(load) and short and min(load[start - 1], load[end]) > least:
                 marks[start:end] = True
     return marks
-
-
-def _frozen_finding(recording: Recording, place: int, still: NDArray[np.bool_]) -> Finding:
-    channel, spans = recording.channels[place], spans_s(recording.time, still)
-    (start, end), others = spans[0], len(spans) - 1
-    marker = channel.quantity == "marker"
-    value = "one place" if marker else f"{recording.values[int(np.argmax(still)), place]:.4g} {channel.unit}"
-    more = f", and in {others} more stretch{'es' if others > 1 else ''}" if others else ""
-    what = f"is constant at {value} from {start:.3f} to {end:.3f} s{more}; no measurement is constant for so long; "
-    what += "treated as missing"
-    name = channel.name.removesuffix(".x") if marker else channel.name
-    return Finding("warning", "frozen", recording.source.file, what, "these frames; fill the gap", name, spans=spans)
-
-
-def _other_unit(recording: Recording, place: int, limits: PlausibleRange) -> Finding:
-    channel = recording.channels[place]
-    most = float(np.nanmax(np.abs(recording.values[:, place])))
-    thousandth = channel.unit == "V" and most <= 1e3 * limits.high
-    looks = "it looks like mV or counts" if thousandth else "it may be in counts"
-    what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} stays within {limits.high:g}, so {looks}"
-    spoils = "its amplitude; state the unit in the file or in [channels]"
-    return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
 
 
 def _finding(

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gaitdisc.recording.arrays import Values
 
 WORKER = Path(__file__).with_name("reader_worker.py")
 FILES_A_PROCESS = 100  # ezc3d leaks: a long loop in one process dies (pyomeca/ezc3d#314)
@@ -47,7 +48,8 @@ class ReadRequest:
         return cls(path, reader, wanted, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
 
 
-Arrays = list[NDArray[np.float64]]
+Arrays = list[Values]
+Answer = tuple[dict[str, Any], Arrays]
 
 
 class ReaderProcess:
@@ -59,17 +61,27 @@ class ReaderProcess:
         self._lock = threading.Lock()  # threads may share a reader; they take turns
         self._files = 0
 
-    def read(self, request: ReadRequest) -> tuple[dict[str, Any], Arrays]:
+    def read(self, request: ReadRequest) -> Answer:
         """Answer to one request, and its arrays; `said` in it is why there are none. No file makes it raise."""
         with self._lock:
             return self._read(request)
 
-    def _read(self, request: ReadRequest) -> tuple[dict[str, Any], Arrays]:
+    def _read(self, request: ReadRequest) -> Answer:
         process = self._running()
         self._files += 1
-        answers: list[tuple[dict[str, Any], Arrays]] = []
+        answers: list[Answer] = []
+
+        def converse() -> None:
+            assert process.stdin is not None and process.stdout is not None  # both are pipes
+            with contextlib.suppress(Exception):  # whatever a dying reader babbles, there is no answer then
+                process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
+                process.stdin.flush()
+                head: dict[str, Any] = json.loads(process.stdout.readline())
+                shapes = () if "said" in head else head["shapes"]
+                answers.append((head, [_received(process.stdout, shape) for shape in shapes]))
+
         # A pipe cannot be waited on with a time limit on every system; a thread can.
-        thread = threading.Thread(target=_converse, args=(process, request, answers), daemon=True)
+        thread = threading.Thread(target=converse, daemon=True)
         thread.start()
         try:
             thread.join(request.clock_s)
@@ -127,19 +139,7 @@ def _ended(process: subprocess.Popen[bytes]) -> int:
     return code
 
 
-def _converse(
-    process: subprocess.Popen[bytes], request: ReadRequest, answers: list[tuple[dict[str, Any], Arrays]]
-) -> None:
-    assert process.stdin is not None and process.stdout is not None  # both are pipes
-    with contextlib.suppress(Exception):  # whatever a dying reader babbles, there is no answer then
-        process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
-        process.stdin.flush()
-        head: dict[str, Any] = json.loads(process.stdout.readline())
-        shapes = () if "said" in head else head["shapes"]
-        answers.append((head, [_received(process.stdout, shape) for shape in shapes]))
-
-
-def _received(stream: IO[bytes], shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _received(stream: IO[bytes], shape: tuple[int, ...]) -> Values:
     values = np.empty(shape)
     if values.size:
         view = memoryview(values.data).cast("B")

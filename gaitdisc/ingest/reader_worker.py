@@ -102,24 +102,19 @@ def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
             with packed.open(f"{name}.npy") as member:
                 held = np.lib.format.read_array(member, allow_pickle=False)
     else:
-        from scipy.io import loadmat
+        from scipy.io import loadmat, whosmat
 
         if not name:
-            return {"claims": _claims_of_mat(path), "shapes": []}, ()
+            variables = whosmat(path)
+            sizes = [*_element_sizes(path), *[0] * len(variables)]  # a file of v4 has no elements
+            claims = {
+                name: max(size, math.prod((8, *map(int, shape))))
+                for (name, shape, _), size in zip(variables, sizes, strict=False)
+            }
+            return {"claims": claims, "shapes": []}, ()
         held = loadmat(path, variable_names=[name])[name]
     arrays: list[NDArray[Any]] = []
     return {"tree": _tree(held, arrays), "shapes": [values.shape for values in arrays]}, arrays
-
-
-def _claims_of_mat(path: str) -> dict[str, int]:
-    from scipy.io import whosmat
-
-    variables = whosmat(path)
-    sizes = [*_element_sizes(path), *[0] * len(variables)]  # a file of v4 has no elements
-    return {
-        name: max(size, math.prod((8, *map(int, shape))))
-        for (name, shape, _), size in zip(variables, sizes, strict=False)
-    }
 
 
 def _element_sizes(path: str) -> Iterator[int]:
@@ -185,7 +180,15 @@ def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
             # If the parent is gone there is nobody to stop a reader that waits for ever but this.
             faulthandler.dump_traceback_later(request["clock_s"] + 5, exit=True, file=nowhere)
             head, arrays = answer(request)
-            _send(head, arrays, answers)
+            answers.write(json.dumps(head).encode() + b"\n")
+            shapes = head["shapes"] if arrays else ()
+            for values, shape in zip(arrays, shapes, strict=False):  # a C3D's file itself comes after its two
+                rows = np.atleast_1d(values)
+                for first in range(0, len(rows) if math.prod(shape) else 0, ROWS_AT_ONCE):
+                    block = np.ascontiguousarray(rows[first : first + ROWS_AT_ONCE], dtype=np.float64)
+                    answers.write(memoryview(block.data).cast("B"))
+                del values, rows
+            answers.flush()
             del arrays
             faulthandler.cancel_dump_traceback_later()
 
@@ -199,18 +202,6 @@ def _limit(cap_bytes: int, limit_s: float) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (cap_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
         until_s = math.ceil(time.process_time() + limit_s)
         resource.setrlimit(resource.RLIMIT_CPU, (until_s, resource.getrlimit(resource.RLIMIT_CPU)[1]))
-
-
-def _send(head: dict[str, Any], arrays: Any, answers: IO[bytes]) -> None:
-    answers.write(json.dumps(head).encode() + b"\n")
-    for values, shape in zip(
-        arrays, head["shapes"] if arrays else (), strict=False
-    ):  # a C3D's file itself comes after its two
-        rows = np.atleast_1d(values)
-        for first in range(0, len(rows) if math.prod(shape) else 0, ROWS_AT_ONCE):
-            block = np.ascontiguousarray(rows[first : first + ROWS_AT_ONCE], dtype=np.float64)
-            answers.write(memoryview(block.data).cast("B"))
-    answers.flush()
 
 
 if __name__ == "__main__":

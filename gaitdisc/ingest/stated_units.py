@@ -7,11 +7,10 @@ import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import UnitError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Values, runs
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
@@ -29,7 +28,7 @@ LEG_MOMENT = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 
 
 def plausible_unit(
-    time: NDArray[np.float64], values: NDArray[np.float64], names: Sequence[str], stated: str | None, file: str
+    time: Values, values: Values, names: Sequence[str], stated: str | None, file: str
 ) -> tuple[str, Finding | None]:
     """Unit of a file's angles (time, angle): the stated one unless the numbers contradict it; a finding of a doubt."""
     joints = [i for i, name in enumerate(names) if not name.startswith("pelvis_") and not _COPIED.fullmatch(name)]
@@ -70,9 +69,7 @@ def plausible_unit(
     return unit, Finding("warning", "unit inferred", file, what, "all angles, if wrong; state inDegrees in the header")
 
 
-def copied_coordinate_unit(
-    name: str, values: NDArray[np.float64], angles: dict[str, NDArray[np.float64]]
-) -> str | None:
+def copied_coordinate_unit(name: str, values: Values, angles: dict[str, Values]) -> str | None:
     """Unit of OpenSim's `knee_angle_r_beta`, which copies the knee angle, or None where it copies nothing.
 
     OpenSim converts rotational coordinates when it writes a file but leaves coupled ones as they are, so that in a file
@@ -94,7 +91,7 @@ def copied_coordinate_unit(
     return unit if apart[unit] <= 0.05 * np.abs(knee).mean() + 1e-6 else None
 
 
-def _largest(values: NDArray[np.float64]) -> float:
+def _largest(values: Values) -> float:
     finite = values[np.isfinite(values)]
     return float(np.abs(finite).max()) if finite.size else 0.0
 
@@ -107,7 +104,7 @@ def _undecided(file: str, why: str) -> UnitError:
     )
 
 
-def distance_from_origin(places: NDArray[np.float64]) -> float:
+def distance_from_origin(places: Values) -> float:
     """99th percentile of marker coordinates (frame, coordinate) of some thousand frames; NaN without any."""
     some = places[:: max(len(places) // 1000, 1)]
     finite = np.abs(some[np.isfinite(some)])
@@ -140,17 +137,14 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
         sizes = {name: np.abs(recording[name][np.isfinite(recording[name])]) for name in meant}
         peaks = {name: float(np.quantile(size, 0.999)) if size.size else 0.0 for name, size in sizes.items()}
         most = max(peaks, key=lambda name: peaks[name], default="")
-        walks = recording.duration_s >= STANCE_S[0] and (key == "moments" or (most and _like_steps(recording, most)))
+        walks = recording.duration_s >= STANCE_S[0]
+        if walks and most and key == "forces":
+            force = np.abs(np.nan_to_num(recording[most]))
+            peak = float(force.max())
+            longest = max(((end - start) for start, end in runs(force > SHARE * peak)), default=0) / recording.rate_hz
+            walks = np.mean(force < EMPTY * peak) > EMPTY and STANCE_S[0] <= longest <= STANCE_S[1]
         if most and low <= peaks[most] <= high and walks:
             what = f"peaks at {peaks[most]:.3g} {unit} and {like}: it looks like {unit} per kg of body mass"
             spoils = f"contacts by force, moments and powers; state {unit}/kg, or multiply by body mass"
             found.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
     return found
-
-
-def _like_steps(forces: Recording, name: str) -> bool:
-    force = np.abs(np.nan_to_num(forces[name]))
-    peak = float(force.max())
-    lengths = [(end - start) / forces.rate_hz for start, end in runs(force > SHARE * peak)]
-    empty = float(np.mean(force < EMPTY * peak))
-    return empty > EMPTY and max(lengths, default=0.0) >= STANCE_S[0] and max(lengths, default=0.0) <= STANCE_S[1]

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import (
     QUANTITIES,
@@ -38,6 +37,7 @@ from gaitdisc.ingest.columns import (
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.whole_file import write_whole
 
 _YES_NO = {"yes": True, "y": True, "true": True, "1": True, "no": False, "n": False, "false": False, "0": False}
@@ -118,7 +118,7 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
 
 
 def _in_true_unit(
-    columns: list[Column], degrees: bool | None, time: NDArray[np.float64], values: NDArray[np.float64], file: str
+    columns: list[Column], degrees: bool | None, time: Values, values: Values, file: str
 ) -> tuple[list[Column], list[Finding]]:
     """Columns of angles (and of their rates) in the unit that the file really has."""
     turning = [i for i, c in enumerate(columns) if c.unit.startswith("deg") and "[" not in c.label]
@@ -313,25 +313,19 @@ def _guessed(label: str, name: str, title: str) -> Column:
         return Column(label, channel, channel.unit, guess if name.endswith("_beta_force") else "")
     ground = _GROUND.fullmatch(name)
     if ground and (ground[1] or _GROUND_WORD.search(name)):
-        return _ground(label, name, ground)
+        # by its last letters: v a force, p a place, m a moment; by the word where none stands there
+        kind, axis = ground[1].lower(), ground[2].lower()
+        guess = "read as a ground reaction because of its name" + ("" if side else ", side unknown")
+        quantity, unit = "moment", "N m"
+        if kind == "p":
+            quantity, unit = "pressure_centre", "m"
+        elif kind == "v" or (not kind and _GROUND_WORD.findall(name.lower())[-1] == "force"):
+            quantity, unit = "vertical_force" if axis == "y" else "force", "N"
+        elif "ground" not in name.lower():
+            name = f"ground_{name}"
+        return Column(label, Channel(name, quantity, unit, side), unit, guess)
     if title.lower() == "coordinates":
         if re.search(r"_t[xyz]$", name):
             return Column(label, Channel(name, "translation", "m", side), "m", "read as a translation in m")
         return Column(label, Channel(name, "angle", "deg", side), "deg", "unknown coordinate, read as an angle")
     return Column(label, Channel(name, "signal", "1", side), "1", "unknown name, read as a signal without a unit")
-
-
-def _ground(label: str, name: str, found: re.Match[str]) -> Column:
-    """Ground reaction by its last letters: v a force, p a place, m a moment; by the word where none stands there."""
-    kind, axis = found[1].lower(), found[2].lower()
-    words = _GROUND_WORD.findall(name.lower())
-    side = side_of(name)
-    guess = "read as a ground reaction because of its name" + ("" if side else ", side unknown")
-    if kind == "p":
-        quantity, unit = "pressure_centre", "m"
-    elif kind == "v" or (not kind and words[-1] == "force"):
-        quantity, unit = "vertical_force" if axis == "y" else "force", "N"
-    else:
-        quantity, unit = "moment", "N m"
-        name = name if "ground" in name.lower() else f"ground_{name}"
-    return Column(label, Channel(name, quantity, unit, side), unit, guess)

@@ -104,16 +104,16 @@ class Participant(StudyPart):
     group: Annotated[str, Field(max_length=40)] = Field(
         default="", description="group of this person, such as control; empty if there are none"
     )
-    mass_kg: Annotated[float, Field(ge=MASS_KG[0], le=MASS_KG[1])] | None = Field(
+    mass_kg: Annotated[float, Field(ge=MASS_KG.least, le=MASS_KG.most)] | None = Field(
         default=None, description="body mass [kg], if the C3D files state none or a wrong one"
     )
-    height_m: Annotated[float, Field(ge=LENGTHS_M["height_m"][0], le=LENGTHS_M["height_m"][1])] | None = Field(
+    height_m: Annotated[float, Field(ge=LENGTHS_M["height_m"].least, le=LENGTHS_M["height_m"].most)] | None = Field(
         default=None, description="stature [m], if the C3D files state none or a wrong one"
     )
     sex: Literal["", "f", "m"] = Field(
         default="", description="f or m, for the inertia of the segments; if empty, the mean of both"
     )
-    age_years: Annotated[int, Field(ge=AGE_YEARS[0], le=AGE_YEARS[1])] | None = Field(
+    age_years: Annotated[int, Field(ge=AGE_YEARS.least, le=AGE_YEARS.most)] | None = Field(
         default=None, description="age in whole years, to choose controls of similar age; never a date of birth"
     )
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")

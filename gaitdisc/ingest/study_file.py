@@ -258,7 +258,11 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
         return f"{_table(place[:-1])} must have {place[-1]!r}", "it is missing", remedy
     if kind == "gaitdisc":
         return f"{_named(place)} must {context['needed']}", context["found"], context["remedy"]
-    found = f"found {given!r}" if isinstance(given, str | int | float) else f"found {_what(given)}"
+    found = f"found {given!r}"
+    if isinstance(given, list | tuple):
+        found = f"found a list of {len(given)}"
+    elif given is None or isinstance(given, dict):
+        found = "found nothing" if given is None else "found a table"
     wanted, remedy = _wanted(kind, given, context)
     if kind == "tuple_type" and isinstance(given, dict):
         remedy = f"Write its header in two pairs of brackets: [[{place[-1]}]]."
@@ -318,12 +322,6 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next((found for inner in typing.get_args(annotation) if (found := _model_in(inner))), None)
-
-
-def _what(given: Any) -> str:
-    if isinstance(given, list | tuple):
-        return f"a list of {len(given)}"
-    return "a table" if isinstance(given, dict) else "nothing" if given is None else repr(given)
 
 
 def line_of(text: str, place: Place) -> int | None:

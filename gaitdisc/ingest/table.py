@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Cells, Form, even_time, parsed_cells, printed_digit
@@ -19,6 +18,7 @@ from gaitdisc.ingest.columns import Column, check_written_names, column_of, read
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
 from gaitdisc.recording import Finding, Recording, Source, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.spreadsheet import quoted, unquoted
 from gaitdisc.units import convert, parsed_unit
 from gaitdisc.whole_file import write_whole
@@ -43,7 +43,19 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     """
     raw = read_raw(path)
     if raw.name.lower().endswith(".parquet"):
-        labels, values = _parquet(raw, channels)
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        try:
+            frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
+        except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
+            said = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+            raise ReadError(
+                f"{raw.name} must be a Parquet table",
+                f"it cannot be read as one: {said}",
+                "Write it again, or correct its ending.",
+            ) from error
+        labels, values = _of_frame(frame, raw.name, channels)
         return _trial(raw.source("parquet"), _timed(labels, values, channels, raw.name), channels)
     labels, cells = _text(raw, channels)
     return _trial(raw.source("csv"), _timed(labels, cells.values, channels, raw.name, cells), channels)
@@ -65,9 +77,9 @@ def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -
 class TimedColumns(NamedTuple):
     """Columns of a table (time, column) in their own units, and its even times [s]."""
 
-    time: NDArray[np.float64]
+    time: Values
     labels: list[str]
-    values: NDArray[np.float64]
+    values: Values
 
 
 def has_times(frame: pd.DataFrame) -> bool:
@@ -90,11 +102,7 @@ def frame_columns(frame: pd.DataFrame, channels: Mapping[str, str] | None = None
 
 
 def _timed(
-    labels: list[str],
-    values: NDArray[np.float64],
-    channels: Mapping[str, str] | None,
-    file: str,
-    cells: Cells | None = None,
+    labels: list[str], values: Values, channels: Mapping[str, str] | None, file: str, cells: Cells | None = None
 ) -> TimedColumns:
     """Times apart from the other columns (row, column); cells of a text show how many digits its times have."""
     at, unit = next((i, unit) for i, label in enumerate(labels) if (unit := _time_unit(label, channels)))
@@ -196,24 +204,7 @@ def _no_time(file: str, found: str) -> ReadError:
     )
 
 
-def _parquet(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str], NDArray[np.float64]]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
-    except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
-        raise ReadError(
-            f"{raw.name} must be a Parquet table",
-            f"it cannot be read as one: {str(error).splitlines()[0][:120] if str(error) else type(error).__name__}",
-            "Write it again, or correct its ending.",
-        ) from error
-    return _of_frame(frame, raw.name, channels)
-
-
-def _of_frame(
-    frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
-) -> tuple[list[str], NDArray[np.float64]]:
+def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None) -> tuple[list[str], Values]:
     """Labels and numbers (row, column) of a table in memory."""
     from pandas.api.types import is_bool_dtype, is_numeric_dtype
 
@@ -234,9 +225,7 @@ def _of_frame(
     return labels, values
 
 
-def checked_trial(
-    source: Source, time: NDArray[np.float64], values: NDArray[np.float64], columns: Sequence[Column]
-) -> Trial:
+def checked_trial(source: Source, time: Values, values: Values, columns: Sequence[Column]) -> Trial:
     """Trial of columns (time, channel) in the file's units; a UnitError where angles contradict theirs."""
     findings: list[Finding] = []
     for unit in ("deg", "rad"):

@@ -67,8 +67,11 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     refuse_other_unit(header.unit, far, raw.name, "Units in line 3")
     places = positions.reshape(len(positions), -1, 3).copy()
     places[(places == 0).all(axis=2)] = np.nan
-    names, dropped = _marker_names(header.labels, channels)
-    if dropped:
+    plain = [label.rpartition(":")[2].strip() or label for label in header.labels]
+    pairs = zip(header.labels, plain, strict=True)
+    said = [mapped_label(label, channels) or mapped_label(short, channels) for label, short in pairs]
+    names = [split_unit(name)[0] if name else short for name, short in zip(said, plain, strict=True)]
+    if plain != list(header.labels):
         findings.append(Finding("note", "identifier", raw.name, "the part of the labels before ':' was removed", ""))
     columns = [Column(name, Channel(f"{name}.{axis}", "marker", "m"), header.unit) for name in names for axis in "xyz"]
     return sorted_trial(raw.source("trc"), time, places.reshape(positions.shape), columns, findings)
@@ -115,13 +118,3 @@ def _number(fields: Mapping[str, str], key: str, file: str) -> float:
     if not 0 < number < 1e9:
         raise ReadError(f"{file}: {key} in line 3 must be above 0", f"found {fields[key]!r}", "Export it again.")
     return number
-
-
-def _marker_names(labels: Sequence[str], channels: Mapping[str, str] | None) -> tuple[list[str], bool]:
-    plain = [label.rpartition(":")[2].strip() or label for label in labels]
-    said = [
-        mapped_label(label, channels) or mapped_label(short, channels)
-        for label, short in zip(labels, plain, strict=True)
-    ]
-    names = [split_unit(name)[0] if name else short for name, short in zip(said, plain, strict=True)]
-    return names, plain != list(labels)

@@ -11,20 +11,20 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.kinematics.marker_set import METHODS, PARTS, SIDED, MarkerSet
 from gaitdisc.kinematics.markers import check_right_handed, marker_labels, still_places, up_axis
 from gaitdisc.kinematics.pose import FEWEST_POINTS, SEGMENTS, SEGMENTS_OF, Pose, chord_centre, davis_hip, harrington_hip
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import BodyMeasures
 
 STANDS_M = 0.03  # who stands sways less than this in half a second
 USUAL_DIAMETER_M = 0.014
 RIGHTWARD = {"l": -1.0, "r": 1.0}  # sign of what points outward
 
-Points = Mapping[str, NDArray[np.float64]]
+Points = Mapping[str, Values]
 MARKS = {
     "pelvis": ("asis", "sacrum"),
     "thigh": ("knee_lateral", "knee_medial"),
@@ -98,7 +98,7 @@ class _Builder:
         self.hips = hips
         self.findings: list[Finding] = []
         self.exchanged: tuple[str, ...] = ()
-        self.centres: dict[str, NDArray[np.float64]] = {}
+        self.centres: dict[str, Values] = {}
         self.static: dict[str, Pose] = {}
         self.up = np.zeros(3)
 
@@ -124,7 +124,7 @@ class _Builder:
             spoiled=self._spoiled(),
         )
 
-    def _place(self, key: str, side: str) -> NDArray[np.float64]:
+    def _place(self, key: str, side: str) -> Values:
         return np.mean([self.places[marker] for marker in self._labels(key, side)], axis=0)
 
     def _labels(self, key: str, side: str) -> tuple[str, ...]:
@@ -139,7 +139,7 @@ class _Builder:
     def _pelvis(self) -> None:
         left, right = self._place("asis", "l"), self._place("asis", "r")
         middle = (left + right) / 2
-        sacrum: NDArray[np.float64] = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
+        sacrum: Values = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
         across, ahead = right - left, middle - sacrum
         self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
@@ -152,7 +152,7 @@ class _Builder:
             hip = self._hip(side, width, depth) if hip is None else hip
             self.centres[f"hip_{side}"] = self.static["pelvis"].to_laboratory(hip)[0]
 
-    def _hip(self, side: str, width: float, depth: float) -> NDArray[np.float64]:
+    def _hip(self, side: str, width: float, depth: float) -> Values:
         legs = self.measures.leg_length_m
         methods = self.marker_set.joint_centres["hip"]
         if methods[0] == "davis" and set(legs) == {"l", "r"}:
@@ -177,7 +177,7 @@ class _Builder:
                 self._note("marker diameter", what, "joint centres by some mm if the diameter differs")
         return diameter / 2
 
-    def _centre(self, joint: str, side: str, above: str, wand: str) -> NDArray[np.float64]:
+    def _centre(self, joint: str, side: str, above: str, wand: str) -> Values:
         """Joint centre by midpoint or chord."""
         lateral = self._place(f"{joint}_lateral", side)
         if "midpoint" in self.marker_set.joint_centres[joint] and self._has(f"{joint}_medial"):
@@ -215,12 +215,12 @@ class _Builder:
         along = self._place("toe", side) - self._place("heel", side)
         if self.marker_set.axes["foot"] == "flat":
             along = along - float(along @ self.up) * self.up
-        right: NDArray[np.float64] = np.cross(along, self.up)
-        upward: NDArray[np.float64] = np.cross(right, along)
+        right: Values = np.cross(along, self.up)
+        upward: Values = np.cross(right, along)
         axes = _axes(right, upward, self.file, f"foot_{side}")
         self.static[f"foot_{side}"] = Pose(self.centres[f"ankle_{side}"][None], axes)
 
-    def _followers(self, segment: str) -> dict[str, NDArray[np.float64]]:
+    def _followers(self, segment: str) -> dict[str, Values]:
         """Points that follow a segment, in its frame; those that the static trial lacks are left out and said."""
         followers, absent = {}, []
         for point in self.marker_set.followers(segment):
@@ -237,7 +237,7 @@ class _Builder:
             )
         return followers
 
-    def _points(self, segment: str) -> dict[str, NDArray[np.float64]]:
+    def _points(self, segment: str) -> dict[str, Values]:
         part, _, side = segment.partition("_")
         sides, joints = side or "lr", [joint for joint, parts in SEGMENTS_OF.items() if part in parts]
         places = {f"{joint}_{s}": self.centres[f"{joint}_{s}"] for joint in joints for s in sides}
@@ -281,9 +281,7 @@ class _Builder:
         return tuple(found)
 
 
-def _axes(
-    right: NDArray[np.float64], up: NDArray[np.float64], file: str, segment: str, kept: str = "z"
-) -> NDArray[np.float64]:
+def _axes(right: Values, up: Values, file: str, segment: str, kept: str = "z") -> Values:
     """Rotation (1, 3, 3) with z to the right and y up; one keeps its direction, the other is made square."""
     forward = np.cross(up, right)
     size = float(np.linalg.norm(forward))
@@ -299,7 +297,7 @@ def _axes(
     return np.stack([x, np.cross(z, x), z], axis=1)[None]
 
 
-def landmark_order(marker_set: MarkerSet, places: Points, up: NDArray[np.float64]) -> list[tuple[float, str]]:
+def landmark_order(marker_set: MarkerSet, places: Points, up: Values) -> list[tuple[float, str]]:
     """By how much each landmark of a standing person is on its side of another [m]; below 0 a label is wrong, as said.
 
     Right is right of left, the leg's landmarks come down in their order, ankle between heel and toe, and pelvis and
@@ -336,7 +334,7 @@ def landmark_order(marker_set: MarkerSet, places: Points, up: NDArray[np.float64
     ]
 
 
-def exchanged_in_static(marker_set: MarkerSet, places: Points, up: NDArray[np.float64]) -> tuple[str, str] | None:
+def exchanged_in_static(marker_set: MarkerSet, places: Points, up: Values) -> tuple[str, str] | None:
     """Pair of markers whose exchange puts all landmarks right, by the most; None where no pair does."""
     names = [name for name in marker_set.markers() if name in places]
     ranked = [
@@ -347,7 +345,7 @@ def exchanged_in_static(marker_set: MarkerSet, places: Points, up: NDArray[np.fl
     return pair if margin > 0 else None
 
 
-def swapped(places: Points, pair: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+def swapped(places: Points, pair: Sequence[str]) -> dict[str, Values]:
     """Same places, those of two markers exchanged."""
     first, second = pair
     return {**places, first: places[second], second: places[first]}

@@ -14,7 +14,7 @@ from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.kinematics.segment_poses import free_fits, placed_markers
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import spans_s
+from gaitdisc.recording.arrays import Values, spans_s
 
 # Root mean square over a segment's points [m]. Two labels exchanged give 0.012 or more, whatever pair (2,400 pairs in
 # six walks of three people); one person's skin 0.002 to 0.004 (median), in 1 % of the frames up to 0.016.
@@ -39,7 +39,7 @@ class Exchange(NamedTuple):
 
 
 def exchanged_pairs(
-    places: Points, calibration: Calibration, up: NDArray[np.float64]
+    places: Points, calibration: Calibration, up: Values
 ) -> tuple[list[Exchange], dict[str, NDArray[np.bool_]]]:
     """Pairs of markers whose labels are exchanged in a trial, and where segments have lost their shape without one.
 
@@ -70,7 +70,7 @@ def exchanged_pairs(
     return found, {segment: unexplained & (now[segment] > BROKEN_M) for segment in SEGMENTS}
 
 
-def misfits(places: Points, calibration: Calibration, up: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def misfits(places: Points, calibration: Calibration, up: Values) -> dict[str, Values]:
     """How far the points of each segment lie from where the static trial has them, each (frame,) [m].
 
     A foot that points backward in its shank (no ankle bends by 90 deg), and a pelvis that is upside down or turned
@@ -98,7 +98,7 @@ def holders(pair: Iterable[str], calibration: Calibration) -> tuple[str, ...]:
     return tuple(segment for segment in SEGMENTS if set(pair) & set(calibration.body[segment]))
 
 
-def _best_pair(places: Points, calibration: Calibration, up: NDArray[np.float64]) -> tuple[str, str] | None:
+def _best_pair(places: Points, calibration: Calibration, up: Values) -> tuple[str, str] | None:
     """Pair of which one marker is in a segment that does not fit, and which explains most frames; None if none does."""
     now = misfits(places, calibration, up)
     off = {segment for segment in SEGMENTS if (now[segment] > LOOKED_AT_M).any()}
@@ -122,7 +122,7 @@ def exchange_findings(
     broken: Mapping[str, NDArray[np.bool_]],
     calibration: Calibration,
     markers: Recording,
-    up: NDArray[np.float64],
+    up: Values,
 ) -> list[Finding]:
     """Say which labels are exchanged, where and in which trial, and which segments have lost their shape without."""
     file, names = markers.source.file or "the trial", calibration.marker_set.names(marker_labels(markers))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.pose import Pose, fitted_pose
-from gaitdisc.kinematics.segment_poses import named_places, placed_markers
+from gaitdisc.kinematics.segment_poses import PlacedMarkers, named_places, placed_markers
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.arrays import Values
 
 LEAST_SWING_DEG = 5.0  # root mean square to each side; a circle of 20 deg has 14, walking has 3 out of its plane
 LARGEST_RESIDUAL_M = 0.015  # skin of the thigh slides by as much
@@ -24,13 +24,11 @@ SPOILS = "this hip by 1 to 2 cm; circle the leg by at least 20 deg, front to bac
 class Pivot(NamedTuple):
     """The centre about which a segment turns, in the frame of the one above, and how far it leaves it (rms)."""
 
-    centre: NDArray[np.float64]
+    centre: Values
     residual_m: float
 
 
-def functional_hips(
-    markers: Recording, calibration: Calibration
-) -> tuple[dict[str, NDArray[np.float64]], tuple[Finding, ...]]:
+def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[str, Values], tuple[Finding, ...]]:
     """Hip centres in the pelvis' frame [m] by side, of a trial of hip movements, and what was found.
 
     With three markers on the thigh the centre is the point that is fixed in both segments, with fewer that of the
@@ -57,16 +55,13 @@ def functional_hips(
     return hips, tuple(findings)
 
 
-def _found(
-    pelvis: Pose, thigh: tuple[NDArray[np.float64], NDArray[np.float64]], usual: NDArray[np.float64]
-) -> tuple[Pivot | None, str]:
+def _found(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot | None, str]:
     """Centre of one hip, or None and why."""
-    body, seen = thigh
-    whole = pelvis.known & np.isfinite(seen).all(axis=(1, 2))
+    whole = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
     if whole.sum() < FEWEST_FRAMES:
         return None, f"pelvis and thigh are complete in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
-    above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), seen[whole]
-    below, places = fitted_pose(body, markers).pose, above.to_segment(markers)
+    above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), thigh.seen[whole]
+    below, places = fitted_pose(thigh.body, markers).pose, above.to_segment(markers)
     found = fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
     # to each side, in the direction in which the thigh turns less
     way = (places - found.centre).mean(axis=1)
@@ -95,7 +90,7 @@ def fixed_point(above: Pose, below: Pose) -> Pivot:
     return Pivot(point[:3], float(np.sqrt((left**2).sum(axis=1).mean())))
 
 
-def sphere_centre(places: NDArray[np.float64], start: NDArray[np.float64]) -> Pivot:
+def sphere_centre(places: Values, start: Values) -> Pivot:
     """Centre that all markers keep their distances from, without the bias that noise gives it.
 
     places (frame, marker, 3) [m]: in the frame of the segment above
@@ -125,7 +120,7 @@ def sphere_centre(places: NDArray[np.float64], start: NDArray[np.float64]) -> Pi
     return Pivot(centre, float(np.sqrt(((distance - distance.mean(axis=0)) ** 2).mean())))
 
 
-def _apart(found: Pivot, usual: NDArray[np.float64]) -> float:
+def _apart(found: Pivot, usual: Values) -> float:
     return float(np.linalg.norm(found.centre - usual))
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, ShapeError, StrideError
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 
 STILL_S = 0.5
 STEP_S = 0.1
@@ -34,7 +35,7 @@ def marker_labels(markers: Recording) -> list[str]:
     return labels
 
 
-def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float64]:
+def marker_places(markers: Recording, labels: Sequence[str]) -> Values:
     """Positions of markers (frame, marker, 3) [m]; NaN, in all three, where one was not seen."""
     columns = [markers.index(f"{label}.{axis}") for label in labels for axis in "xyz"]
     places = np.array(markers.values[:, columns]).reshape(len(markers.time), len(labels), 3)
@@ -68,7 +69,7 @@ def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[
     return places, moved if np.isfinite(moved) else _moved(all_places[:, rows]), float(markers.time[start])
 
 
-def _moved(places: NDArray[np.float64]) -> float:
+def _moved(places: Values) -> float:
     """Largest mean distance of the markers from their median places; infinite where one is never seen."""
     seen = np.isfinite(places[..., 0])
     if not seen.any(axis=0).all():
@@ -82,11 +83,11 @@ def _moved(places: NDArray[np.float64]) -> float:
 class WalkingFrame:
     """The walker's frame over time: x forward, y up, z to the right."""
 
-    rotation: NDArray[np.float64]  # (frame, 3, 3), columns are forward, up, right in the laboratory's frame
+    rotation: Values  # (frame, 3, 3), columns are forward, up, right in the laboratory's frame
     how: str  # what up and forward were found from
 
 
-def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = "") -> NDArray[np.float64]:
+def up_axis(pelvis: Values, feet: Values, file: str = "") -> Values:
     """Laboratory's axis (3,) along which the pelvis (frame, 3) [m] lies above the feet (frame, 3) [m]; NaN allowed.
 
     >>> up_axis(np.array([[1.0, 2.0, 0.9]]), np.array([[1.0, 2.1, 0.1]]))
@@ -115,7 +116,7 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
     return up
 
 
-def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], file: str = "") -> None:
+def check_right_handed(pelvis: Values, up: Values, file: str = "") -> None:
     """Refuse mirrored frames; pelvis axes (frame, 3, 3): x sacrum forward, z left to right spine; up (3,).
 
     >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
@@ -134,11 +135,7 @@ def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], fil
 
 
 def walking_frame(
-    origin: NDArray[np.float64],
-    facing: NDArray[np.float64],
-    up: NDArray[np.float64],
-    rate_hz: float,
-    given: Sequence[float] | None = None,
+    origin: Values, facing: Values, up: Values, rate_hz: float, given: Sequence[float] | None = None
 ) -> WalkingFrame:
     """Forward, up and right at each frame.
 
@@ -151,7 +148,15 @@ def walking_frame(
     up (3,): up in the laboratory
     """
     if given is not None:
-        return WalkingFrame(_frames(np.tile(_level_given(given, up), (len(origin), 1)), up), "forward as given")
+        stated = np.asarray(given, float)
+        size = float(np.linalg.norm(stated)) if stated.shape == (3,) else 0.0
+        if not size > 0 or not abs(stated @ up) <= 0.5 * size:
+            raise StrideError(
+                "the direction of walking must be a horizontal vector of three numbers",
+                f"it is {tuple(np.ravel(stated).tolist())}, up is {tuple(up.tolist())}",
+                "Write it in the laboratory's axes, for example 0 -1 0.",
+            )
+        return WalkingFrame(_frames(np.tile(_level(stated, up), (len(origin), 1)), up), "forward as given")
     known = np.isfinite(origin).all(axis=1) & np.isfinite(facing).all(axis=1)
     if not known.any():
         raise StrideError("the direction of walking needs the pelvis", "no frame has it", "Fill its marker gaps.")
@@ -177,35 +182,21 @@ def walking_frame(
     return WalkingFrame(_frames(paths, up), words)
 
 
-def _level_given(given: Sequence[float], up: NDArray[np.float64]) -> NDArray[np.float64]:
-    forward = np.asarray(given, float)
-    size = float(np.linalg.norm(forward)) if forward.shape == (3,) else 0.0
-    if not size > 0 or not abs(forward @ up) <= 0.5 * size:
-        raise StrideError(
-            "the direction of walking must be a horizontal vector of three numbers",
-            f"it is {tuple(np.ravel(forward).tolist())}, up is {tuple(up.tolist())}",
-            "Write it in the laboratory's axes, for example 0 -1 0.",
-        )
-    return _level(forward, up)
-
-
-def _level_part(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+def _level_part(vector: Values, up: Values) -> Values:
     return vector - np.outer(vector @ up, up).reshape(np.shape(vector))
 
 
-def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+def _level(vector: Values, up: Values) -> Values:
     level = _level_part(vector, up)
     return level / max(float(np.linalg.norm(level)), 1e-12)
 
 
-def _frames(forward: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+def _frames(forward: Values, up: Values) -> Values:
     upward = np.broadcast_to(up, forward.shape)
     return np.stack([forward, upward, np.cross(forward, upward)], axis=2)
 
 
-def _headings(
-    origin: NDArray[np.float64], seen: NDArray[np.intp], up: NDArray[np.float64], rate_hz: float
-) -> NDArray[np.float64] | None:
+def _headings(origin: Values, seen: NDArray[np.intp], up: Values, rate_hz: float) -> Values | None:
     """Level direction over a whole second around each frame, held where there is none; None where it is mostly slow."""
     samples = np.arange(len(origin))
     path = _level_part(np.stack([np.interp(samples, seen, origin[seen, axis]) for axis in range(3)], axis=1), up)

@@ -36,7 +36,7 @@ from gaitdisc.kinematics.segment_poses import (
     placed_markers,
 )
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import spans_s
+from gaitdisc.recording.arrays import Values, spans_s
 from gaitdisc.recording.trial import BodyMeasures
 
 ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
@@ -56,7 +56,7 @@ class Motion:
     poses: Mapping[str, Pose]
     walking: WalkingFrame  # forward, up and right of the walker
     # each (frame,) [m], segment -> root mean square distance of its markers from where the static trial has them
-    residual_m: Mapping[str, NDArray[np.float64]]
+    residual_m: Mapping[str, Values]
     calibration: Calibration  # of the person, with the marker set that was used
     markers: Recording  # of the trial, without those that bear another's label
     exchanged: tuple[Exchange, ...]  # pairs of labels, and in which frames
@@ -121,8 +121,8 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
             "Correct the labels, or use the static trial of this person and session.",
         )
     for segment, frames in unfit.items():
-        body, seen = placed[segment]
-        placed[segment] = body, np.where(frames[:, None, None], np.nan, seen)
+        hidden = np.where(frames[:, None, None], np.nan, placed[segment].seen)
+        placed[segment] = placed[segment]._replace(seen=hidden)
     free = free_poses(placed, calibration)
     check_right_handed(free["pelvis"].rotation, up, file)
     facing = free["pelvis"].rotation[:, :, 0]
@@ -131,7 +131,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
-    bridged = {s: poses[s].known & ~np.isfinite(placed[s][1]).all(axis=(1, 2)) for s in SEGMENTS}
+    bridged = {s: poses[s].known & ~np.isfinite(placed[s].seen).all(axis=(1, 2)) for s in SEGMENTS}
     findings = [
         *calibration.findings,
         Finding("note", "marker set", file, _set_words(calibration), ""),
@@ -166,20 +166,16 @@ def _set_words(calibration: Calibration) -> str:
     return f"{chosen.name}: {chosen.title}; joints {chosen.joints}{differs}".replace("{S}", "")
 
 
-def _middle(placed: PlacedMarkers, segments: Sequence[str]) -> NDArray[np.float64]:
+def _middle(placed: Mapping[str, PlacedMarkers], segments: Sequence[str]) -> Values:
     """Mean place of those markers of some segments that are seen in a frame (frame, 3) [m]."""
-    places = np.concatenate([placed[segment][1] for segment in segments], axis=1)
+    places = np.concatenate([placed[segment].seen for segment in segments], axis=1)
     seen = np.isfinite(places).all(axis=2, keepdims=True)
     count = seen.sum(axis=1)
     return np.where(count > 0, np.where(seen, places, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
 
 
 def _gaps_and_shape(
-    segment: str,
-    unknown: NDArray[np.bool_],
-    bridged: NDArray[np.bool_],
-    residual: NDArray[np.float64],
-    markers: Recording,
+    segment: str, unknown: NDArray[np.bool_], bridged: NDArray[np.bool_], residual: Values, markers: Recording
 ) -> list[Finding]:
     """Say where a segment is carried although a marker is missing, where it is unknown, or has another shape."""
     file, frames = markers.source.file or "the trial", len(markers.time)
@@ -205,9 +201,9 @@ def angles_of_poses(
 ) -> Recording:
     """Joint and foot angles [deg], pelvis translations [m] of segments, on `base`'s times; bridged is suspect."""
     turns = {segment: pose.rotation for segment, pose in poses.items()}
-    columns: list[tuple[Channel, NDArray[np.float64], NDArray[np.bool_]]] = []
+    columns: list[tuple[Channel, Values, NDArray[np.bool_]]] = []
 
-    def add(names: Sequence[str], side: str, values: NDArray[np.float64], doubt: NDArray[np.bool_]) -> None:
+    def add(names: Sequence[str], side: str, values: Values, doubt: NDArray[np.bool_]) -> None:
         for name, column in zip(names, values.T, strict=True):
             full = f"{name}_{side}" if side else name
             columns.append((Channel(full, "angle", "deg", side), column, doubt))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 
 PARTS = ("pelvis", "thigh", "shank", "foot")
 SEGMENTS = ("pelvis", "thigh_l", "thigh_r", "shank_l", "shank_r", "foot_l", "foot_r")
@@ -34,10 +34,10 @@ class Pose:
     """
 
     # (frame, 3) [m], the segment's origin in the laboratory's frame; NaN where it is unknown
-    origin: NDArray[np.float64]
+    origin: Values
     # (frame, 3, 3), columns are the segment's axes in the laboratory's frame: x forward, y up, z to the right of the
     # person; NaN where unknown. `rotation @ v` turns a vector of the segment into the laboratory's frame
-    rotation: NDArray[np.float64]
+    rotation: Values
 
     def __post_init__(self) -> None:
         """Check shapes and that every known matrix is a rotation, once."""
@@ -77,7 +77,7 @@ class Pose:
             np.where(frames[:, None], np.nan, self.origin), np.where(frames[:, None, None], np.nan, self.rotation)
         )
 
-    def to_laboratory(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def to_laboratory(self, points: Values) -> Values:
         """Points of the segment, (point, 3) or (3,) [m], in the laboratory, (frame, point, 3) or (frame, 3) [m].
 
         >>> Pose(np.ones((1, 3)), np.eye(3)[None]).to_laboratory(np.array([0.0, 1.0, 0.0]))
@@ -88,7 +88,7 @@ class Pose:
             return self.origin + self.rotation @ points
         return self.origin[:, None] + np.einsum("fij,pj->fpi", self.rotation, points)
 
-    def to_segment(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def to_segment(self, points: Values) -> Values:
         """Points of the laboratory, (frame, point, 3) or (frame, 3) [m], in the segment's frame.
 
         >>> Pose(np.ones((1, 3)), np.eye(3)[None]).to_segment(np.array([[1.0, 2.0, 1.0]]))
@@ -106,10 +106,10 @@ class RigidFit:
 
     pose: Pose  # NaN in frames with fewer than three points, or points on a line
     # (frame,) [m], root of the mean square distance between the points and those of the body, on a line too
-    residual_m: NDArray[np.float64]
+    residual_m: Values
 
 
-def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> RigidFit:
+def fitted_pose(body: Values, observed: Values) -> RigidFit:
     """Pose that brings a rigid body nearest to the observed points.
 
     body (point, 3) [m]: points in the frame of the segment
@@ -147,7 +147,7 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
     return RigidFit(Pose(origin, rotation), residual)
 
 
-def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float64]) -> NDArray[np.float64]:
+def residual_m(pose: Pose, body: Values, observed: Values) -> Values:
     """Root mean square distance [m] by frame of observed (frame, point, 3) from body points (point, 3) in a pose."""
     apart = ((observed - pose.to_laboratory(body)) ** 2).sum(axis=2)
     seen = np.isfinite(apart)
@@ -155,7 +155,7 @@ def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float
     return np.where(seen.any(axis=1), np.sqrt(mean), np.nan)
 
 
-def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) -> NDArray[np.float64]:
+def clinical_angles(proximal: Values, distal: Values) -> Values:
     """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y, in degrees.
 
     Signs are those of a right limb that turns to the front (positive about z), to the body's midline (about x) and
@@ -178,13 +178,13 @@ def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) 
     return np.degrees(np.stack([flexion, adduction, rotation], axis=1)) + 0.0
 
 
-def angle_signs(joint: str, side: str) -> NDArray[np.float64]:
+def angle_signs(joint: str, side: str) -> Values:
     """Signs (3,) by which `clinical_angles` of a joint become those of its channels, on side `r` or `l`."""
     _, flexion = JOINT_CHANNELS[joint]
     return np.array([flexion, 1.0, 1.0] if side == "r" else [flexion, -1.0, -1.0])
 
 
-def rotation_of(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+def rotation_of(angles_deg: Values) -> Values:
     """Rotation (frame, 3, 3) of distal in proximal, of what `clinical_angles` gives (frame, 3) [deg].
 
     >>> angles = np.array([[30.0, -5.0, 8.0]])
@@ -200,7 +200,7 @@ def rotation_of(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.float64]:
+def harrington_hip(width_m: float, depth_m: float, side: str) -> Values:
     """Hip centre in the pelvis' frame from mid-ASIS [m], of width and depth [m]; Harrington 2007, J Biomech 40:595.
 
     >>> harrington_hip(0.240, 0.150, "r").round(4).tolist()
@@ -210,9 +210,7 @@ def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.floa
     return np.array([-0.24 * depth_m - 9.9 * _MM, -0.30 * width_m - 10.9 * _MM, lateral if side == "r" else -lateral])
 
 
-def hip_of_spines(
-    left: NDArray[np.float64], right: NDArray[np.float64], sacrum: NDArray[np.float64], side: str
-) -> NDArray[np.float64]:
+def hip_of_spines(left: Values, right: Values, sacrum: Values, side: str) -> Values:
     """Harrington's hip centre of each frame, from spines and sacrum (frame, 3) [m]; width and depth are medians.
 
     >>> spine, back = np.array([[0.0, 0.0, 0.12]]), np.array([[-0.15, 0.0, 0.0]])
@@ -227,9 +225,7 @@ def hip_of_spines(
     return np.asarray(middle + units @ harrington_hip(width, depth, side), np.float64)
 
 
-def davis_hip(
-    width_m: float, mean_leg_m: float, leg_m: float, marker_radius_m: float, side: str
-) -> NDArray[np.float64]:
+def davis_hip(width_m: float, mean_leg_m: float, leg_m: float, marker_radius_m: float, side: str) -> Values:
     """Hip centre of Plug-in Gait in the pelvis' frame from mid-ASIS [m], of pelvis width and leg lengths [m].
 
     mean_leg_m: of both legs
@@ -246,9 +242,7 @@ def davis_hip(
     return np.array([forward, upward, lateral if side == "r" else -lateral])
 
 
-def chord_centre(
-    proximal: NDArray[np.float64], wand: NDArray[np.float64], lateral: NDArray[np.float64], distance_m: float
-) -> NDArray[np.float64]:
+def chord_centre(proximal: Values, wand: Values, lateral: Values, distance_m: float) -> Values:
     """Joint centre in the plane of three points, at a distance from the lateral one and at a right angle there.
 
     The line from the centre to the proximal joint and the line from the centre to the lateral marker are at right

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS, Pose, RigidFit, fitted_pose
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 
 ROUNDS = 60
 FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
@@ -23,17 +25,27 @@ SETTLED = 1e-9  # rad and m; the step after is smaller by far
 STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
 LONGEST_STEP_RAD = 0.5
 
-Turns = dict[str, NDArray[np.float64]]
+Turns = dict[str, Values]
 CARRIED_STEADY_M = 0.06  # a thigh of Plug-in Gait that lost its wand has less, and may be wrong by 30 deg
 FROM_STRAIGHT_DEG = 30.0  # a shank that turns by 300 deg/s one way and back again over 0.2 s
-PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+
+
+class PlacedMarkers(NamedTuple):
+    """Markers of one segment."""
+
+    body: Values  # (marker, 3) [m], in the segment's own frame
+    seen: Values  # (frame, marker, 3) [m], in the laboratory; NaN where one is missing
+
+    def among(self, frames: NDArray[np.intp]) -> PlacedMarkers:
+        """Return the same markers in some frames."""
+        return PlacedMarkers(self.body, self.seen[frames])
 
 
 def held_together(
     first: Mapping[str, Pose],
-    placed: PlacedMarkers,
+    placed: Mapping[str, PlacedMarkers],
     points: Mapping[str, Points],
-    plane: NDArray[np.float64] | None = None,
+    plane: Values | None = None,
     steady_m: float = STEADY_M,
 ) -> dict[str, Pose]:
     """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
@@ -45,8 +57,7 @@ def held_together(
 
     first: each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
         frames before and after
-    placed each ((marker, 3), (frame, marker, 3)) [m]: segment -> its markers in its own frame, and in the laboratory;
-        NaN where one is missing
+    placed: markers by segment
     points each (3,) [m]: segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides
         of the joint
     plane (frame, 3, 3): the walker's forward, up and right, as columns, where only the plane of forward and up is
@@ -57,14 +68,22 @@ def held_together(
     """
     turns, origin = _beginning(first)
     if plane is not None:
-        turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
+        for segment, turn in turns.items():  # the one about the normal of the plane that is nearest
+            inside = np.swapaxes(plane, 1, 2) @ turn
+            angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
+            turns[segment] = _turn(angle[:, None] * plane[:, :, 2]) @ plane
     allowed = _allowed(len(origin), plane)
     moving: NDArray[np.intp] = np.arange(len(origin))
     for _ in range(ROUNDS):
         some = {segment: turn[moving] for segment, turn in turns.items()}
-        there = {segment: (body, seen[moving]) for segment, (body, seen) in placed.items()}
+        there = {segment: one.among(moving) for segment, one in placed.items()}
         gradient, normal = _normal_equations(some, _origins(origin[moving], some, points), there)
-        step = _solved(normal, gradient, allowed[moving])
+        # a Gauss-Newton step, the smallest where markers do not determine all, turning by half a radian at most
+        may = allowed[moving]
+        some_normal, right = _among(normal, may), np.swapaxes(may, 1, 2) @ gradient[..., None]
+        step = (may @ np.linalg.solve(some_normal + DAMPING * np.eye(may.shape[2]), right))[..., 0]
+        longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
+        step *= np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
         origin[moving] += step[:, :3]
         for segment in SEGMENTS:
             for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
@@ -88,7 +107,7 @@ def _chain(segment: str) -> tuple[str, ...]:
     return ("pelvis", *(f"{one}_{side}" for one in PARTS[1 : PARTS.index(part) + 1]))
 
 
-def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
+def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, Values]:
     """Rotations and the place of the pelvis, where they are unknown between those before and after."""
     turns: Turns = {}
     origin = np.empty(0)
@@ -106,7 +125,7 @@ def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
     return turns, origin
 
 
-def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Points]) -> Turns:
+def _origins(origin: Values, turns: Turns, points: Mapping[str, Points]) -> Turns:
     """Places of the proximal joints, from the pelvis down."""
     origins = {"pelvis": np.array(origin)}
     for segment in SEGMENTS[1:]:
@@ -117,9 +136,7 @@ def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Poi
     return origins
 
 
-def _normal_equations(
-    turns: Turns, origins: Turns, placed: PlacedMarkers
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _normal_equations(turns: Turns, origins: Turns, placed: Mapping[str, PlacedMarkers]) -> tuple[Values, Values]:
     """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
     frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
     gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
@@ -148,14 +165,7 @@ def _columns(segment: str) -> NDArray[np.intp]:
     return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
 
 
-def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The turn about the normal of the plane that is nearest to a turn."""
-    inside = np.swapaxes(plane, 1, 2) @ turn
-    angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
-    return _turn(angle[:, None] * plane[:, :, 2]) @ plane
-
-
-def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float64]:
+def _allowed(frames: int, plane: Values | None) -> Values:
     """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
     width = 3 + 3 * len(SEGMENTS)
     if plane is None:
@@ -167,7 +177,7 @@ def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float
     return columns
 
 
-def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> NDArray[np.float64]:
+def _apart_m(turns: Turns, origins: Turns, placed: Mapping[str, PlacedMarkers]) -> Values:
     """Root mean square distance of all markers from their bodies in each frame."""
     squares, count = 0.0, 0
     for segment, (body, seen) in placed.items():
@@ -177,7 +187,7 @@ def _apart_m(turns: Turns, origins: Turns, placed: PlacedMarkers) -> NDArray[np.
     return np.sqrt(squares / np.maximum(count, 1))
 
 
-def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
+def levers_m(normal: Values, allowed: Values) -> Turns:
     """Error of a marker over that of the turn it makes, by segment (frame,) [m], about the axis of the shortest."""
     some = _among(normal, allowed)
     spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
@@ -189,22 +199,11 @@ def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns
     return levers
 
 
-def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
+def _among(normal: Values, allowed: Values) -> Values:
     return np.swapaxes(allowed, 1, 2) @ normal @ allowed
 
 
-def _solved(
-    normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
-    some = _among(normal, allowed)
-    right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
-    step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]
-    longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
-    return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
-
-
-def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turn(vectors: Values) -> Values:
     """Rotations about vectors by their length [rad] (Rodrigues)."""
     angle = np.linalg.norm(vectors, axis=1)
     axis = vectors / np.maximum(angle, 1e-300)[:, None]
@@ -215,7 +214,9 @@ def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
 
 
-def held_in_gaps(free: Mapping[str, Pose], placed: PlacedMarkers, points: Mapping[str, Points]) -> dict[str, Pose]:
+def held_in_gaps(
+    free: Mapping[str, Pose], placed: Mapping[str, PlacedMarkers], points: Mapping[str, Points]
+) -> dict[str, Pose]:
     """Poses held together at the joints, in frames in which some segment is unknown and beside them; NaN in all others.
 
     free: each segment over its own points, NaN where too few; placed, points: as `held_together` takes them
@@ -224,7 +225,7 @@ def held_in_gaps(free: Mapping[str, Pose], placed: PlacedMarkers, points: Mappin
     beside = np.convolve(unknown, np.ones(3), "same") > 0
     rows: NDArray[np.intp] = np.flatnonzero(beside)
     held = {}
-    some = {segment: (body, seen[rows]) for segment, (body, seen) in placed.items()}
+    some = {segment: one.among(rows) for segment, one in placed.items()}
     part = {segment: Pose(pose.origin[rows], pose.rotation[rows]) for segment, pose in free.items()}
     for segment, pose in held_together(part, some, points, steady_m=CARRIED_STEADY_M).items():
         origin, rotation = np.full((len(unknown), 3), np.nan), np.full((len(unknown), 3, 3), np.nan)
@@ -262,23 +263,21 @@ def carried_over(free: Pose, held: Pose) -> Pose:
     return Pose(origin, rotation)
 
 
-def _between(known: NDArray[np.intp], rotations: NDArray[np.float64], where: NDArray[np.intp]) -> NDArray[np.float64]:
+def _between(known: NDArray[np.intp], rotations: Values, where: NDArray[np.intp]) -> Values:
     """Rotations at frames between known ones, on the shortest way from one to the next."""
     if len(known) == 1:
         return np.tile(rotations, (len(where), 1, 1))
     return Slerp(known, Rotation.from_matrix(rotations))(where).as_matrix()
 
 
-def named_places(markers: Recording, calibration: Calibration) -> dict[str, NDArray[np.float64]]:
+def named_places(markers: Recording, calibration: Calibration) -> dict[str, Values]:
     """Places of a trial's markers, each (frame, 3) [m], by the names of the marker set."""
     names = calibration.marker_set.names(marker_labels(markers))
     return dict(zip(names, marker_places(markers, [*names.values()]).swapaxes(0, 1), strict=True))
 
 
-def placed_markers(
-    places: Mapping[str, NDArray[np.float64]], calibration: Calibration, file: str = ""
-) -> PlacedMarkers:
-    """By segment, markers that both trials have: own frame (marker, 3), laboratory (frame, marker, 3) [m]."""
+def placed_markers(places: Mapping[str, Values], calibration: Calibration, file: str = "") -> dict[str, PlacedMarkers]:
+    """Markers that both trials have, by segment."""
     placed = {}
     for segment, body in calibration.body.items():
         points = [point for point in body if point in METHODS or point in places]
@@ -290,12 +289,13 @@ def placed_markers(
                 "Use the marker set with these labels, or name the markers in its [aliases].",
             )
         own = [point for point in points if point in places]
-        placed[segment] = np.array([body[point] for point in own]), np.stack([places[p] for p in own], axis=1)
+        there = np.stack([places[point] for point in own], axis=1)
+        placed[segment] = PlacedMarkers(np.array([body[point] for point in own]), there)
     return placed
 
 
 def free_fits(
-    placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
+    placed: Mapping[str, PlacedMarkers], calibration: Calibration, held: Mapping[str, Pose] | None = None
 ) -> dict[str, RigidFit]:
     """Each segment over its own points, pelvis first; `held` carries one through frames with too few points."""
     fits: dict[str, RigidFit] = {}
@@ -316,14 +316,14 @@ def free_fits(
 
 
 def free_poses(
-    placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
+    placed: Mapping[str, PlacedMarkers], calibration: Calibration, held: Mapping[str, Pose] | None = None
 ) -> dict[str, Pose]:
     """Poses of `free_fits`."""
     return {segment: fit.pose for segment, fit in free_fits(placed, calibration, held).items()}
 
 
 def joined_poses(
-    free: Mapping[str, Pose], placed: PlacedMarkers, calibration: Calibration, walker: NDArray[np.float64]
+    free: Mapping[str, Pose], placed: Mapping[str, PlacedMarkers], calibration: Calibration, walker: Values
 ) -> dict[str, Pose]:
     """The segments with their joints as the marker set has them: free, held, or in the plane of walking.
 
@@ -337,7 +337,7 @@ def joined_poses(
     return free_poses(placed, calibration, held_in_gaps(free, placed, calibration.points))
 
 
-def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> NDArray[np.float64]:
+def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> Values:
     """A joint centre (frame, 3) [m] as the segment above carries it."""
     name, side = joint.split("_")
     above = {"hip": "pelvis", "knee": f"thigh_{side}", "ankle": f"shank_{side}"}[name]

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError, ShapeError, UnitError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import RigidBody
+from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.trial import MASS_KG
 
 TABLES = ("dumas2007", "deleva1996")
 LEG: tuple[str, ...] = ("foot", "shank", "thigh")
-LIGHTEST_KG, HEAVIEST_KG = 5.0, 300.0
 # de Leva (1996), Table 4, mean lengths of foot over mean statures of the people measured
 _FOOT_OF_STATURE = {"f": 0.2283 / 1.735, "m": 0.2581 / 1.741}
 _SPREAD_OF_LENGTH = 0.1  # a bone whose length varies by more than a tenth is none
@@ -46,9 +46,9 @@ class Person:
                 "neither the study nor the file states one",
                 "Write it in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
             )
-        if not LIGHTEST_KG <= self.mass_kg <= HEAVIEST_KG:
+        if not MASS_KG.hold(self.mass_kg):
             raise UnitError(
-                f"the body mass must be between {LIGHTEST_KG:g} and {HEAVIEST_KG:g} kg",
+                f"the body mass must be between {MASS_KG.least:g} and {MASS_KG.most:g} kg",
                 f"it is {self.mass_kg:g} kg",
                 "Give it in kg.",
             )
@@ -107,12 +107,7 @@ def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
 
 
 def leg_inertia(
-    person: Person,
-    side: str,
-    lengths_m: Mapping[str, float],
-    heel: NDArray[np.float64],
-    toe: NDArray[np.float64],
-    table: str = "dumas2007",
+    person: Person, side: str, lengths_m: Mapping[str, float], heel: Values, toe: Values, table: str = "dumas2007"
 ) -> dict[str, RigidBody]:
     """Inertia of foot, shank and thigh of side `r` or `l`; the left leg is the right one's mirror image.
 
@@ -137,7 +132,13 @@ def leg_inertia(
     if table == "deleva1996":
         for found, sex in zip(bodies, sexes, strict=True):
             found["foot"] = _foot_from_heel(inertia_table(table, sex)["foot"], person, sex, heel, toe)
-    return {segment: _mean([found[segment] for found in bodies]) for segment in LEG}
+    means = {}
+    for segment in LEG:
+        each = [found[segment] for found in bodies]
+        mass = float(np.mean([body.mass_kg for body in each]))
+        centre = np.mean([body.centre for body in each], axis=0)
+        means[segment] = RigidBody(mass, centre, np.mean([body.tensor for body in each], axis=0))
+    return means
 
 
 def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
@@ -178,9 +179,7 @@ def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBod
     return RigidBody(mass, mirror @ np.array(row.centre) / 100 * length_m, mirror @ tensor @ mirror)
 
 
-def _foot_from_heel(
-    row: TableRow, person: Person, sex: str, heel: NDArray[np.float64], toe: NDArray[np.float64]
-) -> RigidBody:
+def _foot_from_heel(row: TableRow, person: Person, sex: str, heel: Values, toe: Values) -> RigidBody:
     """De Leva's foot: along the line from heel to toes, whose tips are known by the stature."""
     if person.stature_m is None:
         raise UnitError(
@@ -195,11 +194,3 @@ def _foot_from_heel(
     across /= np.linalg.norm(across)
     axes = np.column_stack([ahead, np.cross(across, ahead), across])
     return RigidBody(plain.mass_kg, heel + axes @ plain.centre, axes @ plain.tensor @ axes.T)
-
-
-def _mean(bodies: list[RigidBody]) -> RigidBody:
-    return RigidBody(
-        float(np.mean([body.mass_kg for body in bodies])),
-        np.mean([body.centre for body in bodies], axis=0),
-        np.mean([body.tensor for body in bodies], axis=0),
-    )

@@ -13,11 +13,11 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose, angle_signs
 from gaitdisc.kinetics.body_inertia import LEG, TABLES, Person, leg_inertia, segment_lengths
-from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenches, segment_motions
+from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenches, needed_wrench, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Recording, Trial
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Span, Values, runs
 
 SWING_AT_MOST_S = 0.7  # between two steps of one foot; a stance between them would not fit
 HOLE_S = 0.06  # between what the file calls foot off and the end of the force
@@ -34,9 +34,9 @@ class FootLoad:
 def foot_loads(
     found: Sequence[Platform],
     steps: Sequence[PlateStep],
-    time: NDArray[np.float64],
+    time: Values,
     cutoff_hz: float,
-    airborne: Mapping[str, Sequence[tuple[float, float]]] | None = None,
+    airborne: Mapping[str, Sequence[Span]] | None = None,
 ) -> dict[str, FootLoad]:
     """Load of both feet from the clean steps of a trial.
 
@@ -45,53 +45,48 @@ def foot_loads(
 
     time (frame,) [s]: of the markers
     cutoff_hz: of the filter of force and moment; infinite for none
-    airborne mapping of str to sequence of (float, float): spans in which a foot swings, as `swings` gives them [s]
+    airborne: spans in which a foot swings, as `swings` gives them
     """
     loads = {}
     for side in "rl":
         total = Wrench(np.zeros((len(time), 3)), np.zeros((len(time), 3)))
         for platform in found:
-            spans = [(s.start, s.end) for s in steps if s.clean and (s.platform, s.side) == (platform.name, side)]
+            spans = [step.span for step in steps if step.clean and (step.platform, step.side) == (platform.name, side)]
             if spans:
                 smooth = platform.smoothed(cutoff_hz, spans)
                 columns = np.hstack([smooth.force, smooth.moment]).T
                 values = np.stack([np.interp(time, platform.time, column, 0.0, 0.0) for column in columns], axis=1)
                 total += Wrench(values[:, :3], values[:, 3:])
         named = any(platform.side == side for platform in found)
-        spans = [(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
+        spans = [Span(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
         loads[side] = FootLoad(total, _known(steps, side, time, spans))
     return loads
 
 
-def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[tuple[float, float]]]:
-    """Spans in which each foot is in the air: it goes forwards fast, or the file's events say so [s]."""
+def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[Span]]:
+    """Spans in which each foot is in the air: it goes forwards fast, or the file's events say so."""
     found = {side: feet[side].swings() if side in feet else [] for side in "rl"}
     for side, spans in found.items():
         events = [event for event in trial.events if event.side == side]
         for one, after in itertools.pairwise(events):
             if (one.label, after.label) == ("foot off", "initial contact"):
-                spans.append((one.time, after.time))
+                spans.append(Span(one.time, after.time))
     return found
 
 
-def _known(
-    steps: Sequence[PlateStep], side: str, time: NDArray[np.float64], known_spans: Sequence[tuple[float, float]]
-) -> NDArray[np.bool_]:
+def _known(steps: Sequence[PlateStep], side: str, time: Values, known_spans: Sequence[Span]) -> NDArray[np.bool_]:
     own = [step for step in steps if step.side == side and step.clean]
-    spans = [(step.start, step.end) for step in own] + list(known_spans)
-    spans += [
-        (one.end, after.start) for one, after in itertools.pairwise(own) if 0 < after.start - one.end < SWING_AT_MOST_S
-    ]
+    between = [Span(one.end, after.start) for one, after in itertools.pairwise(own)]
     known = np.zeros(len(time), bool)
-    for start, end in spans:
-        known |= (time >= start) & (time <= end)
+    for span in (*known_spans, *(step.span for step in own), *(s for s in between if 0 < s.seconds < SWING_AT_MOST_S)):
+        known |= span.holds(time)
     step = float(time[1] - time[0]) if len(time) > 1 else 0.0
     for start, end in runs(~known):
         if start > 0 and end < len(time) and (end - start) * step <= HOLE_S:
             known[start:end] = True
     for left_out in steps:
         if not left_out.clean and left_out.side in (side, ""):
-            known &= ~((time >= left_out.start) & (time <= left_out.end))
+            known &= ~left_out.span.holds(time)
     return known
 
 
@@ -99,7 +94,7 @@ FRAMES = ("joint", "distal")
 ALONG_BONE = [2, 0, 1]  # the segment's own axes that take the places of those of the joint
 
 
-def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
+def joint_axes(nearer: Pose, farther: Pose) -> Values:
     """Unit axes of a joint in the laboratory's frame, (frame, axis, 3); NaN where the first and third lie on one line.
 
     As the joint angles have them: the nearer segment's z (to the right), about which flexion turns; one at right angles
@@ -121,7 +116,7 @@ def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
     return np.stack([flexion, floating, rotation], axis=1)
 
 
-def along(vector: NDArray[np.float64], axes: NDArray[np.float64], joint: str, side: str) -> NDArray[np.float64]:
+def along(vector: Values, axes: Values, joint: str, side: str) -> Values:
     """Parts (frame, 3) of a vector (frame, 3) towards a joint's positive angles about axes of `joint_axes`."""
     parts = [np.einsum("fx,fx->f", vector, axes[:, axis]) for axis in range(3)]
     return np.stack(parts, axis=1) * angle_signs(joint, side)
@@ -167,6 +162,10 @@ class Leg:
     moving: Mapping[str, SegmentMotion]
     bodies: Mapping[str, RigidBody]
 
+    def needed(self, up: Values) -> dict[str, Wrench]:
+        """Wrench that moves each segment and bears its weight; up (3,) is a unit vector."""
+        return {segment: needed_wrench(self.moving[segment], body, up) for segment, body in self.bodies.items()}
+
 
 def legs(
     poses: Mapping[str, Pose], feet: Mapping[str, FootPath], person: Person, settings: KineticsSettings
@@ -180,30 +179,25 @@ def legs(
         wanted = {name: poses[name] for name in own.values() if name not in moving}  # the pelvis is filtered once
         moving |= segment_motions(wanted, path.time, settings.marker_cutoff_hz)
         lengths = segment_lengths(poses, side)
-        heel, toe = _foot_points(path, poses[f"foot_{side}"])
+        places = [poses[f"foot_{side}"].to_segment(part) for part in (path.heel, path.toe)]
+        seen = np.isfinite(places).all(axis=(0, 2))
+        if not seen.any():
+            raise ShapeError(
+                f"the inertia of foot_{side} needs a frame with heel, toes and the foot's pose",
+                "no frame has all three",
+                "Fill the gaps in the markers of this foot, or name others.",
+            )
+        heel, toe = (np.median(place[seen], axis=0) for place in places)
         bodies = leg_inertia(person, side, lengths, heel, toe, settings.inertia)
         found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)
     return found
 
 
-def _foot_points(path: FootPath, foot: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Heel and toes in the foot's frame, the median over the frames."""
-    places = [foot.to_segment(part) for part in (path.heel, path.toe)]
-    seen = np.isfinite(places).all(axis=(0, 2))
-    if not seen.any():
-        raise ShapeError(
-            f"the inertia of foot_{path.side} needs a frame with heel, toes and the foot's pose",
-            "no frame has all three",
-            "Fill the gaps in the markers of this foot, or name others.",
-        )
-    return np.median(places[0][seen], axis=0), np.median(places[1][seen], axis=0)
-
-
 def joint_moments(
     found: Mapping[str, Leg],
     loads: Mapping[str, FootLoad],
-    time: NDArray[np.float64],
-    up: NDArray[np.float64],
+    time: Values,
+    up: Values,
     person: Person,
     settings: KineticsSettings,
 ) -> Recording:
@@ -217,11 +211,11 @@ def joint_moments(
     up (3,): unit vector against gravity
     returns: `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses
     """
-    columns: list[NDArray[np.float64]] = []
+    columns: list[Values] = []
     channels: list[Channel] = []
     for side, leg in found.items():
-        chain = [(leg.moving[segment], leg.bodies[segment]) for segment in LEG]
-        carried = dict(zip(LEG, joint_wrenches(chain, loads[side].wrench, up), strict=True))
+        needed = leg.needed(up)
+        carried = dict(zip(LEG, joint_wrenches([needed[one] for one in LEG], loads[side].wrench), strict=True))
         unknown = ~loads[side].known
         for joint, (above, segment) in SEGMENTS_OF.items():
             nearer, farther = leg.moving[above], leg.moving[segment]

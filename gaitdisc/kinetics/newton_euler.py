@@ -6,17 +6,18 @@ momentum of all segments beyond it, less their weight, less what the ground give
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.platform import Wrench
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 
@@ -28,18 +29,18 @@ class SegmentMotion:
     """A pose and its first two derivatives in the laboratory's frame."""
 
     pose: Pose
-    acceleration: NDArray[np.float64]  # (frame, 3) [m/s2], of the origin
-    angular_velocity: NDArray[np.float64]  # (frame, 3) [rad/s], of the segment
-    angular_acceleration: NDArray[np.float64]  # (frame, 3) [rad/s2], of the segment
+    acceleration: Values  # (frame, 3) [m/s2], of the origin
+    angular_velocity: Values  # (frame, 3) [rad/s], of the segment
+    angular_acceleration: Values  # (frame, 3) [rad/s2], of the segment
 
-    def acceleration_of(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    def acceleration_of(self, point: Values) -> Values:
         """Acceleration (frame, 3) [m/s2] of a point (3,) [m] of the segment's frame."""
         arm = self.pose.rotation @ np.asarray(point, float)
         spin = np.cross(self.angular_velocity, np.cross(self.angular_velocity, arm))
         return self.acceleration + np.cross(self.angular_acceleration, arm) + spin
 
 
-def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Pose:
+def smoothed_pose(pose: Pose, time: Values, cutoff_hz: float) -> Pose:
     """Pose low-passed on even times, its axes made a rotation again; gaps up to 0.1 s are bridged, longer stay NaN."""
     frames = len(pose)
     values = np.hstack([pose.origin, pose.rotation.reshape(frames, 9)])
@@ -49,7 +50,7 @@ def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Po
     return Pose(smooth[:, :3], nearest_rotations(smooth[:, 3:].reshape(frames, 3, 3)))
 
 
-def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+def nearest_rotations(matrices: Values) -> Values:
     """Rotations (frame, 3, 3) nearest to such matrices by least squares; NaN where a matrix has one.
 
     >>> nearest_rotations(1.01 * np.eye(3)[None]).round(9).tolist()
@@ -73,7 +74,7 @@ def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
     return SegmentMotion(pose, differentiated(pose.origin, rate_hz, 2), _axial(rate), _axial(second))
 
 
-def segment_motions(poses: Mapping[str, Pose], time: NDArray[np.float64], cutoff_hz: float) -> dict[str, SegmentMotion]:
+def segment_motions(poses: Mapping[str, Pose], time: Values, cutoff_hz: float) -> dict[str, SegmentMotion]:
     """SegmentMotion of several segments on even times, filtered alike."""
     found = {}
     rate_hz = (len(time) - 1) / float(time[-1] - time[0]) if len(time) > 1 else np.nan
@@ -89,7 +90,7 @@ def segment_motions(poses: Mapping[str, Pose], time: NDArray[np.float64], cutoff
     return found
 
 
-def _axial(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+def _axial(matrices: Values) -> Values:
     """Vector of the skew part of each matrix."""
     skew = (matrices - np.swapaxes(matrices, 1, 2)) / 2
     return np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
@@ -104,11 +105,11 @@ class RigidBody:
     """
 
     mass_kg: float
-    centre: NDArray[np.float64]  # (3,) [m], of mass, from the segment's origin
-    tensor: NDArray[np.float64]  # (3, 3) [kg m2], about the centre of mass
+    centre: Values  # (3,) [m], of mass, from the segment's origin
+    tensor: Values  # (3, 3) [kg m2], about the centre of mass
 
 
-def needed_wrench(moving: SegmentMotion, body: RigidBody, up: NDArray[np.float64]) -> Wrench:
+def needed_wrench(moving: SegmentMotion, body: RigidBody, up: Values) -> Wrench:
     """Wrench that moves a segment and bears its weight: m (a - g), rate of angular momentum; up (3,) is a unit vector.
 
     >>> from gaitdisc.kinematics.pose import Pose
@@ -125,39 +126,25 @@ def needed_wrench(moving: SegmentMotion, body: RigidBody, up: NDArray[np.float64
     return Wrench.at(moving.pose.to_laboratory(body.centre), force, turning)
 
 
-def joint_wrenches(
-    chain: Sequence[tuple[SegmentMotion, RigidBody]], ground: Wrench, up: NDArray[np.float64]
-) -> list[Wrench]:
+def joint_wrenches(needed: Sequence[Wrench], ground: Wrench) -> list[Wrench]:
     """What each joint of a chain gives to the segments beyond it, from the last joint upwards.
 
-    chain sequence of (SegmentMotion, RigidBody): segments from the one on the ground (foot) to the nearest to the
-        trunk (thigh); each one's proximal joint is the joint that is named after it
-    up (3,): unit vector against gravity
+    needed: `needed_wrench` of the segments from the one on the ground (foot) to the nearest to the trunk (thigh); each
+        one's proximal joint is the joint that is named after it
     returns: one for each segment, by its proximal joint: of the nearer segment on the farther one. `about` the joint's
         centre it is the internal joint moment
     Source: Winter (2009), Biomechanics and Motor Control of Human Movement, chapter 7; Dumas, Aissaoui & de Guise
         (2004), Comput. Methods Biomech. Biomed. Eng. 7, 159-166, compute the same moments with wrenches and
         quaternions.
     """
-    carried, beyond = [], None
-    for moving, body in chain:
-        own = needed_wrench(moving, body, up)
-        beyond = own - ground if beyond is None else beyond + own
-        carried.append(beyond)
-    return carried
+    return list(itertools.accumulate([needed[0] - ground, *needed[1:]]))
 
 
-def _times(tensors: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _times(tensors: Values, vectors: Values) -> Values:
     return np.einsum("fij,fj->fi", tensors, vectors)
 
 
-def moment_per_foot_kg(
-    joint: NDArray[np.float64],
-    heel: NDArray[np.float64],
-    toe: NDArray[np.float64],
-    up: NDArray[np.float64],
-    rate_hz: float,
-) -> NDArray[np.float64]:
+def moment_per_foot_kg(joint: Values, heel: Values, toe: Values, up: Values, rate_hz: float) -> Values:
     """Return the moment that carries 1 kg midway between heel and toes (sample,) [N m/kg].
 
     It is positive towards dorsiflexion and hip flexion; at the knee that is extension.

@@ -13,7 +13,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import read_only, runs
+from gaitdisc.recording.arrays import Span, Values, read_only, runs
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
 
@@ -33,9 +33,9 @@ class FootPath:
     """Heel and toes of one foot in the laboratory's frame."""
 
     side: str
-    time: NDArray[np.float64]  # (frame,) [s], of the markers
-    heel: NDArray[np.float64]  # (frame, 3) [m], of the markers; NaN where one is missing
-    toe: NDArray[np.float64]  # (frame, 3) [m], of the markers; NaN where one is missing
+    time: Values  # (frame,) [s], of the markers
+    heel: Values  # (frame, 3) [m], of the markers; NaN where one is missing
+    toe: Values  # (frame, 3) [m], of the markers; NaN where one is missing
 
     def __post_init__(self) -> None:
         """Check shapes once."""
@@ -49,7 +49,7 @@ class FootPath:
         for name, value in (("heel", heel), ("toe", toe), ("time", time)):
             object.__setattr__(self, name, value)
 
-    def swings(self) -> list[tuple[float, float]]:
+    def swings(self) -> list[Span]:
         """Spans [s] in which heel and toes go forwards, where the foot is fastest, too fast to bear load."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         heel, toe = (differentiated(part, rate_hz) for part in (self.heel, self.toe))
@@ -60,15 +60,15 @@ class FootPath:
         forward = (heel + toe)[fastest] / speed[fastest]
         with np.errstate(invalid="ignore"):
             both = (heel @ forward > SWINGS_M_PER_S) & (toe @ forward > SWINGS_M_PER_S)
-        return [(float(self.time[start]), float(self.time[end - 1])) for start, end in runs(both)]
+        return [Span(float(self.time[start]), float(self.time[end - 1])) for start, end in runs(both)]
 
-    def still(self, part: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def still(self, part: Values) -> NDArray[np.bool_]:
         """Frames (frame,) in which a part (frame, 3) [m], `heel` or `toe`, hardly moves."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         with np.errstate(invalid="ignore"):
             return np.linalg.norm(differentiated(part, rate_hz), axis=1) < STILL_M_PER_S
 
-    def beside(self, points: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    def beside(self, points: Values, up: Values) -> Values:
         """How far points (frame, 3) [m] lie from the line heel to toe, seen from above, (frame,) [m]; up (3,)."""
         level = np.eye(3) - np.outer(up, up)
         line, off = (self.toe - self.heel) @ level, (points - self.heel) @ level
@@ -76,11 +76,11 @@ class FootPath:
         return np.linalg.norm(off - np.clip(share, 0.0, 1.3)[:, None] * line, axis=1)  # toes reach beyond the marker
 
 
-def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict[str, FootPath]:
-    """Paths of the feet, `r` and `l`, by heel and toe markers `<marker>.x`, `.y`, `.z` [m]."""
+def foot_paths(markers: Recording, heels: Mapping[str, str], toes: Mapping[str, str]) -> dict[str, FootPath]:
+    """Paths of the feet, `r` and `l`, by the names of heel and toe markers `<marker>.x`, `.y`, `.z` [m]."""
     return {
-        side: FootPath(side, markers.time, *(marker_position(markers, name) for name in pair))
-        for side, pair in names.items()
+        side: FootPath(side, markers.time, marker_position(markers, heel), marker_position(markers, toes[side]))
+        for side, heel in heels.items()
     }
 
 
@@ -103,6 +103,11 @@ class PlateStep:
     doubt: str = ""
 
     @property
+    def span(self) -> Span:
+        """Span of the loading."""
+        return Span(self.start, self.end)
+
+    @property
     def clean(self) -> bool:
         """Whether the force is that of one known foot, with all of its sole."""
         return not self.reason
@@ -112,8 +117,7 @@ class PlateStep:
         if self.clean:
             return None
         what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is excluded: {self.reason}"
-        spans = ((self.start, self.end),)
-        return Finding(self.doubt or "note", "plate step", file, what, "joint moments of this step", spans=spans)
+        return Finding(self.doubt or "note", "plate step", file, what, "joint moments of this step", spans=(self.span,))
 
 
 def plate_steps(found: Sequence[Platform], feet: Mapping[str, FootPath]) -> list[PlateStep]:
@@ -128,12 +132,11 @@ def plate_steps(found: Sequence[Platform], feet: Mapping[str, FootPath]) -> list
     steps = []
     for platform in found:
         for start, end in platform.loadings():
-            span = float(platform.time[start]), float(platform.time[end - 1])
             cut = bool(start == 0 or end == len(platform.time))
             wrench = Wrench(platform.wrench.force[start:end], platform.wrench.moment[start:end])
             loaded = replace(platform, time=platform.time[start:end], wrench=wrench)
-            side, reason, doubt = _foot(loaded, span, feet)
-            steps.append(PlateStep(platform.name, side, *span, reason, not cut, doubt))
+            side, reason, doubt = _foot(loaded, feet)
+            steps.append(PlateStep(platform.name, side, *loaded.span, reason, not cut, doubt))
     return sorted(steps, key=lambda step: step.start)
 
 
@@ -142,17 +145,17 @@ class Weight:
     """Weight of a person and how high the pelvis is, which the force on one leg must agree with."""
 
     newton: float  # mass x 9.81
-    time: NDArray[np.float64]  # (frame,) [s], of the markers
-    height: NDArray[np.float64]  # (frame,) [m], of the pelvis
+    time: Values  # (frame,) [s], of the markers
+    height: Values  # (frame,) [m], of the pelvis
 
-    def share(self, platform: Platform, span: tuple[float, float]) -> float:
+    def share(self, platform: Platform, span: Span) -> float:
         """Force of a platform that bears a person alone over what weight and motion need; NaN without a pelvis.
 
         Mean under a window w that is 0 and level at both ends: that of w F is m times that of w g + w'' z, so that the
         height z is not differentiated.
         """
-        on = (platform.time >= span[0]) & (platform.time <= span[1])
-        time, turn = platform.time[on] - span[0], 2 * np.pi / (span[1] - span[0])
+        on = span.holds(platform.time)
+        time, turn = platform.time[on] - span.start, 2 * np.pi / span.seconds
         height = np.interp(platform.time[on], self.time, self.height)
         window, bend = (1 - np.cos(turn * time)) / 2, turn**2 * np.cos(turn * time) / 2
         needed = self.newton * np.mean(window + bend * (height - height.mean()) / GRAVITY)
@@ -160,25 +163,21 @@ class Weight:
 
 
 def weighed_steps(
-    steps: Sequence[PlateStep],
-    found: Sequence[Platform],
-    airborne: Mapping[str, Sequence[tuple[float, float]]],
-    weight: Weight,
+    steps: Sequence[PlateStep], found: Sequence[Platform], airborne: Mapping[str, Sequence[Span]], weight: Weight
 ) -> list[PlateStep]:
     """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need."""
     named = {platform.name: platform for platform in found}
 
     def weighed(step: PlateStep) -> PlateStep:
         other = airborne.get(other_side(step.side), ()) if step.side else ()
-        spans = [(max(start, step.start), min(end, step.end)) for start, end in other]
-        start, end = max(spans, key=lambda span: span[1] - span[0], default=(0.0, 0.0))
-        share = weight.share(named[step.platform], (start, end)) if end - start >= ALONE_S else 1.0
+        alone = max((span.shared(step.span) for span in other), key=lambda span: span.seconds, default=Span(0.0, 0.0))
+        share = weight.share(named[step.platform], alone) if alone.seconds >= ALONE_S else 1.0
         if not abs(share - 1) > MOST_APART:
             return step
         found = f"it shows {share:.2f} of the force that one leg needs to carry {weight.newton:.0f} N of body weight"
         if step.reason and share < 1:  # a sole beyond the edge, another foot: explains what is missing, never too much
             return replace(step, doubt=step.doubt or "note")
-        return replace(step, reason=f"{found} from {start:.2f} to {end:.2f} s", doubt="warning")
+        return replace(step, reason=f"{found} from {alone.start:.2f} to {alone.end:.2f} s", doubt="warning")
 
     return [weighed(step) for step in steps]
 
@@ -190,10 +189,20 @@ def empty_findings(found: Sequence[Platform], file: str) -> list[Finding]:
     return [Finding("note", "empty plate", file, what, "nothing; no step on it is counted") for what in said]
 
 
-def _foot(platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath]) -> tuple[str, str, str]:
-    """Side of the loading foot, which a platform may name, why the step cannot be used, and whether that is a doubt."""
-    beside = {side: _distance(platform, span, foot) for side, foot in feet.items()}
-    known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
+def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, str]:
+    """Side of the foot that loads a platform from its first to its last sample, which the platform may name.
+
+    returns: side; why the step cannot be used; whether that is a doubt
+    """
+    pressure, known = platform.pressure_centre(), {}  # side -> how far the centre of pressure is from the foot [m]
+    for side, foot in feet.items():
+        load = np.interp(foot.time, platform.time, platform.load_n)
+        place = np.stack([np.interp(foot.time, platform.time, axis) for axis in pressure.T], axis=1)
+        frames = platform.span.holds(foot.time)
+        frames &= load > CLEAR_LOAD * load[frames].max(initial=0.0)
+        metres = foot.beside(place, platform.up)[frames]
+        if np.isfinite(metres).any():
+            known[side] = float(np.nanmedian(metres))
     side = min(known, key=lambda key: known[key], default="")
     if platform.side:
         own = known.get(platform.side, 0.0)
@@ -202,7 +211,7 @@ def _foot(platform: Platform, span: tuple[float, float], feet: Mapping[str, Foot
             return platform.side, f"{whose} follows the other foot ({side}), {100 * own:.0f} cm away", "warning"
         reason = f"{whose} is {100 * own:.0f} cm from it" if own > BESIDE_FOOT_M else ""
         return platform.side, reason, "warning" if reason else ""
-    standing = {side: _stands_s(foot, platform, span) for side, foot in feet.items()}
+    standing = {side: _stands_s(foot, platform) for side, foot in feet.items()}
     if len(standing) == 2 and min(standing.values()) >= STANDS_S:
         both = ", ".join(f"{side} for {seconds:.2f} s" for side, seconds in standing.items())
         return "", f"both feet are on it, {both}", "note"
@@ -210,42 +219,27 @@ def _foot(platform: Platform, span: tuple[float, float], feet: Mapping[str, Foot
         return "", "the markers of both feet are missing then", ""
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm from the nearest foot ({side})", "warning"
-    return side, _edge(feet[side], platform, span), ""
+    return side, _edge(feet[side], platform), ""
 
 
-def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:
-    return (foot.time >= span[0]) & (foot.time <= span[1])
-
-
-def _distance(platform: Platform, span: tuple[float, float], foot: FootPath) -> float:
-    pressure = platform.pressure_centre()
-    load = np.interp(foot.time, platform.time, platform.load_n)
-    place = np.stack([np.interp(foot.time, platform.time, axis) for axis in pressure.T], axis=1)
-    frames = _frames(foot, span)
-    frames &= load > CLEAR_LOAD * load[frames].max(initial=0.0)
-    metres = foot.beside(place, platform.up)[frames]
-    metres = metres[np.isfinite(metres)]
-    return float(np.median(metres)) if len(metres) else np.nan
-
-
-def _stands_s(foot: FootPath, platform: Platform, span: tuple[float, float]) -> float:
-    """For how long heel or toes of a foot stand on a platform within a span [s]."""
+def _stands_s(foot: FootPath, platform: Platform) -> float:
+    """For how long heel or toes of a foot stand on a platform [s]."""
     if platform.surface is None:
         return 0.0
     step = float(foot.time[1] - foot.time[0])
     longest = 0
     for part in (foot.heel, foot.toe):
-        stands = _frames(foot, span) & foot.still(part) & (platform.surface.outside(part) < -BEYOND_EDGE_M)
+        stands = platform.span.holds(foot.time) & foot.still(part) & (platform.surface.outside(part) < -BEYOND_EDGE_M)
         longest = max([longest, *(end - start for start, end in runs(stands))])
     return longest * step
 
 
-def _edge(foot: FootPath, platform: Platform, span: tuple[float, float]) -> str:
+def _edge(foot: FootPath, platform: Platform) -> str:
     """Say which part of a foot bears load beside the platform, or must, as the centre of pressure is near its edge."""
     if platform.surface is None:
         return ""
     for name, part in (("the heel is", foot.heel), ("the toes are", foot.toe)):
-        frames = _frames(foot, span) & foot.still(part)
+        frames = platform.span.holds(foot.time) & foot.still(part)
         outside = platform.surface.outside(part)[frames]
         outside = outside[np.isfinite(outside)]
         if len(outside) and np.median(outside) > BEYOND_EDGE_M:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
 from gaitdisc.recording import Recording, Surface, Trial
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Span, Values, read_only
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import loaded
 
@@ -27,8 +27,8 @@ class Wrench:
     array([[   0., -350.,    0.]])
     """
 
-    force: NDArray[np.float64]  # (sample, 3) [N], of the ground on the foot, where it is a ground reaction
-    moment: NDArray[np.float64]  # (sample, 3) [N m], about the origin of the laboratory
+    force: Values  # (sample, 3) [N], of the ground on the foot, where it is a ground reaction
+    moment: Values  # (sample, 3) [N m], about the origin of the laboratory
 
     def __post_init__(self) -> None:
         """Check shapes once."""
@@ -43,9 +43,7 @@ class Wrench:
         object.__setattr__(self, "moment", moment)
 
     @classmethod
-    def at(
-        cls, point: NDArray[np.float64], force: NDArray[np.float64], moment: NDArray[np.float64] | float = 0.0
-    ) -> Wrench:
+    def at(cls, point: Values, force: Values, moment: Values | float = 0.0) -> Wrench:
         """Wrench of a force (sample, 3) [N] at a point (sample, 3) or (3,) [m], and a moment about it [N m]."""
         return cls(force, np.cross(point, force) + moment)
 
@@ -58,11 +56,11 @@ class Wrench:
     def __len__(self) -> int:
         return len(self.force)
 
-    def about(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    def about(self, point: Values) -> Values:
         """Moment (sample, 3) [N m] about another point (sample, 3) or (3,) [m] of the laboratory's frame."""
         return self.moment - np.cross(point, self.force)
 
-    def pressure_centre(self, point: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    def pressure_centre(self, point: Values, up: Values) -> Values:
         """Where a force meets a surface of unit normal `up`, (sample, 3) [m]; NaN below 20 N along it.
 
         >>> step = Wrench.at(np.array([0.2, 0.1, 0.0]), np.array([[30.0, 0.0, 700.0], [0.0, 0.0, 19.0]]))
@@ -88,10 +86,10 @@ class Platform:
     """What measures the force of the ground on a foot."""
 
     name: str
-    time: NDArray[np.float64]  # (sample,) [s], on the trial's clock
+    time: Values  # (sample,) [s], on the trial's clock
     wrench: Wrench
-    up: NDArray[np.float64]  # (3,), unit vector from the ground to the foot, against gravity
-    point: NDArray[np.float64]  # (3,) [m], a point of its surface
+    up: Values  # (3,), unit vector from the ground to the foot, against gravity
+    point: Values  # (3,) [m], a point of its surface
     surface: Surface | None = None  # where it lies; None where only forces and centres of pressure were written
     side: str = ""  # `r` or `l` where the file says whose foot it is, empty otherwise
 
@@ -101,11 +99,16 @@ class Platform:
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
 
     @property
-    def load_n(self) -> NDArray[np.float64]:
+    def span(self) -> Span:
+        """From its first to its last sample."""
+        return Span(float(self.time[0]), float(self.time[-1]))
+
+    @property
+    def load_n(self) -> Values:
         """Force against gravity, (sample,) [N]."""
         return self.wrench.force @ self.up
 
-    def pressure_centre(self) -> NDArray[np.float64]:
+    def pressure_centre(self) -> Values:
         """Where the force meets the surface, (sample, 3) [m]; NaN where its normal part is below 20 N."""
         return self.wrench.pressure_centre(self.point, self.up)
 
@@ -113,17 +116,15 @@ class Platform:
         """First and last sample (loading, 2) of each loading, from 50 N down to 20 N."""
         return loaded(self.load_n, self.rate_hz, LEAST_LOAD_N / 0.4)
 
-    def smoothed(self, cutoff_hz: float, spans: Sequence[tuple[float, float]]) -> Wrench:
+    def smoothed(self, cutoff_hz: float, spans: Sequence[Span]) -> Wrench:
         """Wrench within spans without what is faster than the cut-off, zero elsewhere.
 
         What an empty plate shows is no force on a foot and is taken as zero before the filter. Force and moment about
         the surface are filtered; the centre of pressure is not, as it is a quotient.
 
-        spans sequence of (float, float) [s]: loadings by the foot that is meant
+        spans: loadings by the foot that is meant
         """
-        on = np.zeros(len(self.time), bool)
-        for start, end in spans:
-            on |= (self.time >= start) & (self.time <= end)
+        on = np.any([span.holds(self.time) for span in spans], axis=0)
         values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]
         if np.isfinite(cutoff_hz):
             channels = tuple(Channel(f"wrench_{place}", "signal", "1") for place in range(6))
@@ -149,8 +150,16 @@ def platforms(trial: Trial) -> list[Platform]:
             f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
             "Provide plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
         )
-    for platform in found:
-        _check_sign(platform, forces.source.file or trial.name)
+    for platform in found:  # one that carries a foot pushes it up
+        load = platform.load_n
+        lowest = int(np.argmin(load))
+        if load.max() < CLEAR_LOAD_N < -load[lowest]:
+            found_n = f"{load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N"
+            raise UnitError(
+                f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
+                f"{forces.source.file or trial.name} has {found_n}",
+                "The sign is reversed. Export the force of the ground on the foot.",
+            )
     return found
 
 
@@ -191,7 +200,7 @@ def _foot_force(forces: Recording, key: str) -> Platform:
     )
 
 
-def _three(forces: Recording, pattern: str) -> NDArray[np.float64]:
+def _three(forces: Recording, pattern: str) -> Values:
     names = [pattern.format(axis) for axis in AXES]
     lacking = [name for name in names if name not in forces.names]
     if lacking:
@@ -201,15 +210,3 @@ def _three(forces: Recording, pattern: str) -> NDArray[np.float64]:
             "Export force, point and moment of the ground in all three directions, or map them in [channels].",
         )
     return np.stack([forces[name] for name in names], axis=1)
-
-
-def _check_sign(platform: Platform, file: str) -> None:
-    """Refuse a platform that pulls: one that carries a foot pushes it up."""
-    load = platform.load_n
-    lowest = int(np.argmin(load))
-    if load.max() < CLEAR_LOAD_N < -load[lowest]:
-        raise UnitError(
-            f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
-            f"{file} has {load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N",
-            "The sign is reversed. Export the force of the ground on the foot.",
-        )

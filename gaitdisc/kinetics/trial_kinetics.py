@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, Leg, foot_loads, joint_moments, legs, swings
-from gaitdisc.kinetics.newton_euler import GRAVITY, needed_wrench
+from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weighed_steps
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
@@ -65,11 +65,7 @@ class ForceBalance:
 
 
 def force_balance(
-    found: Mapping[str, Leg],
-    loads: Mapping[str, FootLoad],
-    up: NDArray[np.float64],
-    person: Person,
-    trunk: NDArray[np.float64] | None = None,
+    found: Mapping[str, Leg], loads: Mapping[str, FootLoad], up: Values, person: Person, trunk: Values | None = None
 ) -> ForceBalance:
     """Whether the ground pushes as hard as the motion needs, over the frames in which the load of both feet is known.
 
@@ -90,9 +86,9 @@ def force_balance(
     needed = np.zeros(loads["r"].wrench.force.shape)
     rest = person.kg
     for leg in found.values():
-        for segment, body in leg.bodies.items():
-            needed = needed + needed_wrench(leg.moving[segment], body, up).force
-            rest -= body.mass_kg
+        for segment, wrench in leg.needed(up).items():
+            needed = needed + wrench.force
+            rest -= leg.bodies[segment].mass_kg
     hips = np.mean([leg.moving["thigh"].acceleration for leg in found.values()], axis=0)
     needed = needed + rest * ((hips if trunk is None else trunk) + GRAVITY * up)
     measured = loads["r"].wrench.force + loads["l"].wrench.force
@@ -155,21 +151,17 @@ def trial_kinetics(
     loads = foot_loads(found, steps, time, settings.force_cutoff_hz, airborne)
     both = legs(poses, feet, person, settings)
     moments = joint_moments(both, loads, time, up, person, settings)
-    balance = ForceBalance(0, *[float("nan")] * 3)
+    balance = ForceBalance(0, np.nan, np.nan, np.nan)
     if len(both) == 2:
-        alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, airborne)
-        balance = force_balance(both, alike, up, person, _acceleration(markers, trunk, settings.marker_cutoff_hz))
+        cutoff_hz, acceleration = settings.marker_cutoff_hz, None
+        alike = foot_loads(found, steps, time, cutoff_hz, airborne)
+        if trunk:
+            mean = np.mean([marker_position(markers, name) for name in trunk], axis=0)
+            channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
+            carried = Recording(time, mean, channels, source=markers.source)
+            smooth = lowpassed(carried, cutoff_hz) if np.isfinite(cutoff_hz) else carried
+            acceleration = differentiated(smooth.values, markers.rate_hz, 2)
+        balance = force_balance(both, alike, up, person, acceleration)
     findings = (*empty_findings(found, file), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)
     return TrialKinetics(moments, tuple(steps), balance, findings)
-
-
-def _acceleration(markers: Recording, names: Sequence[str], cutoff_hz: float) -> NDArray[np.float64] | None:
-    """Acceleration of the mean of some markers, (frame, 3) [m/s2]; None where none is named."""
-    if not names:
-        return None
-    mean = np.mean([marker_position(markers, name) for name in names], axis=0)
-    channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
-    trunk = Recording(markers.time, mean, channels, source=markers.source)
-    smooth = lowpassed(trunk, cutoff_hz) if np.isfinite(cutoff_hz) else trunk
-    return differentiated(smooth.values, trunk.rate_hz, 2)

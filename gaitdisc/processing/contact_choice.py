@@ -11,7 +11,7 @@ import numpy as np
 from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.contact_movement import angle_contacts, marker_contacts
-from gaitdisc.signals.contacts import MATCH_S, Agreement, Contacts, event_contacts, force_contacts, plate_contacts
+from gaitdisc.signals.contacts import MATCH_S, Contacts, event_contacts, force_contacts, plate_contacts
 from gaitdisc.signals.direction import Direction, given_direction, walking_direction
 
 HEELS = {
@@ -88,16 +88,15 @@ def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mappin
     """First detector in an order that sees 80 % of the most strides; the events where all that see more deny them."""
     most = max(strides.values())
     richer = [name for name in strides if ENOUGH * strides[name] > strides.get("events", most)]
-    stand = bool(richer) and all(_differ(seen["events"], seen[name]) for name in richer)
+    stand = bool(richer)
+    for name in richer:  # which miss a contact that the file marks, or see one between them
+        events, other = seen["events"], seen[name]
+        pairs = [events[side].compared(other[side], MOST_OFFSET_S) for side in events if side in other]
+        differ = any(len(pair.missed) + len(pair.extra) for pair in pairs) or exchanged_contacts(events, other)
+        stand = stand and bool(differ)
     return next(
         name for name in order if name in strides and (strides[name] >= ENOUGH * most or (name == "events" and stand))
     )
-
-
-def _differ(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> bool:
-    """Whether a detector misses a contact that the file marks, or sees one between them."""
-    pairs = [events[side].compared(other[side], MOST_OFFSET_S) for side in events if side in other]
-    return any(len(pair.missed) + len(pair.extra) for pair in pairs) or bool(exchanged_contacts(events, other))
 
 
 def exchanged_contacts(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, list[float]]:
@@ -263,31 +262,24 @@ def _findings(
             agreement = taken[side].compared(contacts[side])
             if name in refused and not len(agreement.difference_s):
                 continue
-            corrected, partial = name == reference, name in refused
-            findings.append(_compared(trial.name, name, chosen, side, agreement, corrected=corrected, partial=partial))
+            what = f"{name} against {chosen}, side {side}: {agreement.line()}"
+            apart = np.abs(1e3 * agreement.difference_s - agreement.median_ms) > DISAGREEMENT_MS
+            spoils = []
+            beyond = agreement.median_ms + EARLY_MS.get(name, 0.0) - EARLY_MS.get(chosen, 0.0)
+            if abs(beyond) > DISAGREEMENT_MS and name != reference:  # which the contacts were moved by
+                spoils.append(f"phase: they disagree by {DISAGREEMENT_MS:g} ms more than such detectors usually do")
+            if apart.any():
+                those = "1 contact" if apart.sum() == 1 else f"{apart.sum()} contacts"
+                spoils.append(f"the strides of {those}: {DISAGREEMENT_MS:g} ms or more from the usual difference")
+            if name not in refused and len(agreement.missed) + len(agreement.extra):
+                at = ", ".join(f"{time:.2f}" for time in sorted([*agreement.missed, *agreement.extra])[:5])
+                spoils.append(f"the strides at about {at} s: one detector finds a contact there, the other does not")
+            severity = "warning" if spoils else "note"
+            findings.append(Finding(severity, "detectors compared", trial.name, what, "; ".join(spoils)))
     for name, error in refused.items():
         reason = str(error) if error else "it finds no strides of both feet"
         findings.append(Finding("note", "detector", trial.name, f"{name} is not used: {reason}", ""))
     return findings
-
-
-def _compared(
-    file: str, name: str, chosen: str, side: str, agreement: Agreement, corrected: bool, partial: bool
-) -> Finding:
-    """What two detectors make of one foot: an offset that is not corrected, single steps apart, steps only one sees."""
-    what = f"{name} against {chosen}, side {side}: {agreement.line()}"
-    apart = np.abs(1e3 * agreement.difference_s - agreement.median_ms) > DISAGREEMENT_MS
-    spoils = []
-    beyond = agreement.median_ms + EARLY_MS.get(name, 0.0) - EARLY_MS.get(chosen, 0.0)
-    if abs(beyond) > DISAGREEMENT_MS and not corrected:
-        spoils.append(f"phase: they disagree by {DISAGREEMENT_MS:g} ms more than such detectors usually do")
-    if apart.any():
-        counted = "1 contact" if apart.sum() == 1 else f"{apart.sum()} contacts"
-        spoils.append(f"the strides of {counted}: {DISAGREEMENT_MS:g} ms or more from the usual difference")
-    if not partial and len(agreement.missed) + len(agreement.extra):
-        at = ", ".join(f"{time:.2f}" for time in sorted([*agreement.missed, *agreement.extra])[:5])
-        spoils.append(f"the strides at about {at} s: one detector finds a contact there, the other does not")
-    return Finding("warning" if spoils else "note", "detectors compared", file, what, "; ".join(spoils))
 
 
 def nothing_found(trial: Trial, needed: str, reasons: Sequence[str]) -> StrideError:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import side_of
 from gaitdisc.processing.pooled_cycles import WALK, WalkSummary, mean_curve
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
 from gaitdisc.saved.study_run import StudyRun
@@ -95,27 +95,34 @@ def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
 def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("channel", sort=False))
     drawn, cells = panels_for(len(groups), 4, 1.15, Room(left=0.6, across=0.64, down=0.46))
-    ranges = _ranges(numbers)
+    spread, joint = numbers["sd"].fillna(0.0), numbers["channel"].map(sideless)
+    low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
+    room = 0.06 * (high - low).clip(lower=1e-9)
     for axes, (channel, curves) in zip(cells, groups, strict=True):
         draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
         axes.set_title(label(str(channel)).replace("EMG ", ""), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
         label_curve(axes, str(channel), str(curves["unit"].iloc[0]))
-        axes.set_ylim(*ranges[sideless(str(channel))])
+        key = sideless(str(channel))
+        axes.set_ylim(*((low[key] - room[key], high[key] + room[key]) if np.isfinite(low[key]) else (0.0, 1.0)))
     for axes in cells[-4:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, walks_key(run))
-    return Figure(name, _caption(run, participant, numbers), _alt(run, participant, numbers), numbers, drawn)
-
-
-def _ranges(numbers: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    spread = numbers["sd"].fillna(0.0)
-    joint = numbers["channel"].map(sideless)
-    low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
-    room = 0.06 * (high - low).clip(lower=1e-9)
-    return {
-        str(key): (float(low[key] - room[key]), float(high[key] + room[key])) if np.isfinite(low[key]) else (0.0, 1.0)
-        for key in low.index
-    }
+    alt = (
+        f"Mean walking curves of {participant}, {counted(len(groups), 'channel')}, {run.nominal} and {run.exo}. With "
+        f"the device: {range_words(numbers[numbers['walk'] == 'exo'])}."
+    )
+    counts = []
+    for walk, rows in numbers.groupby("walk", sort=False):
+        fewest, most = int(rows["n"].min()), int(rows["n"].max())
+        word = run.nominal if walk == "nominal" else run.exo
+        counts.append(f"{fewest if fewest == most else f'{fewest}-{most}'} strides ({word})")
+    caption = (
+        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, n = "
+        f"{', '.join(counts)}; entire walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
+        "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
+        "direction; left and right of one joint share a scale."
+    )
+    return Figure(name, caption, alt, numbers, drawn)
 
 
 def walks_key(run: StudyRun) -> list[Line2D]:
@@ -128,27 +135,6 @@ def walks_key(run: StudyRun) -> list[Line2D]:
         Line2D([], [], color=SIDES["l"].colour, label=f"{run.exo}, left"),
         Line2D([], [], color=SIDES["r"].colour, label=f"{run.exo}, right"),
     ]
-
-
-def _caption(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
-    counts = []
-    for walk, rows in numbers.groupby("walk", sort=False):
-        low, high = int(rows["n"].min()), int(rows["n"].max())
-        word = run.nominal if walk == "nominal" else run.exo
-        counts.append(f"{low if low == high else f'{low}-{high}'} strides ({word})")
-    return (
-        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, n = "
-        f"{', '.join(counts)}; entire walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
-        "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
-        "direction; left and right of one joint share a scale."
-    )
-
-
-def _alt(run: StudyRun, participant: str, numbers: pd.DataFrame) -> str:
-    return (
-        f"Mean walking curves of {participant}, {counted(numbers['channel'].nunique(), 'channel')}, {run.nominal} "
-        f"and {run.exo}. With the device: {range_words(numbers[numbers['walk'] == 'exo'])}."
-    )
 
 
 def range_words(numbers: pd.DataFrame) -> str:
@@ -174,7 +160,7 @@ def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> No
     axes.legend(frameon=False)
 
 
-def course_numbers(phi: NDArray[np.float64], components: NDArray[np.float64]) -> pd.DataFrame:
+def course_numbers(phi: Values, components: Values) -> pd.DataFrame:
     """Component (from 1), percent in steps of 2 % of the stride, mean and sd [1]."""
     known = np.isfinite(phi)
     place = np.clip(np.digitize(phi[known], BINS) - 1, 0, len(BINS) - 2)

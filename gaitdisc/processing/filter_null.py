@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Filters
 from gaitdisc.processing.process import Walk, envelope_of, is_raw
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.statistics.r2 import simulate_null
 
-Differentiated = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+Differentiated = tuple[Values, Values, Values]
 NOISE_S = 30.0
 WALKS = 20
 
@@ -37,11 +37,11 @@ def filter_null(
     """
     rate_hz = emg_hz or kinematics_hz
 
-    def angles(noise: NDArray[np.float64]) -> Differentiated:
+    def angles(noise: Values) -> Differentiated:
         smooth = lowpassed(_recording(noise, kinematics_hz, "deg"), filters.kinematics_hz, filters.order)
         return _differentiated(smooth.values, kinematics_hz)
 
-    def emg(noise: NDArray[np.float64]) -> Differentiated:
+    def emg(noise: Values) -> Differentiated:
         smooth = envelope_of(_recording(noise, rate_hz, "V"), filters, emg_hz is not None)
         time = np.arange(round(len(noise) / rate_hz * kinematics_hz)) / kinematics_hz
         return _differentiated(interpolated(smooth.time, smooth.values, time[:-1]), kinematics_hz)
@@ -59,14 +59,14 @@ def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
     return filter_null(walk.state.channels, filters, walk.state.rate_hz, emg_hz)
 
 
-def _differentiated(values: NDArray[np.float64], rate_hz: float) -> Differentiated:
+def _differentiated(values: Values, rate_hz: float) -> Differentiated:
     parts = (values, differentiated(values, rate_hz, 1), differentiated(values, rate_hz, 2))
     whole = np.isfinite(np.hstack(parts)).all(axis=1)
     x, xdot, xddot = (part[whole] for part in parts)
     return x, xdot, xddot
 
 
-def _recording(noise: NDArray[np.float64], rate_hz: float, unit: str) -> Recording:
+def _recording(noise: Values, rate_hz: float, unit: str) -> Recording:
     quantity = "emg" if unit == "V" else "angle"
     channels = tuple(Channel(f"noise_{k}", quantity, unit) for k in range(noise.shape[1]))
     return Recording(np.arange(len(noise)) / rate_hz, noise, channels)

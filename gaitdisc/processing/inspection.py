@@ -16,7 +16,7 @@ from gaitdisc.notebook import html_of
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.processing.process import ReadWalk, StudyWalks, quality_findings, stride_findings
+from gaitdisc.processing.process import StudyWalks, quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
@@ -84,7 +84,17 @@ class Inspection:
         for finding in self.findings:
             if notes or finding.severity != "note" or finding.kind in SAID:
                 kinds.setdefault((finding.severity, finding.kind), []).append(finding)
-        return [_line_of(severity, kind, same) for (severity, kind), same in kinds.items()]
+        lines = []
+        for (severity, kind), same in kinds.items():
+            first, shown = same[0], same[0].line()
+            if len(same) > 1:
+                channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
+                where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
+                spoils = f"; affects {first.spoils}" if first.spoils else ""
+                said = f"{first.channel}: {first.what}" if first.channel else first.what
+                shown = f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
+            lines.append(shown)
+        return lines
 
 
 def inspected_study(study: Study) -> Iterator[Inspection]:
@@ -114,7 +124,12 @@ def _processed(study: Study, participant: Participant, reader: C3DReader) -> dic
         if not is_walk(study, planned):
             continue
         try:
-            found[place] = _of_study(walks.read_walk(planned), study, _named(planned))
+            read = walks.read_walk(planned)
+            try:
+                walk = read.processed(study)
+                found[place] = _seen(read.trial, _named(planned), walk.strides, walk.findings)
+            except GaitdiscError as error:
+                found[place] = replace(inspected_trial(read.trial, _named(planned)), refusal=str(error))
         except GaitdiscError as error:
             found[place] = Inspection(_named(planned), participant.id, planned.condition, refusal=str(error))
     return found
@@ -188,14 +203,6 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
     return inspected_trial(trial, path.name)
 
 
-def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
-    try:
-        walk = read.processed(study)
-    except GaitdiscError as error:
-        return replace(inspected_trial(read.trial, name), refusal=str(error))
-    return _seen(read.trial, name, walk.strides, walk.findings)
-
-
 def inspected_trial(trial: Trial, name: str) -> Inspection:
     """Say what a walk holds and what is wrong with it."""
     trial = with_segment_angles(without_contradicted(trial))
@@ -230,17 +237,6 @@ def _seen(
 ) -> Inspection:
     counts = {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
     return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sorted(findings), refusal=refusal)
-
-
-def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
-    first = same[0]
-    if len(same) == 1:
-        return first.line()
-    channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
-    where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
-    spoils = f"; affects {first.spoils}" if first.spoils else ""
-    said = f"{first.channel}: {first.what}" if first.channel else first.what
-    return f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
 
 
 def _sorted(findings: Sequence[Finding]) -> tuple[Finding, ...]:

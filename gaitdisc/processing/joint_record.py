@@ -16,6 +16,7 @@ from gaitdisc.kinetics.newton_euler import GRAVITY, moment_per_foot_kg
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.recording import Finding, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
@@ -40,19 +41,19 @@ class JointRecord:
     side: str
     subject: str
     condition: str
-    time: NDArray[np.float64]
-    seen: NDArray[np.float64]  # (sample,), angle as recorded [rad]
-    angle: NDArray[np.float64]  # (sample,), low-passed angle [rad]
-    rate: NDArray[np.float64]  # (sample,), its derivative [rad/s]
-    speedup: NDArray[np.float64]  # (sample,), its second derivative [rad/s2]
+    time: Values
+    seen: Values  # (sample,), angle as recorded [rad]
+    angle: Values  # (sample,), low-passed angle [rad]
+    rate: Values  # (sample,), its derivative [rad/s]
+    speedup: Values  # (sample,), its second derivative [rad/s2]
     # (sample,), internal net moment towards the positive angle [N m]; NaN where the load of the foot is unknown
-    moment: NDArray[np.float64]
-    envelopes: NDArray[np.float64]  # (sample, muscle), EMG of the joint's side [the file's unit]
+    moment: Values
+    envelopes: Values  # (sample, muscle), EMG of the joint's side [the file's unit]
     muscles: tuple[str, ...]
-    phase: NDArray[np.float64]  # (sample,), share of the stride; NaN outside of strides
+    phase: Values  # (sample,), share of the stride; NaN outside of strides
     stride: NDArray[np.intp]  # (sample,), number of the stride, -1 outside
     # (sample,), what each kg more at the foot adds to the net moment [N m/kg]; empty where no marker shows it
-    per_kg: NDArray[np.float64]
+    per_kg: Values
     findings: tuple[Finding, ...] = ()
 
     def strides(self, some: NDArray[np.intp]) -> JointRecord:
@@ -107,7 +108,7 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
     )
 
 
-def _moment(trial: Trial, name: str, mass_kg: float | None, time: NDArray[np.float64]) -> NDArray[np.float64]:
+def _moment(trial: Trial, name: str, mass_kg: float | None, time: Values) -> Values:
     """Moment of a joint in N m on a time base."""
     own = trial.stream("moments").selected([f"{name}_moment"])
     unit = own.channels[0].unit
@@ -123,7 +124,7 @@ def _moment(trial: Trial, name: str, mass_kg: float | None, time: NDArray[np.flo
     return values[:, 0] * factor
 
 
-def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -> NDArray[np.float64]:
+def _per_kg(trial: Trial, study: Study, joint: str, time: Values) -> Values:
     """What each kg more at the foot adds to the joint's moment; empty where no marker shows it."""
     if "markers" not in trial.streams:
         return np.empty(0)
@@ -147,9 +148,7 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -
     return interpolated(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
 
 
-def _envelopes(
-    trial: Trial, study: Study, side: str, time: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], tuple[str, ...], list[Finding]]:
+def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Values, tuple[str, ...], list[Finding]]:
     """Envelopes of the side's living muscles on a time base."""
     own = trial.stream("emg").selected_by(lambda channel: channel.quantity == "emg" and channel.side == side)
     dead = [one for one in emg_findings(own) if one.severity == "refused"] if is_raw(own) else []

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL, PooledCycles
 from gaitdisc.recording import PERCENT
-from gaitdisc.recording.arrays import mean_where_known
+from gaitdisc.recording.arrays import Values, mean_where_known
 
 FEET = ("l", "r")
 TURNED_DEG = 20.0  # by which the pelvis turns in the laboratory from contact to contact where somebody walks a curve
@@ -58,13 +57,13 @@ class LegCurves:
     stance_percent: float  # mean foot off [% of the cycle]; NaN where none is known
     # each (cycle, phase), clinical variable -> curves on 101 points, in the variable's unit and sign; complete, but for
     # the end of a moment or power
-    cycles: Mapping[str, NDArray[np.float64]]
+    cycles: Mapping[str, Values]
     # each (cycle,), spatiotemporal value -> of the cycles in which it is known
-    values: Mapping[str, NDArray[np.float64]]
+    values: Mapping[str, Values]
     # mean turn of the pelvis from contact to contact; beyond TURNED_DEG angles about the line of walking are left
     turned_deg: float = 0.0
 
-    def mean(self, name: str) -> NDArray[np.float64]:
+    def mean(self, name: str) -> Values:
         """Mean curve of a variable; NaN where no cycle has a value."""
         return mean_where_known(self.cycles[name])
 
@@ -115,47 +114,44 @@ def _percent_per_newton(pooled: PooledCycles) -> float | None:
     return 100.0 / carried if carried > LIGHTEST_N else None
 
 
-@dataclass(frozen=True)
-class ClinicalVariable:
-    """One curve of a leg."""
-
-    name: str
-    words: str
-    kind: str
-    stem: str  # channel it is taken from; `{side}` stands for the leg
-    signs: tuple[float, float]  # of the left and of the right leg, by which the channel's values are multiplied
-    unit: str
-    up: str  # what a positive value means
-    down: str  # what a negative value means
-
-    def channel(self, side: str) -> str:
-        """Name of the channel for a leg."""
-        return self.stem.format(side=side)
-
-    def sign(self, side: str) -> float:
-        """Sign of the channel for a leg."""
-        return self.signs["lr".index(side)]
-
-
-CHANNELS = {  # kind -> channel of a variable's stem, and unit
-    KINEMATICS: ("{}_{{side}}", "deg"),
-    MOMENTS: ("{}_{{side}}_moment", "N m/kg"),
-    POWERS: ("{}_power_{{side}}", "W/kg"),
-    FORCES: ("ground_force_{{side}}_{}", "%"),
+CHANNELS = {  # kind -> channel of a leg by the variable's stem, and unit
+    KINEMATICS: ("{stem}_{side}", "deg"),
+    MOMENTS: ("{stem}_{side}_moment", "N m/kg"),
+    POWERS: ("{stem}_power_{side}", "W/kg"),
+    FORCES: ("ground_force_{side}_{stem}", "%"),
 }
 # of the left and of the right leg; channels of the pelvis are the same for both
 PELVIS_SIGNS = {"pelvis_tilt": (-1.0, -1.0), "pelvis_obliquity": (1.0, -1.0), "pelvis_rotation": (-1.0, 1.0)}
 
 
-def _variable(kind: str, name: str, words: str, stem: str, up: str, down: str) -> ClinicalVariable:
-    channel, unit = CHANNELS[kind]
-    channel = stem if name in PELVIS_SIGNS else channel.format(stem)
-    return ClinicalVariable(name, words, kind, channel, PELVIS_SIGNS.get(name, (1.0, 1.0)), unit, up=up, down=down)
+@dataclass(frozen=True)
+class ClinicalVariable:
+    """One curve of a leg."""
+
+    kind: str
+    name: str
+    words: str
+    stem: str  # of the channel it is taken from
+    up: str  # what a positive value means
+    down: str  # what a negative value means
+
+    @property
+    def unit(self) -> str:
+        """Unit of its channel."""
+        return CHANNELS[self.kind][1]
+
+    def channel(self, side: str) -> str:
+        """Name of the channel for a leg."""
+        return self.stem if self.name in PELVIS_SIGNS else CHANNELS[self.kind][0].format(stem=self.stem, side=side)
+
+    def sign(self, side: str) -> float:
+        """Sign of the channel for a leg, by which its values are multiplied."""
+        return PELVIS_SIGNS.get(self.name, (1.0, 1.0))["lr".index(side)]
 
 
 # in the order of a sheet, three in a row
 VARIABLES = tuple(
-    _variable(*row)
+    ClinicalVariable(*row)
     for row in (
         (KINEMATICS, "pelvis_tilt", "pelvic tilt", "pelvis_tilt", "forwards", "backwards"),
         (KINEMATICS, "pelvis_obliquity", "pelvic obliquity", "pelvis_list", "own side up", "own side down"),

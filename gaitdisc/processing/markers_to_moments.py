@@ -39,10 +39,7 @@ class ComputedTrial:
 
 
 def computed_trial(
-    trial: Trial,
-    calibration: Calibration,
-    person: Person | None,
-    settings: KineticsSettings | None = None,
+    trial: Trial, calibration: Calibration, person: Person | None, settings: KineticsSettings | None = None
 ) -> ComputedTrial:
     """Trial with joint angles from its markers and, where platforms allow it, moments and powers.
 

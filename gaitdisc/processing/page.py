@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
 from gaitdisc.processing.kept_parts import figure_again, hash_cycles, keep_part, read_part
@@ -25,6 +24,7 @@ from gaitdisc.processing.tables import (
     spatiotemporal_table,
 )
 from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_page
 from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
@@ -138,7 +138,13 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
     places = file_names([one.where for one in kept])
     figures = [one for own in kept if drawn for one in cycles_figures(own, f"{name}-{places[own.where]}")]
     tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
-    return Block(f"cycles-{name}", sets[0].subject, (_person(sets),), tuple(figures), tuple(tables))
+    parts = []
+    for one in sets:
+        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
+        ground = "over ground" if one.over_ground else "on a treadmill"
+        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
+        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
+    return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(parts)}.",), tuple(figures), tuple(tables))
 
 
 def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str]:
@@ -155,16 +161,6 @@ def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) ->
         files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
         keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
-
-
-def _person(sets: Sequence[PooledCycles]) -> str:
-    parts = []
-    for one in sets:
-        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in ("l", "r"))
-        ground = "over ground" if one.over_ground else "on a treadmill"
-        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
-        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
-    return f"{'; '.join(parts)}."
 
 
 @in_style
@@ -213,9 +209,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     return Figure(name, _caption(pooled), alt, shown, drawn)
 
 
-def draw_cycles(
-    axes: Axes, every: NDArray[np.float64], mean: NDArray[np.float64], sd: NDArray[np.float64], side: str
-) -> None:
+def draw_cycles(axes: Axes, every: Values, mean: Values, sd: Values, side: str) -> None:
     """Draw every cycle (cycle, phase) faint, and their mean (phase,); from three cycles on its spread."""
     look = SIDES[side]
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)

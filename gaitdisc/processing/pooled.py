@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
@@ -40,6 +39,7 @@ from gaitdisc.processing.trial_cycles import (
     without_doubted,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.signals.contacts import rise_of
 from gaitdisc.signals.sides import verify_sides
@@ -48,7 +48,7 @@ from gaitdisc.signals.strides import LEAST_COVERAGE, duration_reasons, verify_wa
 DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics are shown of
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
 # kind of event and detector -> how much later the ground places each that both see [s], of all trials of a session
-Later = Mapping[tuple[str, str], NDArray[np.float64]]
+Later = Mapping[tuple[str, str], Values]
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     """
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []
-    prints: dict[str, tuple[str, int]] = {}  # of each trial that was read: its name and number
+    prints: dict[str, PlannedTrial] = {}  # of the samples of each trial that was read
     for session in dict.fromkeys(one.session for one in sets):
         standing = standing_of(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
@@ -87,7 +87,11 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
         with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
             for one in (own for own in sets if own.session == session):
                 seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, Path(folder), prints)
-            later = _later([trial for trials in seen.values() for trial in trials])
+            times: dict[tuple[str, str], list[Values]] = {}
+            for trial in (trial for trials in seen.values() for trial in trials):
+                for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
+                    times.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
+            later = {of: np.concatenate(parts) for of, parts in times.items()}
             found += [
                 _pooled(standing, one, seen[one.condition], lost[one.condition], later)
                 for one in sets
@@ -97,24 +101,26 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
 
 
 def _seen_trials(
-    standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, tuple[str, int]]
+    standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, PlannedTrial]
 ) -> tuple[list[_Seen], list[Refusal]]:
     participant = standing.participant
     seen, lost = [], []
     for number, planned in enumerate(one.trials, 1):
-        name = participant.trial_name(planned)
-        where = name.removeprefix(participant.id).strip()
         try:
             trial = read(planned)
             whole = hashlib.sha256()  # equal for two files of one recording, whatever their headers and formats
             for key in sorted(trial.streams):
                 whole.update(trial.stream(key).values.tobytes())
-            twin = prints.setdefault(whole.hexdigest(), (name, number))
-            if twin != (name, number):
-                needed = "a recording must be counted once, for one session and condition"
-                raise StrideError(needed, f"its samples are identical to those of {twin[0]}", "Remove one of the two.")
+            twin = prints.setdefault(whole.hexdigest(), planned)
+            if twin is not planned:
+                raise StrideError(
+                    "a recording must be counted once, for one session and condition",
+                    f"its samples are identical to those of {participant.trial_name(twin)}",
+                    "Remove one of the two.",
+                )
             seen.append(_seen(standing, planned, number, trial, folder))
         except GaitdiscError as error:
+            where = participant.trial_name(planned).removeprefix(participant.id).strip()
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
 
@@ -129,30 +135,29 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, f
     steps = step_events(trial, study.strides.detector, direction, weight_n)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
     legs, states, lost = cycle_channels(trial, study.filters, computed.from_markers)
-    strides = _strides(steps, study)
+    strides = {}  # between the contacts as they were seen, without what is too short, too long, or is two
+    for side, times in steps.contacts.items():
+        lengths = np.diff(times)
+        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
+        whole &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
+        if whole.any():
+            strides[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
     _verify(trial, strides, outside)
     sides = side_findings(trial, strides, standing.weighed_n or weight_n)
     if plate_steps is not None:  # whose findings say so already
         sides = [finding for finding in sides if finding.kind != "plate step"]
-    findings = (*trial.findings, *steps.findings, *quality_findings(_known(trial)), *sides, *lost)
+    known = {}
+    for key in {"kinematics", "emg", "forces"} & set(trial.streams):  # channels of the vocabulary are looked at
+        names = [name for name in trial.stream(key).names if key == "forces" or name in vocabulary().by_name]
+        known |= {key: trial.stream(key).selected(names)} if names else {}
+    quality = quality_findings(replace(trial, streams=known))
+    findings = (*trial.findings, *steps.findings, *quality, *sides, *lost)
     findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     plates = plate_loadings(trial, rise_of(weight_n))
     feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
     kept = tuple(put_away(one, folder) for one in states)
     return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, plate_steps)
-
-
-def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
-    """Strides of each foot between the contacts as they were seen, without what is too short, too long, or is two."""
-    found = {}
-    for side, times in steps.contacts.items():
-        lengths = np.diff(times)
-        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
-        whole &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
-        if whole.any():
-            found[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
-    return found
 
 
 def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
@@ -165,27 +170,6 @@ def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
             verify_walking(legs, strides, 1, LEAST_COVERAGE if strides.detector == "angles" and not outside else 0.0)
         if f"knee_angle_{side}" in legs.names:
             verify_sides(legs, strides)
-
-
-def _known(trial: Trial) -> Trial:
-    """Channels that are looked at: those of the vocabulary, and markers only where nothing else is there."""
-    words = {channel.name for channel in vocabulary().channels}
-    streams = {}
-    for key, recording in trial.streams.items():
-        if key in ("kinematics", "emg"):
-            names = [name for name in recording.names if name in words]
-            streams |= {key: recording.selected(names)} if names else {}
-        elif key == "forces":
-            streams[key] = recording
-    return replace(trial, streams=streams)
-
-
-def _later(seen: Sequence[_Seen]) -> Later:
-    found: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
-    for trial in seen:
-        for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
-            found.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
-    return {of: np.concatenate(parts) for of, parts in found.items()}
 
 
 def _offset_s(later: Later, kind: str, detector: str) -> float | None:
@@ -302,7 +286,7 @@ def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object
     )  # fmt: skip
 
 
-def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], NDArray[np.float64]]:
+def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], Values]:
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
     for trial in seen:

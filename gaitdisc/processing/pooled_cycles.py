@@ -8,12 +8,11 @@ from operator import itemgetter
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.saved.kind import CSV, Kind, Saved
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import lies_on_disk, may_lie_on_disk, unit_name
@@ -103,7 +102,7 @@ class PooledCycles(Saved, file="cycles.json"):
     offset_steps: int
     over_ground: bool
     channels: tuple[Channel, ...]
-    curves: NDArray[np.float64]
+    curves: Values
     cycles: pd.DataFrame
     findings: tuple[Finding, ...]
     refusals: tuple[Refusal, ...]
@@ -183,7 +182,7 @@ class PooledCycles(Saved, file="cycles.json"):
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
 
 
-def mean_curve(curves: NDArray[np.float64], **words: str) -> pd.DataFrame:
+def mean_curve(curves: Values, **words: str) -> pd.DataFrame:
     """Mean and deviation of the known curves (cycle, phase) on 101 points, behind a column of each of these words."""
     present = np.isfinite(curves)
     count = present.sum(axis=0)
@@ -232,7 +231,7 @@ class WalkSummary:
     channels: tuple[Channel, ...]
     # (stride, phase, channel) [channel's unit], every kept stride on 101 points; of a walk that was loaded it is read
     # each time it is looked at
-    curves: NDArray[np.float64]
+    curves: Values
     strides: pd.DataFrame  # one row a stride, kept or dropped: side, start_s, end_s, kept, reason
     findings: tuple[Finding, ...]  # everything the reader and the quality checks saw
     files: Mapping[str, str]

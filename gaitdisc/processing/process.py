@@ -8,7 +8,6 @@ from operator import itemgetter
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
@@ -19,6 +18,7 @@ from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, standing_of
 from gaitdisc.processing.two_sources import KIND as CONTRADICTED
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
+from gaitdisc.recording.arrays import Span, Values
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
@@ -73,9 +73,9 @@ def walk_summary(
     )
 
 
-def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:
+def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], follow: str) -> Values:
     """Strides (stride, phase, channel) by the own foot's contacts, else the followed foot's; NaN behind the fewer."""
-    columns: list[NDArray[np.float64]] = []
+    columns: list[Values] = []
     for state in states:
         own = [channel.side if channel.side in strides else follow for channel in state.channels]
         by_side = {side: strides[side].normalised(state) for side in set(own)}
@@ -156,8 +156,8 @@ def stride_findings(state: Recording, strides: Strides) -> list[Finding]:
     findings = outlier_findings(angles, strides) + late_change_findings(angles, strides)
     for dropped in strides.dropped:
         what = f"stride of side {strides.side}: {dropped.reason}"
-        span = ((dropped.start, dropped.end),)
-        findings.append(Finding("note", "stride dropped", state.source.file, what, "this stride", spans=span))
+        spans = (Span(dropped.start, dropped.end),)
+        findings.append(Finding("note", "stride dropped", state.source.file, what, "this stride", spans=spans))
     return findings
 
 

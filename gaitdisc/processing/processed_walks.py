@@ -76,12 +76,15 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
         own = StudyWalks(study, participant, partial(public_trial, study, participant, words, reader))
         for word in study.conditions.both:
+            planned = participant.trials_of(word)[0]
+            public = of_trial(words, participant, planned)
             try:
-                planned = participant.trials_of(word)[0]
-                public = of_trial(words, participant, planned)
-                walks[word] = public.of(partial(_walk, own, planned, public))
+                walk = own.read_walk(planned).processed(study)
+                left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
             except GaitdiscError as error:
-                errors[word] = error
+                errors[word] = public.error(error)
+            else:
+                walks[word] = replace(walk, findings=tuple(map(public.finding, (*walk.findings, left_away))))
     return walks, errors
 
 
@@ -91,12 +94,6 @@ def public_trial(
     """Trial of a study, read, whose files and findings are called by public words alone."""
     public = of_trial(words, participant, planned)
     return public.of(lambda: public.trial(read_planned_trial(study, participant, planned, reader)))
-
-
-def _walk(own: StudyWalks, planned: PlannedTrial, public: PublicWords) -> Walk:
-    walk = own.read_walk(planned).processed(own.study)
-    left_away = gait_samples(walk.trajectory, own.study.models.outputs)[1].finding()
-    return replace(walk, findings=tuple(map(public.finding, (*walk.findings, left_away))))
 
 
 def computed_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:

@@ -52,7 +52,18 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     returns samples: inputs `knee_angle_r`, ..., `d(knee_angle_r)/dt`, ..., `phi`; outputs `d2(knee_angle_r)/dt2`, ..
     """
     walk = " ".join(part for part in (trajectory.subject, trajectory.condition) if part)
-    _check_outputs(trajectory, outputs, walk or "the trajectory")
+    named = walk or "the trajectory"
+    if not outputs:
+        raise ChannelError(
+            "a response must predict at least one channel", f"none is named for {named}", "Name them in outputs."
+        )
+    absent = [name for name in outputs if name not in trajectory.names]
+    if absent:
+        raise ChannelError(
+            f"{absent[0]!r}, whose acceleration is predicted, must be among the channels",
+            f"{named} has {len(trajectory.names)} channels{hint_nearest(absent[0], trajectory.names)}",
+            "Correct the study's outputs, or map the channel in [channels].",
+        )
     columns = trajectory.columns(outputs)
     within = np.isfinite(trajectory.phi)
     rows = within & trajectory.usable.all(axis=1)
@@ -68,17 +79,3 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     bad = (~trajectory.usable & within[:, None]).sum(axis=0)
     unusable = {name: int(count) for name, count in zip(trajectory.names, bad, strict=True) if count}
     return samples, DroppedSamples(len(rows), int(rows.sum()), int((~within).sum()), unusable, walk)
-
-
-def _check_outputs(trajectory: Trajectory, outputs: Sequence[str], walk: str) -> None:
-    if not outputs:
-        raise ChannelError(
-            "a response must predict at least one channel", f"none is named for {walk}", "Name them in outputs."
-        )
-    for name in outputs:
-        if name not in trajectory.names:
-            raise ChannelError(
-                f"{name!r}, whose acceleration is predicted, must be among the channels",
-                f"{walk} has {len(trajectory.names)} channels{hint_nearest(name, trajectory.names)}",
-                "Correct the study's outputs, or map the channel in [channels].",
-            )

@@ -67,7 +67,7 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
             f"{trial.name} has no toes or no forces",
             "Name the markers.",
         )
-    return foot_paths(markers, {"r": (heels["r"], toes[0]), "l": (heels["l"], toes[1])}), platforms(trial), pelvis
+    return foot_paths(markers, heels, dict(zip("rl", toes, strict=True))), platforms(trial), pelvis
 
 
 def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
@@ -90,7 +90,7 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
         what = f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in "
         what += f"{sum(exchanged)} of {len(exchanged)} if the two are exchanged: {names} are exchanged"
         spoils = "the assignment of feet to plates, moments and powers; exchange their channels"
-        spans = tuple((step.start, step.end) for step in steps)
+        spans = tuple(step.span for step in steps)
         return [Finding("warning", "swapped plates", file, what=what, spoils=spoils, channel=names, spans=spans)]
     said = []
     for doubt in ("warning", "note"):  # one finding of all such steps: a belt has hundreds

@@ -22,6 +22,7 @@ from gaitdisc.processing.contact_choice import (
     walking_markers,
 )
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 
@@ -38,7 +39,6 @@ BELT_M = 2.0  # who comes farther walks over ground
 HEEL_M, LEG_DEG = 0.25, 10.0  # least reach of a heel, a hip or a knee within a second of who steps
 LEAST_CUT_S = 1.0
 NO_WALKWAY_S = 10.0  # a walk that lasts longer and does not show its path is one on a treadmill
-Times = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,14 +47,14 @@ class StepEvents:
 
     detector: str  # what sees most strides: `events`, `force`, `markers` or `angles`
     off_detector: str  # `markers` or `angles`, whichever shows foot off; empty where neither does
-    contacts: Mapping[str, Times]  # side -> times, as these detectors place them [s]
-    foot_offs: Mapping[str, Times]  # side -> times, alike [s]
+    contacts: Mapping[str, Values]  # side -> times, as these detectors place them [s]
+    foot_offs: Mapping[str, Values]  # side -> times, alike [s]
     # side -> time [s] and `events` or `force`; no contacts where the detector sees the ground itself
     ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
     ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
     findings: tuple[Finding, ...] = ()  # events that contradict the plates, heels that contradict the events
 
-    def later_s(self, kind: str) -> Times:
+    def later_s(self, kind: str) -> Values:
         """How much later the ground places the events that both see [s]; only steps that both see count."""
         own, ground = self._of(kind)
         apart = []
@@ -80,7 +80,7 @@ class StepEvents:
             found[side] = tuple(sorted([*seen, *((float(at), by) for at in alone)]))
         return found
 
-    def _of(self, kind: str) -> tuple[Mapping[str, Times], Mapping[str, tuple[tuple[float, str], ...]]]:
+    def _of(self, kind: str) -> tuple[Mapping[str, Values], Mapping[str, tuple[tuple[float, str], ...]]]:
         return (self.contacts, self.ground_contacts) if kind == "contacts" else (self.foot_offs, self.ground_offs)
 
 
@@ -160,8 +160,8 @@ def walking_part(trial: Trial) -> Trial:
     return replace(trial, streams=streams, events=events, findings=(*trial.findings, said))
 
 
-def _stepping(trial: Trial) -> tuple[Times, NDArray[np.bool_]] | None:
-    """Times, and at which of them somebody walks: the pelvis travels, or on the spot heels or joints move."""
+def _stepping(trial: Trial) -> tuple[Values, NDArray[np.bool_]] | None:
+    """Values, and at which of them somebody walks: the pelvis travels, or on the spot heels or joints move."""
     markers, legs = trial.streams.get("markers"), trial.streams.get("kinematics")
     try:
         heels, pelvis = named_markers(markers) if markers is not None else ({}, [])
@@ -210,7 +210,7 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
         return None
 
 
-def _merged(seen: Mapping[str, Mapping[str, Times]]) -> dict[str, tuple[tuple[float, str], ...]]:
+def _merged(seen: Mapping[str, Mapping[str, Values]]) -> dict[str, tuple[tuple[float, str], ...]]:
     found: dict[str, list[tuple[float, str]]] = {}
     for name in GROUND:
         for side, times in seen.get(name, {}).items():
@@ -219,7 +219,7 @@ def _merged(seen: Mapping[str, Mapping[str, Times]]) -> dict[str, tuple[tuple[fl
     return {side: tuple(sorted(times)) for side, times in found.items()}
 
 
-def _seen_offs(trial: Trial, contacts: Mapping[str, Times], direction: str) -> tuple[str, dict[str, Times]]:
+def _seen_offs(trial: Trial, contacts: Mapping[str, Values], direction: str) -> tuple[str, dict[str, Values]]:
     """Foot offs of each side that has contacts, from markers or else from the ankle, and which of the two."""
     lengths = np.concatenate([np.diff(times) for times in contacts.values()])
     stride_s = float(np.median(lengths)) if len(lengths) else USUAL_STRIDE_S

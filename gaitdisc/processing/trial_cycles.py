@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
@@ -18,7 +17,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import envelope_of, is_raw
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Span, Values, runs
 from gaitdisc.recording.strides import NAN, interpolated
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.butterworth import lowpassed
@@ -95,7 +94,7 @@ class PlateLoadings:
 
     belts: frozenset[str] = frozenset()  # sides that have a force of their own, as on a split belt
     # from when to when a plate was loaded, whole in the recording [s]; empty where there are belts
-    spans: tuple[tuple[float, float], ...] = ()
+    spans: tuple[Span, ...] = ()
 
 
 def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
@@ -109,13 +108,22 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
         known = force[np.isfinite(force)]
         upward = -force if len(known) and -known.min() > known.max() else force
         found = loaded(upward, forces.rate_hz, rise_n)
-        spans += [(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]
+        spans += [Span(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]
     return PlateLoadings(belts, tuple(spans))
 
 
 def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
-    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance."""
-    return [replace(one, kinetic=one.side in plates.belts or _alone(one, plates.spans)) for one in cycles]
+    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance.
+
+    One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then.
+    """
+    found = []
+    for one in cycles:
+        begun = [span for span in plates.spans if abs(span.start - one.start) <= EDGE_S]
+        alone = len(begun) == 1 and abs(begun[0].end - one.foot_off) <= EDGE_S
+        stance = alone and begun[0].seconds <= LONGEST_STANCE * one.duration_s
+        found.append(replace(one, kinetic=one.side in plates.belts or stance))
+    return found
 
 
 def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
@@ -129,19 +137,22 @@ def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cy
     return [replace(one, kinetic=stance(one)) for one in cycles]
 
 
-def without_doubted(cycles: list[Cycle], spans: Sequence[tuple[float, float]]) -> list[Cycle]:
+def without_doubted(cycles: list[Cycle], spans: Sequence[Span]) -> list[Cycle]:
     """Same cycles, not kinetic where more than half of the stance lies in a step whose force is doubted."""
-    inside = [max([0.0, *(min(end, c.foot_off) - max(start, c.start) for start, end in spans)]) for c in cycles]
-    halves = [0.5 * (one.foot_off - one.start) for one in cycles]
-    return [replace(c, kinetic=c.kinetic and not s > h) for c, s, h in zip(cycles, inside, halves, strict=True)]
+    found = []
+    for one in cycles:
+        stance = Span(one.start, one.foot_off)
+        inside = max([0.0, *(span.shared(stance).seconds for span in spans)])
+        found.append(replace(one, kinetic=one.kinetic and not inside > 0.5 * stance.seconds))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
 class HeelPaths:
     """Where the heels of a trial were, and which way the person walked."""
 
-    time: NDArray[np.float64]  # (frame,) [s], of the markers
-    heels: Mapping[str, NDArray[np.float64]]  # each (frame, 3) [m], by side
+    time: Values  # (frame,) [s], of the markers
+    heels: Mapping[str, Values]  # each (frame, 3) [m], by side
     way: Direction
 
 
@@ -204,17 +215,8 @@ def _first(times: tuple[tuple[float, str], ...], start: float, end: float) -> tu
     return next(((at, by) for at, by in times if start <= at <= end), (NAN, ""))
 
 
-def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+def _level(vector: Values, up: Values) -> Values:
     return vector - np.dot(vector, up) * up
-
-
-def _alone(one: Cycle, spans: Sequence[tuple[float, float]]) -> bool:
-    """One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then."""
-    if not np.isfinite(one.foot_off):
-        return False
-    own = [span for span in spans if abs(span[0] - one.start) <= EDGE_S and abs(span[1] - one.foot_off) <= EDGE_S]
-    at_once = [span for span in spans if abs(span[0] - one.start) <= EDGE_S]
-    return len(own) == 1 and len(at_once) == 1 and own[0][1] - own[0][0] <= LONGEST_STANCE * one.duration_s
 
 
 def cycle_channels(
@@ -282,7 +284,10 @@ def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) 
     """Recording as it is shown, and which filter it had; what a file computed has none here."""
     low = f"low-pass {filters.kinematics_hz:g} Hz"
     if key == "emg":
-        return _envelopes(recording, filters)
+        raw, slow = is_raw(recording), f"low-pass {filters.emg_lowpass_hz:g} Hz"
+        how = f"EMG high-pass {filters.emg_highpass_hz:g} Hz, rectified, {slow}" if raw else f"EMG {slow}"
+        live = live_channels(recording) if raw else recording.names
+        return (envelope_of(recording.selected(live), filters, raw), how) if live else (None, "")
     if key == "forces":
         return lowpassed(recording, FORCE_HZ, filters.order, filters.gap_s), f"forces low-pass {FORCE_HZ:g} Hz"
     if key == "moments" and computed:
@@ -295,13 +300,6 @@ def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) 
     return lowpassed(whole, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
 
 
-def _envelopes(emg: Recording, filters: Filters) -> tuple[Recording | None, str]:
-    raw, low = is_raw(emg), f"low-pass {filters.emg_lowpass_hz:g} Hz"
-    how = f"EMG high-pass {filters.emg_highpass_hz:g} Hz, rectified, {low}" if raw else f"EMG {low}"
-    live = live_channels(emg) if raw else emg.names
-    return (envelope_of(emg.selected(live), filters, raw), how) if live else (None, "")
-
-
 def weighed_forces(trial: Trial) -> Recording | None:
     """Forces of the ground on each foot [% of body weight], zero off the plate; None where the file has none.
 
@@ -311,7 +309,7 @@ def weighed_forces(trial: Trial) -> Recording | None:
     if "moments" not in trial.streams:
         return None
     moments = trial.stream("moments")
-    found: dict[Channel, NDArray[np.float64]] = {}
+    found: dict[Channel, Values] = {}
     for side, letter in (("l", "L"), ("r", "R")):
         labels = [f"{letter}NormalisedGRF.{axis}" for axis in "xz"]
         if any(label not in moments.names or moments.channels[moments.index(label)].unit != "%" for label in labels):

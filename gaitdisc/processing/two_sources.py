@@ -21,6 +21,7 @@ from gaitdisc.kinematics.marker_set import NEEDED, shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import hip_of_spines
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.strides import interpolated
 
 KIND = "contradicted"
@@ -71,7 +72,7 @@ def without_contradicted(trial: Trial) -> Trial:
     return trial
 
 
-def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
+def line_angles(markers: Recording) -> dict[str, Values]:
     """Angles of the lines hip to knee to ankle and heel to toe, each (frame,) [deg], as far as there are markers."""
     labels = marker_labels(markers)
     named: dict[tuple[str, str], list[str]] = {}
@@ -101,7 +102,7 @@ def line_angles(markers: Recording) -> dict[str, NDArray[np.float64]]:
     return found
 
 
-def _unit(vectors: NDArray) -> NDArray[np.float64]:
+def _unit(vectors: NDArray) -> Values:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
@@ -125,7 +126,7 @@ def _in_radians(angles: Recording) -> Contradictions:
 
 def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
     """Angles that markers show in another sign, another size, or one leg alone at another level."""
-    offsets: dict[str, NDArray[np.float64]] = {}
+    offsets: dict[str, Values] = {}
     try:
         lines = line_angles(markers)
     except GaitdiscError:  # no marker has three coordinates
@@ -226,13 +227,13 @@ def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
             yield [moment], f"{what}: its sign is reversed"
 
 
-def _range(values: NDArray[np.float64]) -> float:
+def _range(values: Values) -> float:
     """From the 5th to the 95th percentile, without frames in which a fit lost its markers."""
     known = values[np.isfinite(values)]
     return float(np.ptp(np.quantile(known, [0.05, 0.95]))) if len(known) >= FEWEST else 0.0
 
 
-def _correlation(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def _correlation(one: Values, other: Values) -> float:
     """Of the ranks, which single wild frames do not move; 0 where one stands still."""
     known = np.isfinite(one) & np.isfinite(other)
     if known.sum() < FEWEST or not np.ptp(one[known]) or not np.ptp(other[known]):

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.errors import GaitdiscError, SamplingError, StrideError
+from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Filters
 from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
 from gaitdisc.processing.pooled_cycles import WalkSummary
@@ -194,7 +194,12 @@ def repeated_stride(trial: Trial) -> Trial:
     kinematics = trial.stream("kinematics")
     count = _period(kinematics, trial.name)
     kept = {
-        key: _repeated(recording, count)
+        key: replace(
+            recording,
+            time=recording.time[0] + np.arange(TIMES * count) / recording.rate_hz,
+            values=np.tile(recording.values[:count], (TIMES, 1)),
+            suspect=np.tile(recording.suspect[:count], (TIMES, 1)),
+        )
         for key, recording in trial.streams.items()
         if len(recording.time) == len(kinematics.time) and np.allclose(recording.time, kinematics.time, atol=1e-6)
     }
@@ -228,18 +233,3 @@ def _period(kinematics: Recording, name: str) -> int:
     beside = np.abs(x[1] - x[-1])[moving] / reach[moving]
     closing = np.median(apart) < 0.25 * np.median(step) and np.median(beside) > np.median(apart)
     return len(x) - 1 if closing else len(x)
-
-
-def _repeated(recording: Recording, count: int) -> Recording:
-    if len(recording.time) < count:
-        raise SamplingError(
-            "a stride that is repeated must have all its samples", f"found {len(recording.time)}", "Export it again."
-        )
-    time = recording.time[0] + np.arange(TIMES * count) / recording.rate_hz
-    assert recording.suspect is not None  # set by Recording
-    return replace(
-        recording,
-        time=time,
-        values=np.tile(recording.values[:count], (TIMES, 1)),
-        suspect=np.tile(recording.suspect[:count], (TIMES, 1)),
-    )

@@ -1,11 +1,11 @@
-"""Read-only arrays and mappings, means of those with gaps, robust spread, runs of samples, autocorrelation."""
+"""Read-only arrays and mappings, means of those with gaps, runs and spans of samples."""
 
 from __future__ import annotations
 
 import copyreg
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,7 +28,7 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     return view
 
 
-def real_array(values: Any) -> NDArray[np.float64]:
+def real_array(values: Any) -> Values:
     """Array of floats; complex numbers are refused, of which numpy would keep the real part."""
     array = np.asarray(values)
     if array.dtype.kind == "c":
@@ -49,7 +49,7 @@ def frozen(mapping: Mapping[str, Any]) -> MappingProxyType[str, Any]:
 copyreg.pickle(MappingProxyType, lambda view: (frozen, (dict(view),)))
 
 
-def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def mean_where_known(values: Values) -> Values:
     """Mean over the first axis of the values that are there; NaN where none is.
 
     >>> mean_where_known(np.array([[1.0, np.nan, np.nan], [3.0, 5.0, np.nan]])).tolist()
@@ -59,11 +59,6 @@ def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:
     count = known.sum(axis=0)
     total = np.where(known, values, 0.0).sum(axis=0)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
-
-
-def robust_sd(values: NDArray[np.float64]) -> float:
-    """Standard deviation by the median absolute deviation: that of normal numbers, whatever a few others are."""
-    return 1.4826 * float(np.median(np.abs(values - np.median(values))))
 
 
 def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
@@ -79,36 +74,34 @@ def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
     return steps.reshape(-1, 2)
 
 
-def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
+class Span(NamedTuple):
+    """A part of a recording, from its first to its last instant [s]."""
+
+    start: float
+    end: float
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts; negative where nothing is shared."""
+        return self.end - self.start
+
+    def holds(self, time: Values) -> NDArray[np.bool_]:
+        """Which instants (time,) [s] lie in it, its ends included."""
+        return (time >= self.start) & (time <= self.end)
+
+    def shared(self, other: Span) -> Span:
+        """Return what two spans have in common."""
+        return Span(max(self.start, other.start), min(self.end, other.end))
+
+
+def spans_s(time: Values, mask: NDArray[np.bool_]) -> tuple[Span, ...]:
     """Spans of the runs of True, from the first sample of each to one step after its last.
 
     time (time,) [s]: even
     mask (time,): any condition on the samples
 
     >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
-    ((1.0, 3.0),)
+    (Span(start=1.0, end=3.0),)
     """
     step = (time[-1] - time[0]) / (len(time) - 1) if len(time) > 1 else 0.0
-    return tuple((round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))
-
-
-def autocorrelation_time(values: NDArray[np.float64], forgotten: float = 0.0) -> NDArray[np.float64]:
-    """Integrated autocorrelation time of each column [samples], (column,): 1 of white noise.
-
-    So many numbers in a row say no more together than one that stands alone. Correlations are summed up to the first
-    that is no larger than `forgotten`.
-
-    values (time, column): in order of time
-    Source: Sokal 1997, Monte Carlo methods in statistical mechanics.
-
-    >>> noise = np.random.default_rng(0).standard_normal(100_000)
-    >>> slow = np.convolve(noise, np.ones(5), "same")
-    >>> autocorrelation_time(np.column_stack([noise, slow]), 0.05).round(1).tolist()
-    [1.0, 5.0]
-    """
-    n = len(values)
-    spectrum = np.abs(np.fft.rfft(values - values.mean(axis=0), 2 * n, axis=0)) ** 2
-    products = np.fft.irfft(spectrum, axis=0)[:n]
-    rho = products / np.where(products[0] > 0, products[0], 1.0)
-    remembered = np.logical_and.accumulate(rho[1:] > forgotten, axis=0)
-    return 1 + 2 * (rho[1:] * remembered).sum(axis=0)
+    return tuple(Span(round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))

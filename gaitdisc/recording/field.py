@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.recording.recording import Source
 
 STEP_TOLERANCE = 0.01  # of the usual step; months are not evenly long in every calendar
@@ -40,7 +40,7 @@ class Axis:
     """
 
     name: str
-    coordinates: NDArray[np.float64]
+    coordinates: Values
     unit: str = "1"
 
     def __post_init__(self) -> None:
@@ -97,7 +97,7 @@ class Field:
     (3, [[0.0, 5.0], [1.0, 5.0], [1.0, 6.0]])
     """
 
-    time: NDArray[np.float64]
+    time: Values
     values: NDArray[np.float32]
     axes: tuple[Axis, ...]
     mask: NDArray[np.bool_]
@@ -129,7 +129,7 @@ class Field:
             object.__setattr__(self, name, value)
         self._refuse_missing()
 
-    def _refuse_uneven(self, time: NDArray[np.float64]) -> None:
+    def _refuse_uneven(self, time: Values) -> None:
         steps = np.diff(time)
         usual = float(np.median(steps)) if len(steps) else 1.0
         uneven = (steps <= 0) | (np.abs(steps - usual) > STEP_TOLERANCE * usual)
@@ -167,7 +167,7 @@ class Field:
         return np.argwhere(self.mask)
 
     @property
-    def places(self) -> NDArray[np.float64]:
+    def places(self) -> Values:
         """Coordinates of every point, (point, axis) [each axis's unit]."""
         nodes = self.nodes
         return np.column_stack([axis.coordinates[nodes[:, k]] for k, axis in enumerate(self.axes)])
@@ -224,7 +224,7 @@ class Field:
         units = tuple(self.units[k] for k in columns)
         return replace(self, values=self.values[:, :, columns], quantities=tuple(quantities), units=units)
 
-    def on_grid(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
+    def on_grid(self, values: NDArray[np.floating]) -> Values:
         """Values of one snapshot and quantity on the grid, NaN outside the field.
 
         Parameters

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gaitdisc.recording.arrays import Span
+
 SEVERITIES = ("note", "warning", "refused")
 
 
@@ -26,7 +28,7 @@ class Finding:
         What is affected, and what to do.
     channel : str
         Name of the channel; empty for the entire file.
-    spans : tuple of (float, float)
+    spans : tuple of Span
         Start and end of each affected part [s].
 
     Examples
@@ -41,7 +43,7 @@ class Finding:
     what: str
     spoils: str
     channel: str = ""
-    spans: tuple[tuple[float, float], ...] = ()
+    spans: tuple[Span, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse a severity that the traffic light does not know."""

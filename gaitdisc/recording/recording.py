@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.notebook import html_of
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,8 +67,8 @@ class Recording:
     (100.0, ('knee_angle_r',))
     """
 
-    time: NDArray[np.float64]
-    values: NDArray[np.float64]
+    time: Values
+    values: Values
     channels: tuple[Channel, ...]
     subject: str = ""
     condition: str = ""
@@ -99,7 +99,14 @@ class Recording:
                 f"the marks have shape {np.shape(suspect)}, the values {values.shape}",
                 "Give one mark per sample and channel.",
             )
-        _check_names(channels, self.source.file)
+        names = [channel.name for channel in channels]
+        doubled = sorted({name for name in names if names.count(name) > 1})
+        if doubled:
+            raise ChannelError(
+                "each channel must have its own name",
+                f"{self.source.file or 'the recording'} contains {doubled[0]!r} {names.count(doubled[0])} times",
+                "Give the columns different names in the study's [channels].",
+            )
         _check_steps(time, self.source.file)
         for name, value in (("time", time), ("values", values), ("channels", channels)):
             object.__setattr__(self, name, value)
@@ -155,7 +162,7 @@ class Recording:
             )
         return self.names.index(name)
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> Values:
         return self.values[:, self.index(name)]
 
     def __contains__(self, name: object) -> bool:
@@ -199,7 +206,7 @@ class Recording:
         rows = slice(int(first), int(last))
         return replace(self, time=self.time[rows], values=self.values[rows], suspect=self.suspect[rows])
 
-    def with_values(self, values: NDArray[np.float64], suspect: NDArray[np.bool_] | None = None) -> Recording:
+    def with_values(self, values: Values, suspect: NDArray[np.bool_] | None = None) -> Recording:
         """Recording with other values on the same time base and channels.
 
         Parameters
@@ -265,18 +272,7 @@ def several(names: str | Sequence[str]) -> tuple[str, ...]:
     return (names,) if isinstance(names, str) else tuple(names)
 
 
-def _check_names(channels: Sequence[Channel], file: str) -> None:
-    names = [channel.name for channel in channels]
-    doubled = sorted({name for name in names if names.count(name) > 1})
-    if doubled:
-        raise ChannelError(
-            "each channel must have its own name",
-            f"{file or 'the recording'} contains {doubled[0]!r} {names.count(doubled[0])} times",
-            "Give the columns different names in the study's [channels].",
-        )
-
-
-def _check_steps(time: NDArray[np.float64], file: str) -> None:
+def _check_steps(time: Values, file: str) -> None:
     if len(time) < 2:
         return
     steps = np.diff(time)

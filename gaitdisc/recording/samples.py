@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 
 RELATIVE_FLOOR = 1e-9  # a column that varies by less than this of its size is constant
 ABSOLUTE_FLOOR = 1e-12  # deg, m, V and their rates: rounding, never a signal
@@ -20,10 +20,10 @@ ABSOLUTE_FLOOR = 1e-12  # deg, m, V and their rates: rounding, never a signal
 class Scale:
     """Mean and standard deviation of every column, as the training part has them."""
 
-    mean: NDArray[np.float64]  # (column,) [each column's unit], what is subtracted
+    mean: Values  # (column,) [each column's unit], what is subtracted
     # (column,) [each column's unit], what is divided by; infinite for a constant column, which thereby becomes 0
     # wherever it is used, also where it is not constant any more
-    sd: NDArray[np.float64]
+    sd: Values
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -35,14 +35,14 @@ class Scale:
         """True for each column that did not vary, (column,)."""
         return ~np.isfinite(self.sd)
 
-    def scaled(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def scaled(self, values: Values) -> Values:
         """Without unit: zero mean and unit standard deviation where the scale comes from.
 
         values (sample, column) [each column's unit]: in the order of the scale
         """
         return (values - self.mean) / self.sd
 
-    def unscaled(self, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
+    def unscaled(self, scaled: Values) -> Values:
         """Back in the columns' units; a constant column gets its constant.
 
         scaled (sample, column): without unit
@@ -50,7 +50,7 @@ class Scale:
         return scaled * np.where(self.constant, 0.0, self.sd) + self.mean
 
 
-def scale_of(values: NDArray[np.float64]) -> Scale:
+def scale_of(values: Values) -> Scale:
     """Scale of the columns of a training part.
 
     values (sample, column) [each column's unit]: finite, or NaN where a value is missing; a column that is missing
@@ -99,12 +99,12 @@ class Samples:
     3
     """
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+    x: Values
+    y: Values
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    time: NDArray[np.float64]
-    phi: NDArray[np.float64]
+    time: Values
+    phi: Values
     subject: str = ""
 
     def __post_init__(self) -> None:
@@ -134,7 +134,7 @@ class Samples:
         """
         return replace(self, x=self.x[chosen], y=self.y[chosen], time=self.time[chosen], phi=self.phi[chosen])
 
-    def with_outputs(self, y: NDArray[np.float64]) -> Samples:
+    def with_outputs(self, y: Values) -> Samples:
         """Return the same inputs with other outputs of the same names.
 
         Parameters
@@ -217,11 +217,11 @@ class Trajectory:
     ('knee_angle_r',)
     """
 
-    time: NDArray[np.float64]  # (time,) [s], even
-    x: NDArray[np.float64]  # (time, channel) [unit], state
-    xdot: NDArray[np.float64]  # (time, channel) [unit/s], its derivative
-    xddot: NDArray[np.float64]  # (time, channel) [unit/s2], its second derivative
-    phi: NDArray[np.float64]  # (time,) [% stride], 0 <= phi < 100, NaN outside of strides
+    time: Values  # (time,) [s], even
+    x: Values  # (time, channel) [unit], state
+    xdot: Values  # (time, channel) [unit/s], its derivative
+    xddot: Values  # (time, channel) [unit/s2], its second derivative
+    phi: Values  # (time,) [% stride], 0 <= phi < 100, NaN outside of strides
     channels: tuple[Channel, ...]
     usable: NDArray[np.bool_]  # (time, channel), false where x, xdot or xddot is missing or not to be trusted
     subject: str = ""

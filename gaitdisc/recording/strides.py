@@ -145,7 +145,20 @@ class Strides:
         recording : Recording or DataFrame
             On the trial's clock, at any rate; a DataFrame has times [s] in a column `time` or an index of that name.
         """
-        recording = recording if isinstance(recording, Recording) else _of_table(recording)
+        if not isinstance(recording, Recording):
+            table: Any = recording
+            if getattr(getattr(table, "index", None), "name", None) == "time":
+                table = table.reset_index()
+            if "time" not in getattr(table, "columns", ()):
+                raise ShapeError(
+                    "strides can be cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
+                    f"found {type(table).__name__}" + (" without it" if hasattr(table, "columns") else ""),
+                    "Give one stream of a trial, for instance trial.stream('kinematics'), or rename the column of "
+                    "times to 'time'.",
+                )
+            names = [name for name in table.columns if name != "time"]
+            channels = [vocabulary().by_name.get(str(name)) or Channel(str(name), "signal", "1") for name in names]
+            recording = Recording(table["time"].to_numpy(float), table[names].to_numpy(float), tuple(channels))
         points = self.start[:, None] + self.duration_s[:, None] * PERCENT / 100.0
         plain = unwrapped(recording)
         curves = interpolated(recording.time, plain.values, points)
@@ -166,22 +179,6 @@ class Strides:
         """
         inside = (self.start >= start_s) & (self.end <= end_s)
         return Strides(self.start[inside], self.end[inside], self.side, self.detector, self.dropped)
-
-
-def _of_table(table: Any) -> Recording:
-    """Recording of a DataFrame with times under `time`; channels of the vocabulary are known, others plain."""
-    if getattr(getattr(table, "index", None), "name", None) == "time":
-        table = table.reset_index()
-    if "time" not in getattr(table, "columns", ()):
-        raise ShapeError(
-            "strides can be cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
-            f"found {type(table).__name__}" + (" without it" if hasattr(table, "columns") else ""),
-            "Give one stream of a trial, for instance trial.stream('kinematics'), or rename the column of times "
-            "to 'time'.",
-        )
-    names = [name for name in table.columns if name != "time"]
-    channels = [vocabulary().by_name.get(str(name)) or Channel(str(name), "signal", "1") for name in names]
-    return Recording(table["time"].to_numpy(float), table[names].to_numpy(float), tuple(channels))
 
 
 def interpolated(time: Values, values: Values, points: Values) -> Values:

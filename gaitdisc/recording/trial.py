@@ -4,27 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
 from gaitdisc.notebook import html_of
-from gaitdisc.recording.arrays import frozen, read_only
+from gaitdisc.recording.arrays import Values, frozen, read_only
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
+
+class Limits(NamedTuple):
+    """Least and largest value that something can have."""
+
+    least: float
+    most: float
+    unit: str
+
+    def hold(self, value: float) -> bool:
+        """Whether a value is possible; NaN is not."""
+        return self.least <= value <= self.most
+
+    def check(self, name: str, value: float | None) -> None:
+        """Refuse a value that no person has."""
+        if value is not None and not self.hold(value):
+            raise UnitError(
+                f"a person's {name} must be between {self.least:g} and {self.most:g} {self.unit}",
+                f"found {value:g} {self.unit}",
+                f"Give it in {self.unit}.",
+            )
+
+
 LENGTHS_M = {
-    "height_m": (0.4, 2.5),
-    "inter_asis_m": (0.08, 0.45),
-    "marker_diameter_m": (0.002, 0.04),
-    "leg_length_m": (0.2, 1.4),
-    "knee_width_m": (0.03, 0.25),
-    "ankle_width_m": (0.02, 0.15),
+    "height_m": Limits(0.4, 2.5, "m"),
+    "inter_asis_m": Limits(0.08, 0.45, "m"),
+    "marker_diameter_m": Limits(0.002, 0.04, "m"),
+    "leg_length_m": Limits(0.2, 1.4, "m"),
+    "knee_width_m": Limits(0.03, 0.25, "m"),
+    "ankle_width_m": Limits(0.02, 0.15, "m"),
 }
-MASS_KG, AGE_YEARS = (5.0, 300.0), (1, 120)
+MASS_KG, AGE_YEARS = Limits(5.0, 300.0, "kg"), Limits(1, 120, "years")
 LEG_OF_STATURE = 0.530  # greater trochanter over ground, Winter (2009), figure 4.1
 
 
@@ -61,24 +83,14 @@ class BodyMeasures:
 
     def __post_init__(self) -> None:
         """Refuse what no person measures, once."""
-        _check("mass_kg", self.mass_kg, MASS_KG, "kg")
-        for name, limits in LENGTHS_M.items():
+        for name, limits in {"mass_kg": MASS_KG, **LENGTHS_M}.items():
             value = getattr(self, name)
             if isinstance(value, Mapping):
                 for side, length in value.items():
-                    _check(f"{name} of side {side!r}", length, limits, "m")
+                    limits.check(f"{name} of side {side!r}", length)
                 object.__setattr__(self, name, frozen(value))
             else:
-                _check(name, value, limits, "m")
-
-
-def _check(name: str, value: float | None, limits: tuple[float, float], unit: str) -> None:
-    if value is not None and not limits[0] <= value <= limits[1]:
-        raise UnitError(
-            f"a person's {name} must be between {limits[0]:g} and {limits[1]:g} {unit}",
-            f"found {value:g} {unit}",
-            f"Give it in {unit}.",
-        )
+                limits.check(name, value)
 
 
 SHOWN = 6  # findings of a notebook's table
@@ -95,7 +107,7 @@ class Surface:
     """
 
     name: str  # first part of its channels' names: `plate_1`
-    corners: NDArray[np.float64]  # (4, 3) [m], in order around it
+    corners: Values  # (4, 3) [m], in order around it
 
     def __post_init__(self) -> None:
         """Check the corners once."""
@@ -110,17 +122,17 @@ class Surface:
         object.__setattr__(self, "corners", corners)
 
     @property
-    def centre(self) -> NDArray[np.float64]:
+    def centre(self) -> Values:
         """Its middle, (3,) [m]."""
         return self.corners.mean(axis=0)
 
     @property
-    def normal(self) -> NDArray[np.float64]:
+    def normal(self) -> Values:
         """Unit vector at right angles to it, (3,), to one side or the other."""
         across = np.cross(self.corners[2] - self.corners[0], self.corners[3] - self.corners[1])
         return across / np.linalg.norm(across)
 
-    def outside(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def outside(self, points: Values) -> Values:
         """How far points lie beyond the nearest edge, seen along the normal, (point,) [m]; negative inside.
 
         points (point, 3) [m]: in the laboratory's frame

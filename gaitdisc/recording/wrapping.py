@@ -10,9 +10,9 @@ import re
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.recording import Recording
 
 HEADINGS = re.compile(
@@ -82,7 +82,7 @@ def wrapped(recording: Recording, as_in: Recording) -> Recording:
     return replace(recording, values=values)
 
 
-def in_one_turn(curves: NDArray[np.float64], turn: float) -> NDArray[np.float64]:
+def in_one_turn(curves: Values, turn: float) -> Values:
     """Curves of a heading moved by whole turns, so that their mean is the mean of their directions.
 
     curves (curve, point): each without a leap; NaN allowed

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Span, Values, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
+from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 CLIPPED_SHARE = 1e-3
@@ -60,13 +61,22 @@ def channel_findings(recording: Recording) -> list[Finding]:
             findings.append(Finding("note", "flat", recording.source.file, what, spoils, channel.name))
             continue
         rests = channel.quantity in REST_QUANTITIES
-        for kind, marks in (("clipped", clipped(x, rests)), ("jump", np.zeros(len(x), bool) if rests else jumping(x))):
+        stops = clipped(x, rests)
+        values = " and ".join(f"{value:.4g}" for value in np.unique(x[stops]))
+        jumps = np.zeros(len(x), bool) if rests else jumping(x)
+        for kind, marks, happens, lost in (
+            ("clipped", stops, f"stops at {values} {channel.unit}", "the peaks, which are lost"),
+            ("jump", jumps, "jumps from one sample to the next", "velocity and acceleration there"),
+        ):
             if marks.any():
-                findings.append(_finding(recording, column, kind, marks))
+                seconds = marks.sum() / recording.rate_hz
+                where = f"{happens}, in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
+                file, spans = recording.source.file, spans_s(recording.time, marks)
+                findings.append(Finding("warning", kind, file, where, lost, channel.name, spans=spans))
     return findings
 
 
-def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.bool_]:
+def clipped(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
     """Mark where the largest or the smallest value is met, if it is met too often to be chance.
 
     x (time,): one channel
@@ -86,7 +96,7 @@ def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.b
     return marks
 
 
-def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
+def jumping(x: Values) -> NDArray[np.bool_]:
     """Mark the samples beside an implausible second difference.
 
     x (time,): one channel, not filtered
@@ -106,21 +116,7 @@ def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
     return marks
 
 
-def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.bool_]) -> Finding:
-    channel, x = recording.channels[column], recording.values[:, column]
-    seconds = marks.sum() / recording.rate_hz
-    stops = " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))
-    words = {
-        "clipped": (f"stops at {stops} {channel.unit}", "the peaks, which are lost"),
-        "jump": ("jumps from one sample to the next", "velocity and acceleration there"),
-    }
-    what, spoils = words[kind]
-    where = f"in {counted(len(runs(marks)), 'place')}, {seconds:.2f} s in all"
-    spans = spans_s(recording.time, marks)
-    return Finding("warning", kind, recording.source.file, f"{what}, {where}", spoils, channel.name, spans=spans)
-
-
-def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:
+def swing_baseline(force_n: Values, rate_hz: float) -> Values:
     """Force in the middle half of every unloaded phase: its sample and its median.
 
     force_n (time,) [N]: vertical force of one plate, of either sign
@@ -173,7 +169,7 @@ def drift_findings(forces: Recording) -> list[Finding]:
         if drifts:
             what += f" and drifts by {drift:+.1f} N in {time[-1] - time[0]:.0f} s ({60 * slope:+.1f} N per minute)"
         spoils = f"contacts near the threshold of {RISE_N:g} N, and moments; subtract the baseline"
-        spans = ((float(time[0]), float(time[-1])),)
+        spans = (Span(float(time[0]), float(time[-1])),)
         findings.append(Finding("warning", "force drift", forces.source.file, what, spoils, channel.name, spans=spans))
     return findings
 
@@ -256,7 +252,7 @@ def plateau_marked(kinematics: Recording) -> Recording:
     return kinematics.with_values(kinematics.values, marks)
 
 
-def _dwells(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_] | None:
+def _dwells(x: Values, rate_hz: float) -> NDArray[np.bool_] | None:
     """Samples on a plateau at the top of x, or None."""
     known = x[np.isfinite(x)]
     reach = float(known.max() - np.percentile(known, 1))
@@ -272,17 +268,12 @@ def _dwells(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_] | None:
     sine = 2 / np.pi * float(np.arcsin(np.sqrt(BAND_SHARE)))
     if marks.mean() < DWELL_TIMES * sine or robust_sd(highest) > SPREAD_SHARE * reach:
         return None
-    corners = [_corner(x, start + int(np.argmax(x[start:end])), reach) for start, end in spans]
-    return marks if np.median(corners) >= CORNER else None
-
-
-def _corner(x: NDArray[np.float64], top: int, reach: float) -> float:
-    """Samples in a row about a peak within 1 % of the reach, over those within 4 %."""
-    wide = []
-    for share in (BAND_SHARE, 4 * BAND_SHARE):
-        below = np.flatnonzero(~(x >= x[top] - share * reach))
-        at = int(np.searchsorted(below, top))
-        first = below[at - 1] if at else -1
-        last = below[at] if at < len(below) else len(x)
-        wide.append(last - first - 1)
-    return wide[0] / wide[1]
+    wide = np.empty((len(spans), 2))  # samples in a row about each peak within 1 % of the reach, and within 4 %
+    for dwell, (start, end) in enumerate(spans):
+        peak = start + int(np.argmax(x[start:end]))
+        for column, share in enumerate((BAND_SHARE, 4 * BAND_SHARE)):
+            below = np.flatnonzero(~(x >= x[peak] - share * reach))
+            at = int(np.searchsorted(below, peak))
+            first = below[at - 1] if at else -1
+            wide[dwell, column] = (below[at] if at < len(below) else len(x)) - first - 1
+    return marks if np.median(wide[:, 0] / wide[:, 1]) >= CORNER else None

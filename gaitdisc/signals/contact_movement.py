@@ -15,11 +15,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Span, Values
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
@@ -74,9 +74,7 @@ def marker_contacts(
     return found
 
 
-def _of_each_step(
-    time: NDArray[np.float64], swung: NDArray[np.float64], direction: Direction, times: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _of_each_step(time: Values, swung: Values, direction: Direction, times: Values) -> Values:
     """Peaks again, each along one direction: a line that turns moves the peak of a heel that lies beside it."""
     if direction.headings is None:
         return times
@@ -93,7 +91,7 @@ def _of_each_step(
     return np.unique(found)
 
 
-def _prominent(x: NDArray[np.float64], peak: int, prominence: float) -> bool:
+def _prominent(x: Values, peak: int, prominence: float) -> bool:
     """Rises by `prominence` before the peak (the swing), and begins to fall after it (by a fifth of that)."""
     for side, enough in ((x[:peak][::-1], prominence), (x[peak + 1 :], prominence / 5)):
         higher = np.flatnonzero(~(side <= x[peak]))
@@ -103,7 +101,7 @@ def _prominent(x: NDArray[np.float64], peak: int, prominence: float) -> bool:
     return True
 
 
-def _vertex(x: NDArray[np.float64], peak: int) -> float:
+def _vertex(x: Values, peak: int) -> float:
     """How far beside a peak the parabola through it and its neighbours is highest [samples]."""
     left, centre, right = x[peak - 1 : peak + 2]
     bend = left - 2 * centre + right
@@ -141,7 +139,7 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
     return found
 
 
-def _cycles(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], float]:
+def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
     """Time of the one hip peak a stride, and the period [s]."""
     hip = kinematics.selected([name])
     period, regularity = stride_period(hip.values[:, 0], hip.rate_hz)
@@ -164,9 +162,7 @@ def _cycles(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], floa
     return hip.time[peaks], period
 
 
-def _terminal_extensions(
-    kinematics: Recording, knee: str, peaks: NDArray[np.float64], period: float
-) -> NDArray[np.float64]:
+def _terminal_extensions(kinematics: Recording, knee: str, peaks: Values, period: float) -> Values:
     time, x = _smooth(kinematics, knee)
     found = []
     for peak in peaks:
@@ -182,7 +178,7 @@ def _terminal_extensions(
     return np.array(found)
 
 
-def _hip_peaks(kinematics: Recording, hip: str, peaks: NDArray[np.float64], period: float) -> NDArray[np.float64]:
+def _hip_peaks(kinematics: Recording, hip: str, peaks: Values, period: float) -> Values:
     time, x = _smooth(kinematics, hip)
     found = []
     for peak in peaks:
@@ -194,30 +190,30 @@ def _hip_peaks(kinematics: Recording, hip: str, peaks: NDArray[np.float64], peri
     return np.array(found)
 
 
-def stance_windows(contacts: NDArray[np.float64], stride_s: float) -> list[tuple[float, float]]:
-    """Spans in which a foot leaves the ground, one for each contact and one for the stance before the first [s].
+def stance_windows(contacts: Values, stride_s: float) -> list[Span]:
+    """Spans in which a foot leaves the ground, one for each contact and one for the stance before the first.
 
     contacts (contact,) [s]: of one foot
     stride_s: usual stride, for the contact that is the last [s]
 
-    >>> stance_windows(np.array([1.0, 2.0]), 1.0)
-    [(0.25, 0.85), (1.25, 1.85), (2.25, 2.85)]
+    >>> stance_windows(np.array([1.0]), 1.0)
+    [Span(start=0.25, end=0.85), Span(start=1.25, end=1.85)]
     """
     if not len(contacts):
         return []
     starts = [float(contacts[0]) - stride_s, *map(float, contacts)]
     lengths = [stride_s, *map(float, np.diff(contacts)), stride_s]
-    return [(start + FROM * own, start + TO * own) for start, own in zip(starts, lengths, strict=True)]
+    return [Span(start + FROM * own, start + TO * own) for start, own in zip(starts, lengths, strict=True)]
 
 
 def marker_foot_off(
-    markers: Recording, toe: str, pelvis: Sequence[str], direction: Direction, windows: Sequence[tuple[float, float]]
-) -> NDArray[np.float64]:
+    markers: Recording, toe: str, pelvis: Sequence[str], direction: Direction, windows: Sequence[Span]
+) -> Values:
     """Times at which a toe is farthest behind the pelvis, one for each window that has such a time [s].
 
     markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     toe: marker at the toes; one at the heel leaves earlier
-    windows sequence of (float, float): from `stance_windows` [s]
+    windows: from `stance_windows`
     Source: Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: in a turn each step has its own
         direction.
     """
@@ -227,42 +223,32 @@ def marker_foot_off(
     return _lowest_in(windows, markers.time, lambda middle: direction.ahead(swung, middle))
 
 
-def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
+def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -> Values:
     """Times at which an ankle is most plantarflexed, one for each window that has such a time [s].
 
     kinematics: with the ankle, dorsiflexion positive [deg]
-    windows sequence of (float, float): from `stance_windows` [s]
+    windows: from `stance_windows`
     """
     time, x = _smooth(kinematics, ankle)
     return _lowest_in(windows, time, lambda _: x)
 
 
-def _smooth(kinematics: Recording, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _smooth(kinematics: Recording, name: str) -> tuple[Values, Values]:
     """Times of one angle, and the angle without what is faster than a step."""
     smooth = lowpassed(kinematics.selected([name]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
     return smooth.time, smooth.values[:, 0]
 
 
-def _lowest_in(
-    windows: Sequence[tuple[float, float]],
-    time: NDArray[np.float64],
-    course: Callable[[int], NDArray[np.float64]],
-) -> NDArray[np.float64]:
-    """Times [s] at which a course (time,), as it is for the middle sample of a window, is lowest in each window."""
+def _lowest_in(windows: Sequence[Span], time: Values, course: Callable[[int], Values]) -> Values:
+    """Times [s] at which a course (time,), as it is for the middle sample of a window, is lowest inside each window.
+
+    None where the lowest value lies at an end of the window, or a value is missing.
+    """
     times = []
-    for start, end in windows:
-        first, last = np.searchsorted(time, [start, end])
-        if last - first >= 3:
-            times.append(_lowest(time[first:last], course((first + last) // 2)[first:last]))
-    found = np.asarray(times, float)
-    return np.unique(found[np.isfinite(found)])
-
-
-def _lowest(time: NDArray[np.float64], x: NDArray[np.float64]) -> float:
-    """Time of the lowest value inside; NaN where it lies at an end, or a value is missing."""
-    if not np.isfinite(x).all():
-        return float("nan")
-    low = int(np.argmin(x))
-    if low in (0, len(x) - 1):
-        return float("nan")
-    return float(time[low] + _vertex(-x, low) * (time[1] - time[0]))
+    for window in windows:
+        first, last = np.searchsorted(time, window)
+        x = course((first + last) // 2)[first:last] if last - first >= 3 else np.empty(0)
+        low = int(np.argmin(x)) if len(x) and np.isfinite(x).all() else 0
+        if 0 < low < len(x) - 1:
+            times.append(time[first + low] + _vertex(-x, low) * (time[first + 1] - time[first]))
+    return np.unique(np.asarray(times, float))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import read_only, runs
+from gaitdisc.recording.arrays import Span, Values, read_only, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
@@ -53,10 +53,10 @@ class Contacts:
     2
     """
 
-    time: NDArray[np.float64]
+    time: Values
     side: str
     detector: str
-    foot_off: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    foot_off: Values = field(default_factory=lambda: np.empty(0))
     note: str = ""
 
     def __post_init__(self) -> None:
@@ -135,9 +135,9 @@ class Contacts:
 class Agreement:
     """Two detectors on the same walk."""
 
-    difference_s: NDArray[np.float64]  # (pair,) [s], second minus first, of each matched pair
-    missed: NDArray[np.float64]  # [s], contacts of the first that the second does not see, within the span of both
-    extra: NDArray[np.float64]  # [s], contacts of the second that the first does not see, within the span of both
+    difference_s: Values  # (pair,) [s], second minus first, of each matched pair
+    missed: Values  # [s], contacts of the first that the second does not see, within the span of both
+    extra: Values  # [s], contacts of the second that the first does not see, within the span of both
 
     @property
     def median_ms(self) -> float:
@@ -175,7 +175,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
             if not len(other) or end < other.time[0] or start > other.time[-1]:
                 continue
             if np.sum((other.time > start) & (other.time < end)) != 1:
-                wrong.append((float(start), float(end)))
+                wrong.append(Span(float(start), float(end)))
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
             what = (
@@ -187,7 +187,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
     return findings
 
 
-def _covered(times: NDArray[np.float64], other: Contacts, within_s: float) -> NDArray[np.float64]:
+def _covered(times: Values, other: Contacts, within_s: float) -> Values:
     return times[(times >= other.time[0] - within_s) & (times <= other.time[-1] + within_s)]
 
 
@@ -228,7 +228,7 @@ def rise_of(body_weight_n: float | None) -> float:
     return min(max(RISE_OF_BODY_WEIGHT * body_weight_n, LEAST_RISE_N), RISE_N)
 
 
-def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
+def loaded(force_n: Values, rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
     """First and last sample of each loading of a plate or belt.
 
     A loading begins above `rise_n` and ends below 20 N. What is loaded for less than 0.1 s is chatter and
@@ -333,23 +333,18 @@ def plate_contacts(
     return {s: Contacts(np.unique(times[s]), s, "force", np.unique(offs[s]), note) for s in ("r", "l")}
 
 
-def _contacts(
-    forces: Recording, name: str, body_weight_n: float | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
+def _contacts(forces: Recording, name: str, body_weight_n: float | None) -> tuple[Values, Values, str]:
     force, time = forces[name], forces.time
     known = force[np.isfinite(force)]
     downwards = len(known) > 0 and -known.min() > known.max()
     upward = -force if downwards else force
     rise = rise_of(body_weight_n)
     spans = loaded(upward, forces.rate_hz, rise)
-    on = np.array([_crossing(time, upward, start, rise) for start, _ in spans if start > 0])
-    off = np.array([time[end - 1] for _, end in spans if end < len(time)])
+    on = []
+    for start in spans[spans[:, 0] > 0, 0]:
+        before = upward[start - 1] if np.isfinite(upward[start - 1]) else 0.0
+        share = np.clip((rise - before) / (upward[start] - before), 0.0, 1.0)  # where the force passes `rise`
+        on.append(time[start - 1] + share * (time[start] - time[start - 1]))
+    off = time[spans[spans[:, 1] < len(time), 1] - 1]
     sign = ", negative when loaded: read as the force on the plate" if downwards else ""
-    return on, off, f"{name} above {rise:.0f} N{sign}"
-
-
-def _crossing(time: NDArray[np.float64], force: NDArray[np.float64], sample: int, rise_n: float) -> float:
-    """Time at which the force passes `rise_n` on its way to `sample`, the first above it."""
-    before = force[sample - 1] if np.isfinite(force[sample - 1]) else 0.0
-    share = (rise_n - before) / (force[sample] - before)
-    return float(time[sample - 1] + np.clip(share, 0.0, 1.0) * (time[sample] - time[sample - 1]))
+    return np.array(on, float), off, f"{name} above {rise:.0f} N{sign}"

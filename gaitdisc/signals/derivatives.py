@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Recording, Strides, Trajectory
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.units import rate_unit
 
@@ -24,7 +25,7 @@ SECOND = (-1 / 12, 16 / 12, -30 / 12, 16 / 12, -1 / 12)  # times 1 / step^2
 REACH = len(FIRST) // 2
 
 
-def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) -> NDArray[np.float64]:
+def differentiated(values: Values, rate_hz: float, order: int = 1) -> Values:
     """First or second time derivative by five-point central differences.
 
     values (time, channel) [unit]: filtered; the difference quotient passes on what noise is left
@@ -85,9 +86,7 @@ def _widened(marks: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return wide
 
 
-def savgol_filter(
-    values: NDArray[np.float64], width: int, degree: int, derivative: int = 0, step: float = 1.0
-) -> NDArray[np.float64]:
+def savgol_filter(values: Values, width: int, degree: int, derivative: int = 0, step: float = 1.0) -> Values:
     """Smoothed signal or a derivative of it, from a polynomial fitted around each sample.
 
     values (sample,): evenly sampled, finite, `width` samples or more

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
+from gaitdisc.recording.arrays import Values
 
 FEWEST_SKEW = 0.2
 PATH_S = 1.0  # about a stride: sway from step to step cancels over it
@@ -20,13 +20,13 @@ LEAST_SPEED = 0.3  # m/s of the pelvis in the laboratory: slower is a treadmill,
 class Direction:
     """Forwards and upwards in the laboratory's axes."""
 
-    forward: NDArray[np.float64]  # (3,), unit vector, the mean one where walking turns
-    up: NDArray[np.float64]  # (3,), unit vector
+    forward: Values  # (3,), unit vector, the mean one where walking turns
+    up: Values  # (3,), unit vector
     how: str  # `given`, or what they were inferred from
     # (time, 3), forward at each sample of the markers, where it follows the path of the pelvis
-    headings: NDArray[np.float64] | None = None
+    headings: Values | None = None
 
-    def ahead(self, positions: NDArray[np.float64], sample: int | None = None) -> NDArray[np.float64]:
+    def ahead(self, positions: Values, sample: int | None = None) -> Values:
         """How far forward positions lie, (time,) [m].
 
         positions (time, 3) [m]: on the time base of the markers; relative to the pelvis where walking turns
@@ -39,12 +39,12 @@ class Direction:
         return np.einsum("tx,tx->t", positions, self.headings)
 
 
-def marker_position(markers: Recording, name: str) -> NDArray[np.float64]:
+def marker_position(markers: Recording, name: str) -> Values:
     """Position of one marker, (time, 3) [m]."""
     return np.stack([markers[f"{name}.{axis}"] for axis in "xyz"], axis=1)
 
 
-def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> NDArray[np.float64]:
+def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> Values:
     """Mean position of the pelvis markers, (time, 3) [m]; NaN where one of them is missing.
 
     pelvis: names of the pelvis markers; the two or four at the iliac spines, or one at the sacrum
@@ -54,6 +54,14 @@ def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> NDArray[np.flo
             "at least one pelvis marker is required", "none is named", "Name the pelvis markers, such as RASI and LASI."
         )
     return np.mean([marker_position(markers, name) for name in pelvis], axis=0)
+
+
+def nearest_axis(vector: Values) -> Values:
+    """Axis of the laboratory (3,), of length 1, that lies nearest to a vector (3,)."""
+    axis = np.zeros(3)
+    longest = int(np.argmax(np.abs(vector)))
+    axis[longest] = np.copysign(1.0, vector[longest])
+    return axis
 
 
 def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequence[str]) -> Direction:
@@ -75,12 +83,8 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
             f"{', '.join(pelvis)}",
             "Fill the gaps in the markers, or choose another detector in [strides].",
         )
-    up_axis = int(np.argmax(np.abs(np.nanmean(np.concatenate(swings), axis=0))))
-    up = np.zeros(3)
-    up[up_axis] = 1.0
-    if np.nanmean(np.concatenate(swings)[:, up_axis]) > 0:
-        up = -up
-    level = [i for i in range(3) if i != up_axis]
+    up = nearest_axis(-np.nanmean(np.concatenate(swings), axis=0))
+    level = np.flatnonzero(up == 0).tolist()
     headings = _headings(centre, level, markers.rate_hz)
     if headings is not None:
         angle = np.unwrap(np.arctan2(headings[:, level[1]], headings[:, level[0]]))
@@ -93,7 +97,7 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     return _from_swings(swings, up, level, markers.source.file)
 
 
-def _headings(centre: NDArray[np.float64], level: list[int], rate_hz: float) -> NDArray[np.float64] | None:
+def _headings(centre: Values, level: list[int], rate_hz: float) -> Values | None:
     """Forward at each sample, (time, 3), from the path of the pelvis; None where it does not travel."""
     known = np.flatnonzero(np.isfinite(centre).all(axis=1))
     if len(known) < PATH_S * rate_hz:
@@ -113,9 +117,7 @@ def _headings(centre: NDArray[np.float64], level: list[int], rate_hz: float) -> 
     return headings
 
 
-def _from_swings(
-    swings: Sequence[NDArray[np.float64]], up: NDArray[np.float64], level: list[int], file: str
-) -> Direction:
+def _from_swings(swings: Sequence[Values], up: Values, level: list[int], file: str) -> Direction:
     centred = np.concatenate([s - np.nanmean(s, axis=0) for s in swings])[:, level]
     centred = centred[np.isfinite(centred).all(axis=1)]
     line = np.linalg.eigh(centred.T @ centred)[1][:, -1]
@@ -134,7 +136,7 @@ def _from_swings(
     return Direction(forward, up, how)
 
 
-def _shown(forward: NDArray[np.float64]) -> str:
+def _shown(forward: Values) -> str:
     return ", ".join(f"{part:+.2f}" for part in forward)
 
 

@@ -13,15 +13,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, spans_s
+from gaitdisc.recording.arrays import Values, spans_s
+from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.butterworth import highpassed, lowpassed
+from gaitdisc.signals.series import robust_sd
 
 HIGHPASS_HZ = 40.0
 ENVELOPE_HZ = 10.0
@@ -37,8 +39,8 @@ FLAT_BURST = 1.5  # burst ratio of 400 made channels of clipped Gaussian noise: 
 USUAL_RANGES_V = (0.01, 1.25, 2.5, 5.0, 10.0)  # the least at the skin, where no EMG is larger; the others amplified
 STEPS = 2**15  # either side of zero, of a 16-bit converter
 FEWEST_AT_RAIL = 3
-OVER_STANDING = (0.1, 100.0)  # who walks has more than a tenth of the EMG of standing
-OVER_WALKING = (1 / 30, 30.0)
+OVER_STANDING = Limits(0.1, 100.0, "1")  # who walks has more than a tenth of the EMG of standing
+OVER_WALKING = Limits(1 / 30, 30.0, "1")
 AGREE = 0.8  # share of the channels
 FEWEST = 3  # channels that both trials have
 STANDS, SWINGS = slice(10, 56), slice(65, 96)  # % stride
@@ -183,7 +185,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     return findings
 
 
-def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
+def burst_ratio(x: Values, rate_hz: float) -> float:
     """How far bursts rise above the rest: 99th percentile of the envelope over its median.
 
     x (time,) [V]: raw EMG of one channel
@@ -216,7 +218,7 @@ def live_channels(emg: Recording) -> tuple[str, ...]:
     return tuple(name for name in emg.names if name not in lost | empty)
 
 
-def _quantisation_step(x: NDArray[np.float64]) -> float | None:
+def _quantisation_step(x: Values) -> float | None:
     """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
     known = x[np.isfinite(x)]
     most = float(np.abs(known).max(initial=0.0)) or 1.0
@@ -241,18 +243,18 @@ def emg_sizes(emg: Recording) -> dict[str, float]:
 
 
 def other_unit_findings(
-    own: Mapping[str, float], others: Mapping[str, float], usual: tuple[float, float], trial: str, other: str
+    own: Mapping[str, float], others: Mapping[str, float], usual: Limits, trial: str, other: str
 ) -> list[Finding]:
     """Say that EMG of a trial is so much weaker or stronger than that of another that one states a wrong unit.
 
     own, others: of `emg_sizes`; the channels in common are compared
-    usual (float, float): least and largest ratio that needs no other unit
+    usual: ratios that need no other unit
     """
     common = sorted(set(own) & set(others))
     if len(common) < FEWEST:
         return []
     ratios = np.array([own[name] / others[name] for name in common])
-    weak, strong = float(np.mean(ratios < usual[0])), float(np.mean(ratios > usual[1]))
+    weak, strong = float(np.mean(ratios < usual.least)), float(np.mean(ratios > usual.most))
     if max(weak, strong) < AGREE:
         return []
     ratio = float(np.median(ratios))
@@ -277,13 +279,26 @@ def stance_over_swing(envelope: Recording, strides: Strides, name: str) -> float
     return float(np.log(stands / swings)) if min(stands, swings) > 0 else float("nan")
 
 
+class _Muscle(NamedTuple):
+    """When a muscle of a leg works, as natural logarithms of stance over swing."""
+
+    name: str
+    by_both: float  # by the steps of both feet, of which one swings while the other stands
+    by_own: float  # by those of its own foot
+
+    def words(self) -> str:
+        """Say while what it is stronger."""
+        where = "the foot is on the ground" if self.by_own > 0 else "the foot is in the air"
+        return f"{self.name} is {np.exp(abs(self.by_own)):.1f} times as strong while {where}"
+
+
 def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> list[Finding]:
     """Say that calf and tibialis anterior of a leg, or the calves of both legs, are exchanged.
 
     A muscle alone is not tested: a foot that drops or a calf that is spastic has its own course. Two that each do what
     the other should are. Each is held against the steps of both feet, of which one swings while the other stands.
     """
-    seen: dict[tuple[str, str], tuple[str, float, float]] = {}  # name, by the steps of both feet, by its own foot's
+    seen: dict[tuple[str, str], _Muscle] = {}
     for name in envelope.names:
         for kind, pattern in (("calf", _CALF), ("shin", _SHIN)):
             found = pattern.fullmatch(name)
@@ -291,21 +306,18 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
                 by_foot = {side: stance_over_swing(envelope, cut, name) for side, cut in strides.items()}
                 own, other = by_foot[found[2]], by_foot.get(other_side(found[2]), np.nan)
                 value = (own - other) / 2 if np.isfinite(other) else own
-                worst = seen.get((kind, found[2]), ("", -np.inf))[1]
-                if np.isfinite(value) and value > worst:
-                    seen[kind, found[2]] = name, value, own
-    calf_swings = {side for kind, side in seen if kind == "calf" and seen[kind, side][1] < -CLEAR}
-    shin_stands = {side for kind, side in seen if kind == "shin" and seen[kind, side][1] > CLEAR}
+                worst = seen.get((kind, found[2]))
+                if np.isfinite(value) and (worst is None or value > worst.by_both):
+                    seen[kind, found[2]] = _Muscle(name, value, own)
+    calf_swings = {side for (kind, side), one in seen.items() if kind == "calf" and one.by_both < -CLEAR}
+    shin_stands = {side for (kind, side), one in seen.items() if kind == "shin" and one.by_both > CLEAR}
     pairs = [(seen["calf", side], seen["shin", side]) for side in sorted(calf_swings & shin_stands)]
     if calf_swings == {"l", "r"} and not shin_stands:
         pairs.append((seen["calf", "l"], seen["calf", "r"]))
-    return [_finding(one, other, envelope.source.file) for one, other in pairs]
-
-
-def _finding(one: tuple[str, float, float], other: tuple[str, float, float], file: str) -> Finding:
-    def said(muscle: tuple[str, float, float]) -> str:
-        more, where = np.exp(abs(muscle[2])), "the foot is on the ground" if muscle[2] > 0 else "the foot is in the air"
-        return f"{muscle[0]} is {more:.1f} times as strong while {where}"
-
-    what = f"{one[0]} and {other[0]} seem to be exchanged, or the muscles of both legs: {said(one)}, {said(other)}"
-    return Finding("warning", "exchanged EMG", file, what, "both muscles; correct the labels", f"{one[0]}, {other[0]}")
+    findings = []
+    for one, other in pairs:
+        what = f"{one.name} and {other.name} seem to be exchanged, or the muscles of both legs"
+        what += f": {one.words()}, {other.words()}"
+        file, both = envelope.source.file, f"{one.name}, {other.name}"
+        findings.append(Finding("warning", "exchanged EMG", file, what, "both muscles; correct the labels", both))
+    return findings

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, runs, spans_s
+from gaitdisc.recording.arrays import Values, runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
+from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MAX_SPLINE_S = 0.1
@@ -17,19 +18,6 @@ MAX_TEMPLATE_S = 0.2
 BESIDE_GAP_S = 0.15  # docs/derivatives.md: how far beside a gap that stays open an acceleration is spoiled
 SUPPORT_S = 0.2  # what a spline sees on either side of a gap
 FEWEST_TEMPLATE_STRIDES = 5
-
-
-def gap_spans(recording: Recording, name: str) -> tuple[tuple[float, float], ...]:
-    """Spans without a value in one channel.
-
-    returns tuple of (float, float) [s]
-
-    >>> from gaitdisc.channel import Channel
-    >>> x = np.array([[0.0], [np.nan], [np.nan], [1.0]])
-    >>> gap_spans(Recording(np.arange(4) / 100, x, (Channel("knee_angle_r", "angle", "deg", "r"),)), "knee_angle_r")
-    ((0.01, 0.03),)
-    """
-    return spans_s(recording.time, ~np.isfinite(recording[name]))
 
 
 def filled(
@@ -56,7 +44,11 @@ def filled(
         missing = ~np.isfinite(values[:, column])
         if not missing.any() or missing.all():
             continue
-        template = None if strides is None else _template(recording, strides, column)
+        template = None
+        if strides is not None:
+            curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
+            whole = curves[np.isfinite(curves).all(axis=1)]
+            template = whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
         for start, end in runs(missing):
             length_s = (end - start) / rate
             put = None
@@ -84,11 +76,10 @@ def gap_findings(recording: Recording) -> list[Finding]:
     for channel in recording.channels:
         if channel.quantity == "marker" and not channel.name.endswith(".x"):
             continue
-        spans = gap_spans(recording, channel.name)
+        spans = spans_s(recording.time, ~np.isfinite(recording[channel.name]))
         if not spans:
             continue
-        longest = max(end - start for start, end in spans)
-        missing = sum(end - start for start, end in spans)
+        longest, missing = max(span.seconds for span in spans), sum(span.seconds for span in spans)
         fits = longest <= MAX_SPLINE_S + 1e-9  # at an end too: a recording that begins so much later lacks nothing
         gaps = counted(len(spans), "gap")
         what = f"{gaps}, {missing:.3f} s of {recording.duration_s:.2f} s, the longest {longest:.3f} s"
@@ -101,7 +92,7 @@ def gap_findings(recording: Recording) -> list[Finding]:
     return findings
 
 
-def _spline(x: NDArray[np.float64], start: int, end: int, support: int) -> NDArray[np.float64] | None:
+def _spline(x: Values, start: int, end: int, support: int) -> Values | None:
     around = np.r_[max(0, start - support) : start, end : min(len(x), end + support)]
     around = around[np.isfinite(x[around])]
     if np.sum(around < start) < 2 or np.sum(around >= end) < 2:
@@ -109,15 +100,7 @@ def _spline(x: NDArray[np.float64], start: int, end: int, support: int) -> NDArr
     return CubicSpline(around, x[around])(np.arange(start, end))
 
 
-def _template(recording: Recording, strides: Strides, column: int) -> NDArray[np.float64] | None:
-    curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
-    whole = curves[np.isfinite(curves).all(axis=1)]
-    return whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
-
-
-def _on_template(
-    x: NDArray[np.float64], start: int, end: int, phi: NDArray[np.float64], template: NDArray[np.float64]
-) -> NDArray[np.float64] | None:
+def _on_template(x: Values, start: int, end: int, phi: Values, template: Values) -> Values | None:
     """Template plus the line through the residuals of three samples at either end."""
     before, after = np.arange(max(0, start - 3), start), np.arange(end, min(len(x), end + 3))
     rows = np.r_[before, start:end, after]

@@ -12,9 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Values, runs
 
 ORDER, OTHER = 2, 4  # of one pass: the filter that is sought, and a steeper one
 WINDOW = 512  # samples
@@ -37,8 +36,8 @@ CLEARLY = 60.0  # by which the log likelihood must be better with the filter tha
 class Spectrum:
     """Power of a channel over frequency."""
 
-    frequency: NDArray[np.float64]  # (line,), as a share of the rate
-    power: NDArray[np.float64]  # (line,), [the channel's unit squared]
+    frequency: Values  # (line,), as a share of the rate
+    power: Values  # (line,), [the channel's unit squared]
     windows: int
 
     def lines(self, kept: slice) -> Spectrum:
@@ -58,7 +57,7 @@ class RecordedFilter:
 
 
 def recorded_filter(
-    trials: Sequence[NDArray[np.float64]], rate_hz: float, like: Sequence[NDArray[np.float64]] | None = None
+    trials: Sequence[Values], rate_hz: float, like: Sequence[Values] | None = None
 ) -> RecordedFilter | None:
     """Find the zero-lag low-pass that a channel went through.
 
@@ -89,12 +88,15 @@ def recorded_filter(
     likelihood, cutoff = found[0] * spectrum.windows, found[1]
     gained = likelihood - fits[0].best(())[0] * spectrum.windows
     steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
-    if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff) or steeper:
+    # the power above the cut-off goes on falling, instead of ending on the noise of a sensor
+    near = above.power[(above.frequency > cutoff) & (above.frequency < 1.5 * cutoff)]
+    falls_far = bool(near.size) and np.median(near) > FALLEN * np.median(above.power[-12:])
+    if gained < CLEARLY or cutoff > HIGHEST or not falls_far or steeper:
         return None
     return RecordedFilter(cutoff * rate_hz, gained, likelihood, found[2])
 
 
-def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
+def spectrum_of(trials: Sequence[Values]) -> Spectrum | None:
     """Power spectrum of a channel, averaged over windows that overlap by half; None where all trials are too short.
 
     trials each (sample,): NaN where nothing was measured: a window takes the longest stretch without any
@@ -115,7 +117,7 @@ def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
     return Spectrum(np.arange(length // 2 + 1) / length, np.mean(powers, axis=0), len(powers))
 
 
-def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) -> bool:
+def _may_be_filtered(spectrum: Spectrum, trials: Sequence[Values]) -> bool:
     """Whether the power falls up to half the rate, or ends on the floor of the digits that were written."""
     quarter = float(np.median(spectrum.power[(spectrum.frequency > 0.2) & (spectrum.frequency < 0.28)]))
     end = float(np.median(spectrum.power[(spectrum.frequency > 0.42) & (spectrum.frequency < 0.48)]))
@@ -127,19 +129,13 @@ def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) 
     return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])
 
 
-def _falls_far(spectrum: Spectrum, cutoff: float) -> bool:
-    """Whether the power above the cut-off goes on falling, instead of ending on the noise of a sensor."""
-    near = spectrum.power[(spectrum.frequency > cutoff) & (spectrum.frequency < 1.5 * cutoff)]
-    return bool(near.size) and float(np.median(near)) > FALLEN * float(np.median(spectrum.power[-12:]))
-
-
 class _Fit:
     """Whittle's likelihood of signal and white noise behind a filter, above a floor.
 
     The numbers: logarithms of the noise, of the signal at the first line, of its decay, of the floor, of the cut-off.
     """
 
-    def __init__(self, spectrum: Spectrum, shape: NDArray[np.float64], order: int = ORDER) -> None:
+    def __init__(self, spectrum: Spectrum, shape: Values, order: int = ORDER) -> None:
         self.frequency, self.shape, self.order = spectrum.frequency, shape, order
         self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
         self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
@@ -158,7 +154,7 @@ class _Fit:
         over = signal - noise - np.exp(decay) * (at - self.frequency[0]) + np.log(max(shape, 1e-300))
         return -float(found.fun), at, float(np.exp(np.clip(over, -99, 99)))
 
-    def _begun(self, cutoff: tuple[float, ...]) -> NDArray[np.float64]:
+    def _begun(self, cutoff: tuple[float, ...]) -> Values:
         low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)
         level = np.log(np.median(self.power[low] if low.any() else self.power))
         floor = np.log(np.median(self.power[-12:]))
@@ -166,7 +162,7 @@ class _Fit:
         low, high = np.array(BOUNDS[: len(begun)]).T
         return np.clip(begun, low, high)
 
-    def _misfit(self, values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    def _misfit(self, values: Values) -> tuple[float, Values]:
         """Minus the log likelihood and its slopes."""
         passed, steeper = self._passed(values[4:])
         decay = np.exp(values[2]) * self.beyond
@@ -178,7 +174,7 @@ class _Fit:
         slopes += [] if steeper is None else [(noise + signal) * steeper]
         return float(np.sum(np.log(expected) + self.power / expected)), np.array([over @ one for one in slopes])
 
-    def _passed(self, cutoff: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    def _passed(self, cutoff: Values) -> tuple[Values, Values | None]:
         """What the filter passes of the power, and by which share that grows with the logarithm of the cut-off."""
         if not len(cutoff):
             return np.ones(len(self.power)), None

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import other_side
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.signals.direction import marker_position
+from gaitdisc.recording.arrays import Values
+from gaitdisc.signals.direction import marker_position, nearest_axis
 
 SWING = (52.0, 92.0)  # % stride between which the knee's peak lies, in walking and running
 FEWEST_DEG = 5.0
@@ -97,10 +97,7 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     lines = lines[np.isfinite(lines).all(axis=1)]
     if not len(lines):
         return []
-    rise = np.median(lines, axis=0)
-    up = np.zeros(3)
-    up[np.argmax(np.abs(rise))] = np.sign(rise[np.argmax(np.abs(rise))])
-    right = np.cross(ahead, up)
+    right = np.cross(ahead, nearest_axis(np.median(lines, axis=0)))
     right /= np.maximum(np.linalg.norm(right, axis=1, keepdims=True), 1e-9)
     across = {pelvis[:2]: _aside(right_front - left_front, right)}
     for pair in pairs:
@@ -178,7 +175,7 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
     return [Finding("warning", "sides", file, what, "every side; exchange the forces or the angles")]
 
 
-def _aside(apart: NDArray[np.float64], right: NDArray[np.float64]) -> float:
+def _aside(apart: Values, right: Values) -> float:
     """How far to the right one marker is of the other, over the trial [m]."""
     metres = np.einsum("tx,tx->t", apart, right)
     metres = metres[np.isfinite(metres)]

@@ -16,7 +16,8 @@ from scipy.signal import lfilter
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, runs
+from gaitdisc.recording.arrays import Span, Values, runs
+from gaitdisc.signals.series import robust_sd
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8
@@ -33,7 +34,7 @@ LEAST_SD = 1.0
 CHANGE_SD = 2.5  # what slow drift alone does not reach: 2.0 in 34 walks of the cohort's calibration people
 
 
-def stride_distances(recording: Recording, strides: Strides) -> NDArray[np.float64]:
+def stride_distances(recording: Recording, strides: Strides) -> Values:
     """Distance of every stride from the person's median curve, (stride, channel) [channel's unit].
 
     The root mean square over the stride; the median curve is not moved by the strides that are looked for.
@@ -90,7 +91,7 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
             f"{distance[worst, column]:.3g} {channel.unit} from the median curve, {times:.1f} times the usual distance"
         )
         spoils = "means and models that include these strides"
-        spans = tuple((float(strides.start[k]), float(strides.end[k])) for k in rows)
+        spans = tuple(Span(float(strides.start[k]), float(strides.end[k])) for k in rows)
         file = recording.source.file
         findings.append(Finding("warning", "outlying stride", file, what, spoils, channel=channel.name, spans=spans))
     return findings
@@ -176,12 +177,14 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     null = _simulated(scores.shape, dependence[0], seed)
     p = (1 + int(np.sum(null >= statistic[0]))) / (1 + len(null))
     after = np.arange(len(scores)) >= split[0]
+    moved = scores[after].mean(axis=0) - scores[~after].mean(axis=0)
+    residual = np.where(after[:, None], scores - scores[after].mean(axis=0), scores - scores[~after].mean(axis=0))
     names = [name for name, moves in zip(recording.names, moving, strict=True) if moves]
     shift = curves[after].mean(axis=0) - curves[~after].mean(axis=0)
     return LateChange(
         float(start[split[0]]),
         float(p),
-        _size(scores, after),
+        float(np.sqrt(np.sum((moved / residual.std(axis=0)) ** 2))),
         dict(zip(names, np.sqrt(np.mean(shift**2, axis=0)).tolist(), strict=True)),
         float(dependence.max()),
     )
@@ -205,7 +208,8 @@ def late_change_findings(recording: Recording, strides: Strides) -> list[Finding
     largest = sorted(change.shifts, key=lambda name: -change.shifts[name])[:3]
     units = {channel.name: channel.unit for channel in recording.channels}
     moved = ", ".join(f"{name} by {change.shifts[name]:.2g} {units[name]}" for name in largest)
-    kind, spans = "late change" if change.size_sd >= CHANGE_SD else "drift", ((change.time, float(strides.end[-1])),)
+    kind = "late change" if change.size_sd >= CHANGE_SD else "drift"
+    spans = (Span(change.time, float(strides.end[-1])),)
     what = (
         f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} stride-to-stride "
         f"SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"
@@ -214,7 +218,7 @@ def late_change_findings(recording: Recording, strides: Strides) -> list[Finding
     return [Finding("warning", kind, file, what, spoils, spans=spans)]
 
 
-def _components(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+def _components(curves: Values) -> Values:
     """Scores (stride, component) of the residual curves, each channel scaled by its stride-to-stride sd."""
     residual = curves - curves.mean(axis=0)
     residual /= np.sqrt(np.mean(residual**2, axis=(0, 1)))
@@ -225,7 +229,7 @@ def _components(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     return u[:, :count] * s[:count]
 
 
-def _largest(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64]]:
+def _largest(scores: Values) -> tuple[Values, NDArray[np.intp], Values]:
     """Largest statistic, its split, and the lag-one correlations, of series (series, stride, component)."""
     count, n, _ = scores.shape
     centred = scores - scores.mean(axis=1, keepdims=True)
@@ -252,7 +256,7 @@ def _largest(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
     return statistic[np.arange(count), top], splits[top], dependence
 
 
-def _simulated(shape: tuple[int, ...], dependence: NDArray[np.float64], seed: int) -> NDArray[np.float64]:
+def _simulated(shape: tuple[int, ...], dependence: Values, seed: int) -> Values:
     """Largest statistics of stationary autoregressive series of the same length and dependence."""
     rng = np.random.default_rng(seed)
     n, k = shape
@@ -266,9 +270,3 @@ def _simulated(shape: tuple[int, ...], dependence: NDArray[np.float64], seed: in
         axis=2,
     )
     return _largest(series)[0]
-
-
-def _size(scores: NDArray[np.float64], after: NDArray[np.bool_]) -> float:
-    shift = scores[after].mean(axis=0) - scores[~after].mean(axis=0)
-    residual = np.where(after[:, None], scores - scores[after].mean(axis=0), scores - scores[~after].mean(axis=0))
-    return float(np.sqrt(np.sum((shift / residual.std(axis=0)) ** 2)))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.arrays import robust_sd, runs
+from gaitdisc.recording.arrays import Values, runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MIN_S, MAX_S = 0.4, 2.5  # of a stride in walking and running
@@ -194,7 +194,7 @@ def verify_walking(
     return found
 
 
-def stride_period(x: NDArray[np.float64], rate_hz: float) -> tuple[float, float]:
+def stride_period(x: Values, rate_hz: float) -> tuple[float, float]:
     """Period at which an angle repeats, and how well.
 
     The autocorrelation is that of the two overlapping parts (each lag has its own means and variances), so a perfectly
@@ -215,7 +215,13 @@ def stride_period(x: NDArray[np.float64], rate_hz: float) -> tuple[float, float]
     if last <= first + 1 or np.isfinite(x).sum() < first:
         return float("nan"), 0.0
     lags = np.arange(first - 1, last + 2)
-    r = np.array([_correlation(x[:-lag], x[lag:]) for lag in lags])
+    r = np.zeros(len(lags))
+    for place, lag in enumerate(lags):
+        both = np.isfinite(x[:-lag]) & np.isfinite(x[lag:])
+        if np.count_nonzero(both) >= 10:
+            a, b = (part - part.mean() for part in (x[:-lag][both], x[lag:][both]))
+            size = float(np.sqrt((a @ a) * (b @ b)))
+            r[place] = float(a @ b) / size if size > 0 else 0.0
     inner = r[1:-1]
     peaks = np.flatnonzero((inner > r[:-2]) & (inner >= r[2:]) & (inner > 0)) + 1
     if not len(peaks):
@@ -224,12 +230,3 @@ def stride_period(x: NDArray[np.float64], rate_hz: float) -> tuple[float, float]
     left, centre, right = r[first_high - 1 : first_high + 2]
     shift = 0.5 * (left - right) / (left - 2 * centre + right)
     return float((lags[first_high] + shift) / rate_hz), float(centre)
-
-
-def _correlation(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-    both = np.isfinite(a) & np.isfinite(b)
-    if (count := np.count_nonzero(both)) < 10:
-        return 0.0
-    a, b = (part - part.mean() for part in ((a, b) if count == len(both) else (a[both], b[both])))
-    size = float(np.sqrt((a @ a) * (b @ b)))
-    return float(a @ b) / size if size > 0 else 0.0

@@ -81,9 +81,9 @@ def test_powers_do_the_work_that_changes_the_energy():
     """Power of all joints and of the pelvis and the ground on the leg is the rate of the leg's energy."""
     poses, paths, ground, up = walker()
     found = legs(poses, paths, PERSON, RAW)["r"]
-    chain = [(found.moving[s], found.bodies[s]) for s in ("foot", "shank", "thigh")]
     energy = 0.0
-    for moving, body in chain:
+    for segment, body in found.bodies.items():
+        moving = found.moving[segment]
         centre = moving.pose.to_laboratory(body.centre)
         velocity = differentiated(centre, 100.0)
         tensor = moving.pose.rotation @ body.tensor @ np.swapaxes(moving.pose.rotation, 1, 2)
@@ -91,7 +91,7 @@ def test_powers_do_the_work_that_changes_the_energy():
         energy = energy + body.mass_kg * (0.5 * (velocity**2).sum(1) + GRAVITY * centre @ up)
         energy = energy + 0.5 * np.einsum("fi,fij,fj->f", spin, tensor, spin)
     gained = differentiated(energy[:, None], 100.0)[:, 0]
-    carried = joint_wrenches(chain, ground, up)
+    carried = joint_wrenches(list(found.needed(up).values()), ground)
     recording = moments_of((poses, paths, ground, up))
     joints = 70.0 * sum(recording[f"{joint}_power_r"] for joint in ("ankle", "knee", "hip"))
     # at the hip the trunk also moves the leg: force times hip velocity and moment times the pelvis' turning

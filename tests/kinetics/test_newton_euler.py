@@ -23,10 +23,7 @@ from gaitdisc.kinetics.platform import Wrench
 
 UP = np.array([0.0, 1.0, 0.0])
 TIME = np.arange(300) / 100
-
-
-def no_ground(frames):
-    return Wrench(np.zeros((frames, 3)), np.zeros((frames, 3)))
+NO_GROUND = Wrench(np.zeros((len(TIME), 3)), np.zeros((len(TIME), 3)))
 
 
 @pytest.mark.parametrize("seed", [None, 3, 8])
@@ -37,7 +34,8 @@ def test_a_double_pendulum_has_the_moments_of_lagrange_in_every_laboratory(seed)
         shift = np.array([3.0, -1.0, 2.0])
     (upper, lower), expected = links.double_pendulum(TIME, turn, shift)
     near, far = links.bodies()
-    at_lower, at_upper = joint_wrenches([(lower, far), (upper, near)], no_ground(len(TIME)), turn @ UP)
+    up = turn @ UP
+    at_lower, at_upper = joint_wrenches([needed_wrench(lower, far, up), needed_wrench(upper, near, up)], NO_GROUND)
     found = [w.about(m.pose.origin) @ (turn @ links.Z) for w, m in ((at_upper, upper), (at_lower, lower))]
     assert np.abs(np.stack(found, 1) - expected).max() < 1e-9
     assert np.abs(expected).max() > 5
@@ -48,7 +46,7 @@ def test_a_pendulum_from_its_poses_alone_has_its_moment_to_1_percent():
     body = links.bodies()[0]
     pose = Pose(np.tile([0.4, 1.0, -0.2], (len(TIME), 1)), links.rotations(angle))
     moving = segment_motion(smoothed_pose(pose, TIME, 6.0), 100.0)
-    moment = joint_wrenches([(moving, body)], no_ground(len(TIME)), UP)[0].about(pose.origin) @ links.Z
+    moment = joint_wrenches([needed_wrench(moving, body, UP)], NO_GROUND)[0].about(pose.origin) @ links.Z
     inertia = links.INERTIAS[0] + links.MASSES[0] * links.CENTRES[0] ** 2
     expected = -inertia * (2 * np.pi * 1.2) ** 2 * angle + links.MASSES[0] * GRAVITY * links.CENTRES[0] * np.sin(angle)
     inner = slice(50, -50)  # the filter's edges
@@ -71,9 +69,9 @@ def test_a_standing_leg_has_the_moments_of_statics():
     at = {name: SegmentMotion(Pose(np.array([p]), np.eye(3)[None]), still, still, still) for name, p in places.items()}
     masses = {"foot": 0.9, "shank": 3.5, "thigh": 9.0}
     centres = {"foot": [0.06, -0.04, 0.0], "shank": [-0.01, -0.18, 0.0], "thigh": [-0.02, -0.17, 0.01]}
-    chain = [(at[n], RigidBody(masses[n], np.array(centres[n]), np.eye(3))) for n in ("foot", "shank", "thigh")]
+    bodies = {name: RigidBody(masses[name], np.array(centre), np.eye(3)) for name, centre in centres.items()}
     force, point = np.array([12.0, 380.0, -9.0]), np.array([0.07, 0.0, 0.11])
-    carried = joint_wrenches(chain, Wrench.at(point, force[None]), UP)
+    carried = joint_wrenches([needed_wrench(at[n], bodies[n], UP) for n in places], Wrench.at(point, force[None]))
     beyond = []
     for wrench, name in zip(carried, ("foot", "shank", "thigh"), strict=True):
         beyond.append(name)

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from plug_in_gait_bones import FEET
+from plug_in_gait_bones import feet as named_feet
 from texts import says
 
 from gaitdisc.errors import ShapeError
@@ -148,9 +148,7 @@ REAL = {
 @pytest.mark.parametrize("walk", REAL)
 def test_steps_of_real_walks(gait_data, walk):
     trial = read_c3d(gait_data / "young_straight_and_turn" / f"{walk}.c3d")
-    markers = trial.stream("markers")
-    feet = foot_paths(markers, FEET)
-    steps: list[PlateStep] = plate_steps(platforms(trial), feet)
+    steps: list[PlateStep] = plate_steps(platforms(trial), named_feet(trial))
     said = [(one.side, set(one.reason.split(", "))) for one in steps]
     assert said == [(side, set(reason.split(", "))) for side, reason in REAL[walk]]
     for one in steps:
@@ -161,10 +159,10 @@ def test_steps_of_real_walks(gait_data, walk):
 def test_sides_exchanged_in_an_opensim_file_are_found_out(gait_data):
     walk = gait_data.parent / "opensim_gait10dof" / "ExperimentalData"
     trial = read_trial([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
-    names = {"r": ("R.Heel", "R.Toe.Tip"), "l": ("L.Heel", "L.Toe.Tip")}
-    feet = foot_paths(trial.stream("markers"), names)
+    heels, toes = {"r": "R.Heel", "l": "L.Heel"}, {"r": "R.Toe.Tip", "l": "L.Toe.Tip"}
+    feet = foot_paths(trial.stream("markers"), heels, toes)
     whole = [one for one in plate_steps(platforms(trial), feet) if one.end - one.start > 0.3]
     assert len(whole) >= 4 and all(one.clean for one in whole)
-    exchanged = foot_paths(trial.stream("markers"), {"r": names["l"], "l": names["r"]})
+    exchanged = {"r": feet["l"], "l": feet["r"]}
     found = [one for one in plate_steps(platforms(trial), exchanged) if one.end - one.start > 0.3]
     assert all("follows the other foot" in one.reason for one in found)

@@ -15,7 +15,9 @@ from gaitdisc.kinetics.joint_moments import foot_loads, swings
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform, Wrench, platforms
 from gaitdisc.recording import Recording, Surface, Trial
+from gaitdisc.recording.arrays import Span
 from gaitdisc.recording.trial import Event
+from gaitdisc.signals.contacts import CONTACT, OFF
 
 TIME = np.arange(2000) / 1000
 CORNERS = np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]])
@@ -51,7 +53,7 @@ def test_a_plate_gives_force_point_and_free_moment_in_the_laboratory():
 def test_what_an_empty_plate_shows_is_no_force_on_a_foot():
     load = stance() + 8.0  # an offset below the limit
     (plate,) = platforms(plate_trial(load))
-    spans = [(TIME[a], TIME[b - 1]) for a, b in plate.loadings()]
+    spans = [Span(TIME[a], TIME[b - 1]) for a, b in plate.loadings()]
     raw, smooth = plate.smoothed(np.inf, spans), plate.smoothed(20.0, spans)
     assert raw.force[TIME < 0.4] == pytest.approx(0)
     assert raw.force[800] == pytest.approx(plate.wrench.force[800])
@@ -61,7 +63,7 @@ def test_what_an_empty_plate_shows_is_no_force_on_a_foot():
 def test_samples_a_second_and_the_last_of_a_span_are_counted():
     (plate,) = platforms(plate_trial(stance()))
     assert plate.rate_hz == pytest.approx(1000.0, rel=1e-9)
-    cut = plate.smoothed(np.inf, [(TIME[600], TIME[800])])
+    cut = plate.smoothed(np.inf, [Span(TIME[600], TIME[800])])
     assert np.flatnonzero(cut.force[:, 2])[[0, -1]].tolist() == [600, 800]
 
 
@@ -224,14 +226,14 @@ def test_the_swing_between_two_steps_is_known_and_a_missed_stance_is_not():
 def test_a_step_left_out_is_unknown_though_events_call_it_swing():
     found = [plate("plate_1", (0.5, 1.0))]
     two = [PlateStep("plate_1", "", 0.5, 1.0, "both feet are on it")]
-    loads = foot_loads(found, two, FRAMES, np.inf, {"r": [(0.3, 0.7)]})
+    loads = foot_loads(found, two, FRAMES, np.inf, {"r": [Span(0.3, 0.7)]})
     assert [at(loads["r"].known, t) for t in (0.4, 0.6)] == [True, False]
     assert not loads["r"].wrench.force.any()
 
 
 def test_frames_between_foot_off_and_the_end_of_the_force_are_bridged():
     found, steps = [plate("plate_1", (0.5, 1.0))], [PlateStep("plate_1", "r", 0.5, 1.0)]
-    known = foot_loads(found, steps, FRAMES, np.inf, {"r": [(1.04, 1.4)]})["r"].known
+    known = foot_loads(found, steps, FRAMES, np.inf, {"r": [Span(1.04, 1.4)]})["r"].known
     assert known[50:141].all() and not known[45]
 
 
@@ -251,12 +253,7 @@ def test_a_step_that_names_the_wrong_foot_is_unknown():
 
 
 def test_swings_are_from_foot_off_to_the_next_contact():
-    events = [
-        ("initial contact", "r", 0.1),
-        ("foot off", "l", 0.2),
-        ("initial contact", "l", 0.6),
-        ("foot off", "r", 0.7),
-    ]
+    events = [(CONTACT, "r", 0.1), (OFF, "l", 0.2), (CONTACT, "l", 0.6), (OFF, "r", 0.7)]
     trial = Trial("walk", {}, tuple(Event(*event) for event in events))
     assert swings(trial, {}) == {"r": [], "l": [(0.2, 0.6)]}
 

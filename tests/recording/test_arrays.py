@@ -1,4 +1,4 @@
-"""Rows that stand together, angles that wrap around, how long a signal resembles itself."""
+"""Rows that stand together, spans of time, angles that wrap around."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides, Trial
-from gaitdisc.recording.arrays import autocorrelation_time, mean_where_known, read_only, runs
+from gaitdisc.recording.arrays import Span, mean_where_known, read_only, runs
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped, wrapped
 
 
@@ -35,6 +35,11 @@ def test_runs_give_the_mask_back(mask):
         assert end > start
         back[start:end] = True
     assert np.array_equal(back, mask)
+
+
+def test_a_span_holds_its_ends_and_shares_what_lies_in_both():
+    assert Span(0.5, 1.0).holds(np.array([0.4, 0.5, 1.0, 1.1])).tolist() == [False, True, True, False]
+    assert Span(0.5, 1.0).shared(Span(0.75, 2.0)).seconds == 0.25
 
 
 HEADING = Channel("pelvis_rotation", "angle", "deg")
@@ -108,23 +113,3 @@ def test_on_one_base_reads_the_short_way():
 def test_gaps_stay_out_of_the_mean_of_directions():
     curves = np.array([[170.0, np.nan], [np.nan, np.nan], [-190.0, -185.0]])
     assert in_one_turn(curves, 360.0)[[0, 2], 0].tolist() == [170, 170]
-
-
-def test_of_an_autoregressive_series_it_is_the_sum_of_a_geometric_one():
-    rng, kept = np.random.default_rng(0), 0.8
-    series = np.zeros(200_000)
-    for k, push in enumerate(rng.standard_normal(len(series) - 1)):
-        series[k + 1] = kept * series[k] + push
-    assert autocorrelation_time(series[:, None], 0.01)[0] == pytest.approx((1 + kept) / (1 - kept), rel=0.05)
-
-
-def test_every_column_has_its_own_and_one_that_stands_still_none():
-    rng = np.random.default_rng(1)
-    noise = rng.standard_normal(50_000)
-    found = autocorrelation_time(np.column_stack([noise, np.repeat(noise[::10], 10), np.zeros(50_000)]), 0.05)
-    assert found == pytest.approx([1.0, 10.0, 1.0], rel=0.05)
-
-
-def test_a_shift_and_a_scale_change_nothing():
-    values = np.random.default_rng(2).standard_normal((500, 2)).cumsum(axis=0)
-    assert autocorrelation_time(3 - 7 * values) == pytest.approx(autocorrelation_time(values))

@@ -9,6 +9,7 @@ from texts import says
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Recording, Source, Strides
+from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.emg import (
     OVER_STANDING,
     OVER_WALKING,
@@ -230,7 +231,7 @@ def quartet(factor: float, seed: int = 0) -> Recording:
     return Recording(np.arange(2000) / 1000, values, tuple(Channel(name, "emg", "V", "r") for name in MUSCLES))
 
 
-def said(walk: float, other: float, usual: tuple[float, float]) -> list[str]:
+def said(walk: float, other: float, usual: Limits) -> list[str]:
     found = other_unit_findings(emg_sizes(quartet(walk)), emg_sizes(quartet(other, 1)), usual, "walk", "other")
     return [finding.what for finding in found]
 
