@@ -309,6 +309,6 @@ def test_pages_of_a_clinic_hold_none_of_them(clinic, said):
         assert planted(said(*words, ends=0).replace(str(clinic), ""), *OF_A_CLINIC) == [], words
     pages = {path.name for path in (run / "report").rglob("*") if path.suffix in (".html", ".pdf")}
     assert {"index.html", "report.html", "P01_before.html", "P01_before.pdf", "P01_before_after.html"} <= pages
-    assert b"controls of the laboratory" in (run / "report" / "people" / "P01_before.html").read_bytes()
+    assert b"1 control of the laboratory" in (run / "report" / "people" / "P01_before.html").read_bytes()
     assert b"What stands out" in printed((run / "report" / "people" / "P01_before.pdf").read_bytes())
     assert found_in(clinic) == {}

@@ -204,7 +204,7 @@ def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     if len(walk.times) < FEWEST:
         raise SamplingError(
-            f"residual moments can be named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s of data at a low-pass of "
+            f"naming residual moments needs {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
             f"{walk.cutoff_hz:g} Hz",
             f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
             "Record longer.",

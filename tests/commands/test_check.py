@@ -54,7 +54,7 @@ def test_the_mapping_of_a_walk_needs_its_ground_forces_and_a_model_of_opensim(tm
     loads = ("--external-loads", "grf.xml")
     for out, words, said in (
         ("walk.toml", (model, "--forces", "forces.sto"), "Add --external-loads grf.xml"),
-        ("walk.toml", (tmp_path / "leg.xml", *loads), "leg.xml is none"),
+        ("walk.toml", (tmp_path / "leg.xml", *loads), "found leg.xml"),
         ("walk", (model, *loads), "Call it leg.toml"),
     ):
         assert said in called("new", tmp_path / out, "--from", *words, ends=REFUSED).stderr
