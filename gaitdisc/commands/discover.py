@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gaitdisc.commands.options import Quiet
+from gaitdisc.commands.run_report import stoppable
 from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.own_files import claim_folder
 
 if TYPE_CHECKING:
+    from gaitdisc.discovery.catalogue import Request
     from gaitdisc.discovery.result import Discovery
     from gaitdisc.simulation.simulation import Simulation
 
 EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
+KEPT = "kept"  # folder of what is fitted, until the answer stands
 
 
 def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
@@ -55,64 +59,66 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. For a study, add "
             "--participant.",
         )
-    if measured is not None:
-        claim_folder(out, *FILES)
+    whose, _, joint = participant.partition(":")
+    claim_folder(out, *(("people.csv",) if whose == EVERYONE and measured is None else FILES), mended=(KEPT,))
     began = time.perf_counter()
 
-    def progress(step: str) -> None:
+    def say(step: str) -> None:
         if not quiet:
             LOG.info("%6.1f s  %s", time.perf_counter() - began, step)
 
-    from gaitdisc.discovery.catalogue import Request
-    from gaitdisc.discovery.discover_files import discover_files, discover_study
-    from gaitdisc.engines.mapping import names_engine
-    from gaitdisc.simulation.writing import write_simulation
-
-    given = tuple(one.strip() for one in effects.split(",") if one.strip())
-    request = Request.read(catalogue, given, alpha, progress)
-    if measured is not None and names_engine(simulation):
-        from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
-        from gaitdisc.engines.tracked_mapping import read_tracked
-
-        walk = read_tracked(simulation)
-        if walk is not None:
-            from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
-
-            answered = discover_tracked(walk, measured, request)
-            said = (*answered.written.notes, *answered.said)
-            _write(answered.found, out, draw, progress, lambda: write_tracked(answered, out), said)
-            return
-        answer = discover_model_file(simulation, measured, request)
-        said = (*answer.written.notes, answer.runs.said)
-        _write(answer.found, out, draw, progress, lambda: write_answer(answer, out), said)
-        return
-
     def with_model(found: Discovery, augmented: Simulation, folder: Path) -> None:
-        _write(found, folder, draw, progress, lambda: [write_simulation(augmented, folder / "augmented.toml").name])
-
-    if measured is not None:
-        with_model(*discover_files(simulation, measured, request), out)
-        return
-    whose, _, joint = participant.partition(":")
+        _write(found, folder, draw, say, lambda _: [write_simulation(augmented, folder / "augmented.toml").name])
 
     def discovered(person: str, folder: Path) -> Discovery:
-        claim_folder(folder, *FILES)
         found, augmented = discover_study(simulation, person, request, joint or ANKLE)
         with_model(found, augmented, folder)
         return found
 
-    if whose == EVERYONE:
-        _everyone(simulation, out, discovered)
-    else:
-        discovered(whose, out)
+    with stoppable():
+        from gaitdisc.discovery.catalogue import Request
+        from gaitdisc.discovery.discover_files import discover_files, discover_study
+        from gaitdisc.discovery.kept_work import kept_work
+        from gaitdisc.engines.mapping import names_engine
+        from gaitdisc.simulation.writing import write_simulation
+
+        given = tuple(one.strip() for one in effects.split(",") if one.strip())
+        with kept_work(out, say) as work:
+            request = Request.read(catalogue, given, alpha, work.progress)
+            if measured is None and whose == EVERYONE:
+                _everyone(simulation, out, discovered)
+            elif measured is None:
+                discovered(whose, out)
+            elif names_engine(simulation):
+                _of_engine(simulation, measured, request, partial(_write, out=out, draw=draw, say=say))
+            else:
+                with_model(*discover_files(simulation, measured, request), out)
+
+
+def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., None]) -> None:
+    """Search a model of an engine, or a walk that is tracked in one."""
+    from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
+    from gaitdisc.engines.tracked_mapping import read_tracked
+
+    walk = read_tracked(model)
+    if walk is None:
+        answer = discover_model_file(model, measured, request)
+        said = (*answer.written.notes, answer.runs.said)
+        write(answer.found, models=partial(write_answer, answer), notes=said)
+        return
+    from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
+
+    answered = discover_tracked(walk, measured, request)
+    said = (*answered.written.notes, *answered.said)
+    write(answered.found, models=partial(write_tracked, answered), notes=said)
 
 
 def _write(
     found: Discovery,
     out: Path,
     draw: bool,
-    progress: Callable[[str], None],
-    models: Callable[[], list[str]],
+    say: Callable[[str], None],
+    models: Callable[[Path], list[str]],
     notes: Sequence[str] = (),
 ) -> None:
     """Write what was found together with the augmented model, and say it."""
@@ -120,11 +126,11 @@ def _write(
     from gaitdisc.whole_file import written_together
 
     with written_together():
-        place = save_discovery(found, out, models())
+        place = save_discovery(found, out, models(out))
     if draw:
         from gaitdisc.discovery.page import write_discovery_report
 
-        progress("drawing the report")
+        say("drawing the report")
         place = write_discovery_report(found, out)
     found = found.public
     typer.echo("\n".join([found.sentence, *notes]))
@@ -141,11 +147,11 @@ def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discover
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.spreadsheet import write_csv
 
-    claim_folder(out, "people.csv")
     found: dict[str, Discovery] = {}
     for person in load_study(study).participants:
         typer.echo(f"{person.id}:")
         try:
+            claim_folder(out / person.id, *FILES)
             found[person.id] = discovered(person.id, out / person.id)
         except GaitdiscError as error:
             LOG.info(f"refused: {error}")

@@ -13,10 +13,12 @@ import numpy as np
 
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover import discover, refuse_blow_up
+from gaitdisc.discovery.kept_work import rest_on
 from gaitdisc.discovery.result import DEVICE, SIMULATION, Discovery, GapSize
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.ingest.raw_file import file_sha256
+from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
 from gaitdisc.saved.provenance import made_now
 from gaitdisc.simulation.even_time import MILLISECONDS
@@ -88,6 +90,8 @@ def discovered(
 
     files: files that were read, and what each is called in the result
     """
+    rest_on(hash_content((model, data, data.drive), repr((request.shapes, request.effects, request.alpha))))
+    request.progress("checking that the simulation stays finite (at its first use, gaitdisc is compiled: about 20 s)")
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:

@@ -13,6 +13,7 @@ from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
     estimate_text,
+    named_at,
     outside_text,
     shown_unit,
     spoken,
@@ -125,7 +126,7 @@ def _unproven(discovery: Discovery) -> str:
     if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
         return ""
     first = discovery.rivals[0]
-    return f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
+    return f" If no effect is named, p is that of {named_at(first)}."
 
 
 def where_table(discovery: Discovery) -> Table:

@@ -125,9 +125,12 @@ def delays(tree: Tree) -> Iterator[Operation]:
 
 
 def _each_part(tree: Tree) -> Iterator[Tree]:
-    yield tree
-    for argument in tree.arguments if isinstance(tree, Operation) else ():
-        yield from _each_part(argument)
+    waiting = [tree]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        if isinstance(part, Operation):
+            waiting += reversed(part.arguments)
 
 
 def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationError:
