@@ -18,7 +18,6 @@ from gaitdisc.own_files import claim_folder
 if TYPE_CHECKING:
     from gaitdisc.discovery.catalogue import Request
     from gaitdisc.discovery.result import Discovery
-    from gaitdisc.simulation.simulation import Simulation
 
 EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
@@ -67,77 +66,65 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         if not quiet:
             LOG.info("%6.1f s  %s", time.perf_counter() - began, step)
 
-    def with_model(found: Discovery, augmented: Simulation, folder: Path) -> None:
-        _write(found, folder, draw, say, lambda _: [write_simulation(augmented, folder / "augmented.toml").name])
+    def write(
+        found: Discovery, models: Callable[[Path], list[str]], notes: Sequence[str] = (), folder: Path = out
+    ) -> Discovery:
+        """Write what was found together with the augmented model, and say it."""
+        with written_together():
+            place = save_discovery(found, folder, models(folder))
+        if draw:
+            from gaitdisc.discovery.page import write_discovery_report
 
-    def discovered(person: str, folder: Path) -> Discovery:
-        found, augmented = discover_study(simulation, person, request, joint or ANKLE)
-        with_model(found, augmented, folder)
+            say("drawing the report")
+            place = write_discovery_report(found, folder)
+        typer.echo("\n".join([found.public.sentence, *notes]))
+        for finding in found.public.findings:
+            if finding.severity != "note":
+                LOG.info(finding.line())
+        typer.echo(f"{'report' if draw else 'found'}: {place}")
         return found
+
+    def discovered(person: str, folder: Path = out) -> Discovery:
+        if measured is None:
+            found, augmented = discover_study(simulation, person, request, joint or ANKLE)
+        else:
+            found, augmented = discover_files(simulation, measured, request)
+        return write(found, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
 
     with stoppable():
         from gaitdisc.discovery.catalogue import Request
         from gaitdisc.discovery.discover_files import discover_files, discover_study
+        from gaitdisc.discovery.folder import save_discovery
         from gaitdisc.discovery.kept_work import kept_work
         from gaitdisc.engines.mapping import names_engine
         from gaitdisc.simulation.writing import write_simulation
+        from gaitdisc.whole_file import written_together
 
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
         with kept_work(out, say) as work:
             request = Request.read(catalogue, given, alpha, work.progress)
-            if measured is None and whose == EVERYONE:
+            if measured is not None and names_engine(simulation):
+                _of_engine(simulation, measured, request, write)
+            elif measured is None and whose == EVERYONE:
                 _everyone(simulation, out, discovered)
-            elif measured is None:
-                discovered(whose, out)
-            elif names_engine(simulation):
-                _of_engine(simulation, measured, request, partial(_write, out=out, draw=draw, say=say))
             else:
-                with_model(*discover_files(simulation, measured, request), out)
+                discovered(whose)
 
 
-def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., None]) -> None:
+def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., Discovery]) -> None:
     """Search a model of an engine, or a walk that is tracked in one."""
     from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
     from gaitdisc.engines.tracked_mapping import read_tracked
 
     walk = read_tracked(model)
-    if walk is None:
-        answer = discover_model_file(model, measured, request)
-        said = (*answer.written.notes, answer.runs.said)
-        write(answer.found, models=partial(write_answer, answer), notes=said)
+    if walk is not None:
+        from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
+
+        answered = discover_tracked(walk, measured, request)
+        write(answered.found, partial(write_tracked, answered), (*answered.written.notes, *answered.said))
         return
-    from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
-
-    answered = discover_tracked(walk, measured, request)
-    said = (*answered.written.notes, *answered.said)
-    write(answered.found, models=partial(write_tracked, answered), notes=said)
-
-
-def _write(
-    found: Discovery,
-    out: Path,
-    draw: bool,
-    say: Callable[[str], None],
-    models: Callable[[Path], list[str]],
-    notes: Sequence[str] = (),
-) -> None:
-    """Write what was found together with the augmented model, and say it."""
-    from gaitdisc.discovery.folder import save_discovery
-    from gaitdisc.whole_file import written_together
-
-    with written_together():
-        place = save_discovery(found, out, models(out))
-    if draw:
-        from gaitdisc.discovery.page import write_discovery_report
-
-        say("drawing the report")
-        place = write_discovery_report(found, out)
-    found = found.public
-    typer.echo("\n".join([found.sentence, *notes]))
-    for finding in found.findings:
-        if finding.severity != "note":
-            LOG.info(finding.line())
-    typer.echo(f"{'report' if draw else 'found'}: {place}")
+    answer = discover_model_file(model, measured, request)
+    write(answer.found, partial(write_answer, answer), (*answer.written.notes, answer.runs.said))
 
 
 def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import named_estimates
 from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.joint_and_trials import lagged
-from gaitdisc.discovery.kept_work import kept
+from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.paired_test import paired_test, sum_error
 from gaitdisc.discovery.record_filter import RecordFilter
@@ -96,18 +95,14 @@ class EngineFit:
         self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
     ) -> Values:
         """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
-
-        def read(known: tuple[list[Any], dict[str, list[float]]]) -> Values:
-            if near is not None:
-                near.update((int(row), np.array(start)) for row, start in known[1].items())
-            return np.array(known[0])
-
-        return kept(
-            (repr([one.values for one in parts]),),
-            lambda: left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near),
-            lambda left: (left.tolist(), {str(row): start.tolist() for row, start in (near or {}).items()}),
-            read,
-        )
+        known = recall(repr([one.values for one in parts]))
+        if known is None:
+            left = left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
+            keep((left.tolist(), {row: start.tolist() for row, start in (near or {}).items()}))
+            return left
+        if near is not None:
+            near.update((int(row), np.array(start)) for row, start in known[1].items())
+        return np.array(known[0])
 
     def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
         """Return what was found with numbers of the engine's own runs, whose starts follow them (Gauss-Newton).

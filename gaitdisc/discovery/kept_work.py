@@ -13,7 +13,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.effect_words import named_at
@@ -23,7 +23,6 @@ from gaitdisc.saved.provenance import installed_versions
 from gaitdisc.whole_file import remove_file
 from gaitdisc.words import counted
 
-T = TypeVar("T")
 NAME = "discovery"
 SILENT_S = 9.0  # after which a line says how much is done
 SAVED_S = 20.0  # between two times that the file is written
@@ -102,35 +101,28 @@ def kept_work(folder: Path, say: Callable[[str], None]) -> Iterator[Work]:
         _WORK.reset(token)
 
 
-def rest_on(*content: str | bytes) -> Work | None:
-    """Let all further results rest on this as well; returns where they are kept, if anywhere."""
+def recall(*given: str | bytes) -> Any:
+    """Return what an earlier run has kept of the next result; None where it has nothing.
+
+    given: what that result is computed from, as far as it does not follow from the results before
+    """
+    work = _WORK.get()
+    if work is None:
+        return None
+    digest = sha256(work.chain.encode())
+    for one in given:
+        digest.update(one.encode() if isinstance(one, str) else one)
+    work.chain = digest.hexdigest()
+    if work.chain in work.known:
+        work.add(work.known[work.chain])
+    return work.known.get(work.chain)
+
+
+def keep(result: Any) -> None:
+    """Keep a result that JSON can hold."""
     work = _WORK.get()
     if work is not None:
-        digest = sha256(work.chain.encode())
-        for one in content:
-            digest.update(one.encode() if isinstance(one, str) else one)
-        work.chain = digest.hexdigest()
-    return work
-
-
-def kept(
-    given: Sequence[str | bytes], compute: Callable[[], T], written: Callable[[T], Any], read: Callable[[Any], T]
-) -> T:
-    """Return what is computed, or what an earlier run has kept of it.
-
-    given: what it is computed from, as far as it does not follow from the results before
-    written, read: to what JSON holds, and back
-    """
-    work = rest_on(*given)
-    if work is None:
-        return compute()
-    if work.chain in work.known:
-        known = work.known[work.chain]
-        work.add(known)
-        return read(known)
-    result = compute()
-    work.add(written(result))
-    return result
+        work.add(result)
 
 
 def note_found(candidates: Sequence[Candidate]) -> None:

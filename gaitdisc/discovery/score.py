@@ -16,7 +16,7 @@ from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.first_states import followed
 from gaitdisc.discovery.fitted import start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
-from gaitdisc.discovery.kept_work import kept
+from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
@@ -64,13 +64,13 @@ class Scorer:
         """Return the best score of each candidate, the greatest gain first; of a great many, those worth it alone."""
         if len(candidates) > MOST:
             candidates = tuple(one.candidate for one in self._on_some_segments()._scores(candidates)[:KEPT])
+        known = recall(repr(len(candidates)), self.model.fit.values.tobytes(), self.model.fit.starts.tobytes())
+        if known is not None:
+            return [Score(candidates[number], values, gain) for number, values, gain in known]
         places = {id(one): number for number, one in enumerate(candidates)}
-        return kept(
-            (repr(len(candidates)), self.model.fit.values.tobytes(), self.model.fit.starts.tobytes()),
-            lambda: self._scores(candidates),
-            lambda scores: [(places[id(one.candidate)], one.values, one.gain) for one in scores],
-            lambda known: [Score(candidates[number], values, gain) for number, values, gain in known],
-        )
+        found = self._scores(candidates)
+        keep([(places[id(one.candidate)], one.values, one.gain) for one in found])
+        return found
 
     def _on_some_segments(self) -> Scorer:
         """The same on some of the segments, evenly from all."""

@@ -125,12 +125,9 @@ def delays(tree: Tree) -> Iterator[Operation]:
 
 
 def _each_part(tree: Tree) -> Iterator[Tree]:
-    waiting = [tree]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        if isinstance(part, Operation):
-            waiting += reversed(part.arguments)
+    yield tree
+    for argument in tree.arguments if isinstance(tree, Operation) else ():
+        yield from _each_part(argument)
 
 
 def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationError:
