@@ -133,7 +133,7 @@ def write_people(
         return None
     from gaitdisc.clinic.person_page import index_rows, write_index
     from gaitdisc.clinic.read_people import cycles_of_people, read_session
-    from gaitdisc.processing.kept_parts import hash_cycles, keep_part, read_part
+    from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
     from gaitdisc.report.figure import file_names
 
     pages, people = _Pages(run, run_folder, pdf), cycles_of_people(run)
@@ -147,7 +147,7 @@ def write_people(
     for title, own in people.items():
         name = names[title]
         said = (repr(words.get(own[0].subject)) for words in (house.affected, house.comments))
-        key = hash_cycles(own, *rests_on, *said)
+        key = hash_content(own, *rests_on, *said)
         kept = read_part(report, f"people-{name}", key)
         if kept:
             rows += kept

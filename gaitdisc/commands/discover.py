@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gaitdisc.commands.options import Quiet
+from gaitdisc.commands.run_report import stoppable
 from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.own_files import claim_folder
 
 if TYPE_CHECKING:
+    from gaitdisc.discovery.catalogue import Request
     from gaitdisc.discovery.result import Discovery
-    from gaitdisc.simulation.simulation import Simulation
 
 EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
+KEPT = "kept"  # folder of what is fitted, until the answer stands
 
 
 def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
@@ -55,83 +58,73 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. For a study, add "
             "--participant.",
         )
-    if measured is not None:
-        claim_folder(out, *FILES)
+    whose, _, joint = participant.partition(":")
+    claim_folder(out, *(("people.csv",) if whose == EVERYONE and measured is None else FILES), mended=(KEPT,))
     began = time.perf_counter()
 
-    def progress(step: str) -> None:
+    def say(step: str) -> None:
         if not quiet:
             LOG.info("%6.1f s  %s", time.perf_counter() - began, step)
 
-    from gaitdisc.discovery.catalogue import Request
-    from gaitdisc.discovery.discover_files import discover_files, discover_study
-    from gaitdisc.engines.mapping import names_engine
-    from gaitdisc.simulation.writing import write_simulation
+    def write(
+        found: Discovery, models: Callable[[Path], list[str]], notes: Sequence[str] = (), folder: Path = out
+    ) -> Discovery:
+        """Write what was found together with the augmented model, and say it."""
+        with written_together():
+            place = save_discovery(found, folder, models(folder))
+        if draw:
+            from gaitdisc.discovery.page import write_discovery_report
 
-    given = tuple(one.strip() for one in effects.split(",") if one.strip())
-    request = Request.read(catalogue, given, alpha, progress)
-    if measured is not None and names_engine(simulation):
-        from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
-        from gaitdisc.engines.tracked_mapping import read_tracked
-
-        walk = read_tracked(simulation)
-        if walk is not None:
-            from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
-
-            answered = discover_tracked(walk, measured, request)
-            said = (*answered.written.notes, *answered.said)
-            _write(answered.found, out, draw, progress, lambda: write_tracked(answered, out), said)
-            return
-        answer = discover_model_file(simulation, measured, request)
-        said = (*answer.written.notes, answer.runs.said)
-        _write(answer.found, out, draw, progress, lambda: write_answer(answer, out), said)
-        return
-
-    def with_model(found: Discovery, augmented: Simulation, folder: Path) -> None:
-        _write(found, folder, draw, progress, lambda: [write_simulation(augmented, folder / "augmented.toml").name])
-
-    if measured is not None:
-        with_model(*discover_files(simulation, measured, request), out)
-        return
-    whose, _, joint = participant.partition(":")
-
-    def discovered(person: str, folder: Path) -> Discovery:
-        claim_folder(folder, *FILES)
-        found, augmented = discover_study(simulation, person, request, joint or ANKLE)
-        with_model(found, augmented, folder)
+            say("drawing the report")
+            place = write_discovery_report(found, folder)
+        typer.echo("\n".join([found.public.sentence, *notes]))
+        for finding in found.public.findings:
+            if finding.severity != "note":
+                LOG.info(finding.line())
+        typer.echo(f"{'report' if draw else 'found'}: {place}")
         return found
 
-    if whose == EVERYONE:
-        _everyone(simulation, out, discovered)
-    else:
-        discovered(whose, out)
+    def discovered(person: str, folder: Path = out) -> Discovery:
+        if measured is None:
+            found, augmented = discover_study(simulation, person, request, joint or ANKLE)
+        else:
+            found, augmented = discover_files(simulation, measured, request)
+        return write(found, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
+
+    with stoppable():
+        from gaitdisc.discovery.catalogue import Request
+        from gaitdisc.discovery.discover_files import discover_files, discover_study
+        from gaitdisc.discovery.folder import save_discovery
+        from gaitdisc.discovery.kept_work import kept_work
+        from gaitdisc.engines.mapping import names_engine
+        from gaitdisc.simulation.writing import write_simulation
+        from gaitdisc.whole_file import written_together
+
+        given = tuple(one.strip() for one in effects.split(",") if one.strip())
+        with kept_work(out, say) as work:
+            request = Request.read(catalogue, given, alpha, work.progress)
+            if measured is not None and names_engine(simulation):
+                _of_engine(simulation, measured, request, write)
+            elif measured is None and whose == EVERYONE:
+                _everyone(simulation, out, discovered)
+            else:
+                discovered(whose)
 
 
-def _write(
-    found: Discovery,
-    out: Path,
-    draw: bool,
-    progress: Callable[[str], None],
-    models: Callable[[], list[str]],
-    notes: Sequence[str] = (),
-) -> None:
-    """Write what was found together with the augmented model, and say it."""
-    from gaitdisc.discovery.folder import save_discovery
-    from gaitdisc.whole_file import written_together
+def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., Discovery]) -> None:
+    """Search a model of an engine, or a walk that is tracked in one."""
+    from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
+    from gaitdisc.engines.tracked_mapping import read_tracked
 
-    with written_together():
-        place = save_discovery(found, out, models())
-    if draw:
-        from gaitdisc.discovery.page import write_discovery_report
+    walk = read_tracked(model)
+    if walk is not None:
+        from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
 
-        progress("drawing the report")
-        place = write_discovery_report(found, out)
-    found = found.public
-    typer.echo("\n".join([found.sentence, *notes]))
-    for finding in found.findings:
-        if finding.severity != "note":
-            LOG.info(finding.line())
-    typer.echo(f"{'report' if draw else 'found'}: {place}")
+        answered = discover_tracked(walk, measured, request)
+        write(answered.found, partial(write_tracked, answered), (*answered.written.notes, *answered.said))
+        return
+    answer = discover_model_file(model, measured, request)
+    write(answer.found, partial(write_answer, answer), (*answer.written.notes, answer.runs.said))
 
 
 def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
@@ -141,11 +134,11 @@ def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discover
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.spreadsheet import write_csv
 
-    claim_folder(out, "people.csv")
     found: dict[str, Discovery] = {}
     for person in load_study(study).participants:
         typer.echo(f"{person.id}:")
         try:
+            claim_folder(out / person.id, *FILES)
             found[person.id] = discovered(person.id, out / person.id)
         except GaitdiscError as error:
             LOG.info(f"refused: {error}")

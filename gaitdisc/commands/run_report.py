@@ -96,8 +96,18 @@ def worked(work: Callable[[StudyProgress], Result], people: list[str], quiet: bo
 
 
 @contextmanager
+def stoppable() -> Iterator[None]:
+    """Whoever stops the work reads that nothing is lost."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        LOG.info(" ".join(["Stopped.", *stop.args, "Finished parts are kept; the same command continues from there."]))
+        raise typer.Exit(STOPPED) from None
+
+
+@contextmanager
 def stoppable_bar(quiet: bool) -> Iterator[Progress]:
-    """Bar with the time that is left, where somebody looks on; whoever stops the work reads that nothing is lost."""
+    """Bar with the time that is left, where somebody looks on."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
@@ -109,12 +119,9 @@ def stoppable_bar(quiet: bool) -> Iterator[Progress]:
         TimeRemainingColumn(),
     )
     screen = Console(stderr=True)
-    try:
-        with Progress(*columns, console=screen, transient=True, disable=quiet or not screen.is_terminal) as bar:
-            yield bar
-    except KeyboardInterrupt:
-        LOG.info("Stopped. Finished parts are kept; the same command continues from there.")
-        raise typer.Exit(STOPPED) from None
+    disable = quiet or not screen.is_terminal
+    with stoppable(), Progress(*columns, console=screen, transient=True, disable=disable) as bar:
+        yield bar
 
 
 def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> None:

@@ -94,6 +94,7 @@ def weigh_explanations(
     for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
         verdict = step(case, as_read, verdict)
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)
+    progress("weighing errors of the inputs")
     case, verdict = weigh_input_errors(case, verdict)
     case, verdict = weigh_unstated_errors(case, verdict)
     return case, as_read, without_small(case, as_read, verdict)

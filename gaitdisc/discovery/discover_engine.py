@@ -11,7 +11,7 @@ import numpy as np
 
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover_files import discovered, sealed
-from gaitdisc.discovery.effect_words import at_place, spoken
+from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
 from gaitdisc.discovery.grids import rhythm_of
@@ -148,7 +148,7 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
 
 def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
-    named = " and ".join(f"the {spoken(one.name)} {at_place(one.kind, one.place)}" for one in found.effects)
+    named = " and ".join(f"the {named_at(one)}" for one in found.effects)
     sentence = (
         f"Not proven: {named}. {runs.engine}'s own runs have the same error with and without it, above the sensors' "
         "noise; only runs of the expanded model supported it. Trials with other movement can decide."

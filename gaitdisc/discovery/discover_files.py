@@ -13,10 +13,12 @@ import numpy as np
 
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover import discover, refuse_blow_up
+from gaitdisc.discovery.kept_work import recall
 from gaitdisc.discovery.result import DEVICE, SIMULATION, Discovery, GapSize
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.ingest.raw_file import file_sha256
+from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
 from gaitdisc.saved.provenance import made_now
 from gaitdisc.simulation.even_time import MILLISECONDS
@@ -88,6 +90,8 @@ def discovered(
 
     files: files that were read, and what each is called in the result
     """
+    recall(hash_content((model, data, data.drive), repr((request.shapes, request.effects, request.alpha))))
+    request.progress("checking that the simulation stays finite (at its first use, gaitdisc is compiled: about 20 s)")
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
@@ -112,7 +116,9 @@ def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, SIMULATION)
-    public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
+    # words of the simulation, which is the user's model and names no person, and of the catalogue's effects
+    own = simulation_text(model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts)
+    public = PublicWords(frozenset(re.findall(r"\w+", own)), {path.name: called for path, called in files.items()})
     numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
     trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
     seen = {one: public.finding(replace(one, what=_without(one.what, trials))) for one in found.findings}
@@ -145,9 +151,3 @@ def _without(text: str, trials: Mapping[str, str]) -> str:
     for name, called in trials.items():
         text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", called, text)
     return text
-
-
-def _own_words(model: Simulation) -> frozenset[str]:
-    """Words of the simulation file, which is the user's model and names no person; and of the catalogue's effects."""
-    written = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
-    return frozenset(re.findall(r"\w+", simulation_text(written)))

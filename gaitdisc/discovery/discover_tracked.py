@@ -12,7 +12,7 @@ from gaitdisc.discovery.candidate import Candidate, candidates_of
 from gaitdisc.discovery.catalogue import ALL, Request, Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover_engine import augmented_name
-from gaitdisc.discovery.effect_words import amount, at_place, shown_unit, spoken
+from gaitdisc.discovery.effect_words import amount, named_at, shown_unit
 from gaitdisc.discovery.estimates import named_estimates
 from gaitdisc.discovery.joint_and_trials import EFFECTS, STRENGTH
 from gaitdisc.discovery.places import Place
@@ -132,7 +132,7 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
     unit = units[joints.index(first)]
     sentence = (
-        f"Not proven: {spoken(one.name)} {at_place(one.kind, one.place)} explains most of the residual, from "
+        f"Not proven: {named_at(one)} explains most of the residual, from "
         f"{amount(before)} to {amount(after)} {unit} where it is fitted (noise floor {amount(first.joint.floor)}). "
         "Held-out data do not support it, or its evidence is too small: a longer walk or a second one can decide."
     )

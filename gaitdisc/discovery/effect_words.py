@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect
 
 LONGEST, FIGURES = 4, 6  # digits behind the point, digits in all
@@ -144,6 +145,11 @@ def at_place(kind: str, place: str) -> str:
     if kind == "port":
         return f"at the {place} port"
     return f"in the {kind} {place}" if kind != "equation" else f"in the equation of {place}"
+
+
+def named_at(one: FoundEffect | Candidate) -> str:
+    """Name an effect and say where it enters."""
+    return f"{spoken(one.name)} {at_place(one.kind, one.place)}"
 
 
 def outside_text(effect: FoundEffect, found: Estimate) -> str:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate import Candidate, free_name
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.result import Estimate
@@ -50,13 +49,13 @@ def named_estimates(part: Part, covariance: Values, base: Simulation) -> dict[st
             both = np.array([part.values[one] for one in pair])
             block = covariance[number : number + 2, number : number + 2]
             for name, value, slope, unit in _wave(both, units[slot]):
-                found[_free_name(name, found)] = _estimate(value, float(slope @ block @ slope), unit)
+                found[free_name(name, found)] = _estimate(value, float(slope @ block @ slope), unit)
             number += 2
             continue
         name = names.get(slot, slot)
         sign = -1 if name in RESISTING and not waning else 1
         value, variance = sign * part.values[slot], float(covariance[number, number])
-        found[_free_name(name, found)] = _estimate(value, variance, units[slot])
+        found[free_name(name, found)] = _estimate(value, variance, units[slot])
         number += 1
     return found
 
@@ -118,10 +117,6 @@ def _wave(both: Values, unit: str) -> list[tuple[str, float, Values, str]]:
         ("amplitude", float(np.hypot(*both)), both / size, unit),
         ("phase", float(np.arctan2(both[1], both[0])), np.array([-both[1], both[0]]) / size**2, "rad"),
     ]
-
-
-def _free_name(name: str, taken: Mapping[str, Estimate]) -> str:
-    return name if name not in taken else next(f"{name}_{n}" for n in range(2, 999) if f"{name}_{n}" not in taken)
 
 
 def _estimate(value: float, variance: float, unit: str) -> Estimate:

@@ -18,7 +18,6 @@ from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
 FLAT_BUMPS, FINE_BUMPS = 7, 15
@@ -139,11 +138,7 @@ def _slot_of(part: Part, piece: str) -> str:
 
 def _visited(axis: str, now: ScoredModel, search: Search) -> Values:
     """Return between which values a state or difference mostly lies (2,)."""
-    known = len(search.base.states)
-    states = now.model.fit.states[..., :known].reshape(-1, known)
-    inputs = np.zeros((len(states), len(search.base.inputs)))
-    along = evaluate_many(search.base, [axis], Points(np.zeros(len(states)), states, inputs))[0]
-    return np.quantile(along, [0.02, 0.98])
+    return np.quantile(search.along(now.model, axis), [0.02, 0.98])
 
 
 def _bumps(ranges: dict[str, Values], counts: dict[str, int]) -> list[str]:

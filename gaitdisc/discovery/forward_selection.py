@@ -9,6 +9,7 @@ from __future__ import annotations
 from gaitdisc.discovery.candidate_model import Explanations
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import GapScale
+from gaitdisc.discovery.kept_work import note_found
 from gaitdisc.discovery.scored_model import ScoredModel, compared, leaves, ranked
 from gaitdisc.discovery.search import Search, is_certain
 
@@ -33,6 +34,7 @@ def select_forward(
     explored = {now.model.explanations}
     explained, turns, begun = 0.0, 0, len(now.model.parts)
     while len(now.model.parts) < most and turns < MOST_TURNS:
+        search.progress(f"round {turns + 1} of {MOST_TURNS} at most")
         enough = bool(scale and now.model.parts and scale.excess(now.model.fit) < CRITERIA.model_error)
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
@@ -54,6 +56,7 @@ def select_forward(
             break
         explained, now, turns = max(explained, gained), better, turns + 1
         explored.add(now.model.explanations)
+        note_found([part.candidate for part in now.model.parts])
         if far:
             break
     return now, rivals

@@ -13,6 +13,7 @@ from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
     estimate_text,
+    named_at,
     outside_text,
     shown_unit,
     spoken,
@@ -21,23 +22,11 @@ from gaitdisc.discovery.effect_words import (
 )
 from gaitdisc.discovery.figure import discovery_figures, explanations_figure
 from gaitdisc.discovery.method import method_of
-from gaitdisc.discovery.result import Discovery, Estimate, Explanation, FoundEffect
+from gaitdisc.discovery.result import VERDICTS, Discovery, Estimate, Explanation, FoundEffect
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
 from gaitdisc.words import NONE, counted, p_cell
-
-VERDICTS = {
-    "no_gap": "no gap: nothing is added to the simulation",
-    "missing_physics": "missing physics: a term is missing in the dynamics",
-    "wrong_parameter": "wrong parameter: the structure is correct, the value of a parameter is not",
-    "input_error": "input error: a driving signal is late or scaled",
-    "sensor_error": "sensor error: the state is correct, its measurement is not",
-    "wrong_initial_condition": "wrong initial condition: only the initial state is wrong",
-    "process_noise": "process noise: a random input acts on the system",
-    "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
-    "unexplained": "unexplained: the residual exceeds the noise, and no known effect or fitted shape explains it",
-}
 
 
 def estimates_table(discovery: Discovery) -> Table:
@@ -46,7 +35,8 @@ def estimates_table(discovery: Discovery) -> Table:
     for effect in discovery.effects:
         for name, one in effect.estimates.items():
             number = name.replace("_", " ")
-            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), _degrees(one)))
+            degrees = estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
             records.append(
                 (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
             )
@@ -71,8 +61,9 @@ def gap_table(discovery: Discovery) -> Table:
             rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
+    begun = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
     caption = (
-        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, compared with noise "
+        f"Root mean square of measured minus simulated, before{begun} and after, compared with noise "
         "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
         "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
         f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
@@ -116,16 +107,12 @@ def trials_table(discovery: Discovery) -> Table:
     return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
 
 
-def _before(discovery: Discovery) -> str:
-    return " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
-
-
 def _unproven(discovery: Discovery) -> str:
     """Say whose p stands there, where nothing is named."""
     if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
         return ""
     first = discovery.rivals[0]
-    return f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
+    return f" If no effect is named, p is that of {named_at(first)}."
 
 
 def where_table(discovery: Discovery) -> Table:
@@ -173,7 +160,8 @@ def explanations_table(discovery: Discovery) -> Table:
         closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
         numbers = "; ".join(_numbers(each) for each in one.effects)
-        rows.append((str(number), one.as_given, numbers, _percent(closed), _bic(first.bic), tied, apart))
+        evidence = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
+        rows.append((str(number), one.as_given, numbers, _percent(closed), evidence, tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
         f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
@@ -208,18 +196,10 @@ def _amounts(one: Estimate) -> list[str]:
     return [with_unit(amount(each, (one.high - one.low) / 2), unit) for each in (one.value, one.low, one.high)]
 
 
-def _degrees(one: Estimate) -> str:
-    return estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
-
-
 def _numbers(one: FoundEffect) -> str:
     numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
     outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
     return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
-
-
-def _bic(value: float) -> str:
-    return f"{value:.0f}".replace("-", "−") if math.isfinite(value) else NONE
 
 
 def _percent(share: float) -> str:

@@ -75,16 +75,12 @@ class RecordFilter:
         )
         out = out.copy() if np.shares_memory(out, observed) else out
         for channel, cutoff in enumerate(self.cutoffs_hz):
-            if cutoff:
-                run_both_ways(out, channel, _coefficients(cutoff / self.rate_hz), min(2 * self.margin, samples - 1))
+            if cutoff:  # b0, a1, a2 of a Butterworth low-pass of order 2 (b1 = 2 b0, b2 = b0)
+                k = math.tan(math.pi * (cutoff / self.rate_hz))
+                whole = 1 + ROOT_TWO * k + k * k
+                form = np.array([k * k / whole, 2 * (k * k - 1) / whole, (1 - ROOT_TWO * k + k * k) / whole])
+                run_both_ways(out, channel, form, min(2 * self.margin, samples - 1))
         return out.reshape(observed.shape)
-
-
-def _coefficients(cutoff: float) -> Values:
-    """b0, a1, a2 of a Butterworth low-pass of order 2 (b1 = 2 b0, b2 = b0), its cut-off as a share of the rate."""
-    k = math.tan(math.pi * cutoff)
-    whole = 1 + ROOT_TWO * k + k * k
-    return np.array([k * k / whole, 2 * (k * k - 1) / whole, (1 - ROOT_TWO * k + k * k) / whole])
 
 
 @compiled(nogil=True)

@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ALPHA = 0.05  # the greatest rate of false finds, unless a user sets another
-VERDICTS = (
-    "no_gap",
-    "missing_physics",
-    "wrong_parameter",
-    "input_error",
-    "sensor_error",
-    "wrong_initial_condition",
-    "process_noise",
-    "unnamed",
-    "unexplained",
-)
+VERDICTS = {
+    "no_gap": "no gap: nothing is added to the simulation",
+    "missing_physics": "missing physics: a term is missing in the dynamics",
+    "wrong_parameter": "wrong parameter: the structure is correct, the value of a parameter is not",
+    "input_error": "input error: a driving signal is late or scaled",
+    "sensor_error": "sensor error: the state is correct, its measurement is not",
+    "wrong_initial_condition": "wrong initial condition: only the initial state is wrong",
+    "process_noise": "process noise: a random input acts on the system",
+    "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
+    "unexplained": "unexplained: the residual exceeds the noise, and no known effect or fitted shape explains it",
+}
 
 SIZES = ("before", "after", "noise_floor")  # of a gap, as its file calls them
 # What an answer follows, as its provenance has it
@@ -242,7 +242,7 @@ class Discovery(Saved, file="discovery.json"):
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
         if self.verdict not in VERDICTS:
-            raise ValueError(f"verdict must be one of {VERDICTS}, not {self.verdict!r}")
+            raise ValueError(f"verdict must be one of {(*VERDICTS,)}, not {self.verdict!r}")
 
     @property
     def public(self) -> Discovery:

@@ -16,6 +16,7 @@ from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.first_states import followed
 from gaitdisc.discovery.fitted import start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
+from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
@@ -62,15 +63,18 @@ class Scorer:
     def scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         """Return the best score of each candidate, the greatest gain first; of a great many, those worth it alone."""
         if len(candidates) > MOST:
-            candidates = tuple(one.candidate for one in self._on_some_segments()._scores(candidates)[:KEPT])
-        return self._scores(candidates)
-
-    def _on_some_segments(self) -> Scorer:
-        """The same on some of the segments, evenly from all."""
-        count = len(self.shooting.segments)
-        some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
-        shooting = replace(self.shooting, segments=self.shooting.segments.among(some))
-        return replace(self, shooting=shooting, model=replace(self.model, fit=self.model.fit.among(some)))
+            count = len(self.shooting.segments)  # some of the segments, evenly from all
+            some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
+            few = replace(self.shooting, segments=self.shooting.segments.among(some))
+            part = replace(self, shooting=few, model=replace(self.model, fit=self.model.fit.among(some)))
+            candidates = tuple(one.candidate for one in part._scores(candidates)[:KEPT])
+        known = recall(repr(len(candidates)), self.model.fit.values.tobytes(), self.model.fit.starts.tobytes())
+        if known is not None:
+            return [Score(candidates[number], values, gain) for number, values, gain in known]
+        places = {id(one): number for number, one in enumerate(candidates)}
+        found = self._scores(candidates)
+        keep([(places[id(one.candidate)], one.values, one.gain) for one in found])
+        return found
 
     def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         basis, known, left = self._explained()

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.fitted import Fitted, Prior
+from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.noise import MOST_LAGS, Noise
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import Segments
@@ -161,12 +162,17 @@ class Shooting:
         starts (segment, state): where the start states begin
         enough: a step that takes less off the misfit is the last
         """
+        known = recall(repr((free, turns, enough)), values.tobytes(), starts.tobytes())
+        if known:
+            return self.at(machine, free, *map(np.array, known))
         now = self._descended(machine, self.at(machine, free, values, starts), turns, enough)
         elsewhere = self._begun_elsewhere(machine, now, starts)
-        if elsewhere is None:
-            return now
-        again = self._descended(machine, self.at(machine, free, now.values, elsewhere), turns, enough)
-        return again if again.misfit < now.misfit else now
+        if elsewhere is not None:
+            again = self._descended(machine, self.at(machine, free, now.values, elsewhere), turns, enough)
+            now = again if again.misfit < now.misfit else now
+        if free:  # else each segment has stopped at a step of its own
+            keep((now.values.tolist(), now.starts.tolist()))
+        return now
 
     def _descended(self, machine: Compiled, now: Fitted, turns: int, enough: float = ENOUGH) -> Fitted:
         """Return the fit after damped steps, until these gain nothing more."""

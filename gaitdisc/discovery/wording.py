@@ -13,6 +13,7 @@ from gaitdisc.discovery.effect_words import (
     at_place,
     brief_text,
     estimate_text,
+    named_at,
     outside_text,
     shown_channel,
     shown_unit,
@@ -81,7 +82,7 @@ def _given(discovery: Discovery) -> str:
         return ""
     bear = "support it" if discovery.given == "proven" else "do not support it"
     said = f"The effect was given, not searched: the held-out data {bear} ({_chance(discovery.held_out)})."
-    idle = [f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in discovery.effects if one.small]
+    idle = [named_at(one) for one in discovery.effects if one.small]
     return f"{said} They do not need {' or '.join(idle)} in addition to the others." if idle else said
 
 
@@ -104,7 +105,7 @@ def _nothing(discovery: Discovery) -> str:
             f"meets the criteria for a name.{_removes_most(discovery)}"
         )
     tested = f" ({_chance(discovery.held_out)})" if discovery.held_out.pieces else ""
-    for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
+    for_what = named_at(first)
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
             f"No effect is named: {for_what} would explain most, but less than half of the held-out error. Several "
@@ -121,7 +122,7 @@ def _removes_most(discovery: Discovery) -> str:
     for one in discovery.explanations:
         size = one.held_out
         if size and size.p < size.alpha and size.unexplained < 1:
-            effects = " and ".join(f"{spoken(each.name)} {at_place(each.kind, each.place)}" for each in one.effects)
+            effects = " and ".join(named_at(each) for each in one.effects)
             closed = f"{100 * (1 - size.unexplained):.0f} % of the squared held-out error above the noise"
             return f" Of those listed, {effects} removes most: {closed}. New trials can test it."
     return ""
@@ -224,7 +225,7 @@ def _tied(discovery: Discovery) -> str:
     tied = [one for one in discovery.rivals if one.tied]
     if not tied or not discovery.effects:
         return ""
-    names = " or ".join(f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in tied)
+    names = " or ".join(named_at(one) for one in tied)
     apart = would_distinguish(discovery.effects[0].name, tied[0].name)
     return f"These data cannot distinguish it from {names}. To distinguish them, record {apart}."
 

@@ -13,7 +13,6 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.report.figure import SavedFigure
 from gaitdisc.saved.provenance import code_sha256
 from gaitdisc.saved.unit_folder import file_sha256, read_sealed, sealed_text
@@ -22,10 +21,10 @@ from gaitdisc.whole_file import write_whole
 FOLDER = "kept"  # of a report: a file for each part
 
 
-def hash_cycles(cycles: Sequence[PooledCycles], *more: str) -> str:
-    """Hash of all that cycles hold, of this package's code, and of what else a part rests on."""
+def hash_content(content: Sequence[Any], *more: str) -> str:
+    """Hash of all that dataclasses hold, of this package's code, and of what else a part rests on."""
     found = hashlib.sha256("\n".join((code_sha256(), *more)).encode())
-    for value in (getattr(one, field.name) for one in cycles for field in fields(one)):
+    for value in (getattr(one, field.name) for one in content for field in fields(one)):
         if isinstance(value, np.ndarray):
             found.update(np.ascontiguousarray(value).tobytes())
         elif isinstance(value, pd.DataFrame):

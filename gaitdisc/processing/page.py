@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
-from gaitdisc.processing.kept_parts import figure_again, hash_cycles, keep_part, read_part
+from gaitdisc.processing.kept_parts import figure_again, hash_content, keep_part, read_part
 from gaitdisc.processing.leg_curves import FEET
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.processing.tables import (
@@ -148,7 +148,7 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
 
 
 def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str]:
-    return f"cycles-{name}", hash_cycles(sets, name)
+    return f"cycles-{name}", hash_content(sets, name)
 
 
 def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> Block[SavedFigure]:

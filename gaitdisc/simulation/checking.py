@@ -204,7 +204,7 @@ def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], place:
 
 def _check_ports(simulation: Parts) -> None:
     lines = (*simulation.definitions, *simulation.equations)
-    used = {name for _, text in lines for name in names(parsed(text))}
+    used = {name for _, text in lines for name in _parts_of(text)[1]}
     for port in simulation.ports:
         if port.name not in used:
             raise SimulationError(

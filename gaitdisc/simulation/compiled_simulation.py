@@ -42,12 +42,13 @@ class Compiled:
         returns ok (row,): false where a row diverged
         """
         place, starts, values = self._rows(drive, rows)
-        seconds = self._seconds(self.right_hand_side, values)
+        right = self.right_hand_side
+        seconds = self._seconds(right, values)
         found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
         found[:, 0] = starts
         ok = np.asarray(np.isfinite(starts).all(axis=1))
         lanes, integrate = self._integrator(values)
-        program = self._instructions(lanes)
+        program = right.placed(lanes), right.setup, right.constants, self._delays(right), right.registers
         driven, before = self._driven(drive), self._before(past)
         plan = (steps, substeps, lanes)
         with np.errstate(all="ignore"):  # a row that leaves every bound is reported, not warned of
@@ -167,10 +168,6 @@ class Compiled:
             return np.empty((len(values), 0))
         wanted = compiled_program([seconds for _, seconds in program.delays], self.parameters)
         return np.ascontiguousarray(at_points(wanted, list(values.T), None, len(values)).T)
-
-    def _instructions(self, rows: int) -> tuple:
-        program = self.right_hand_side
-        return program.placed(rows), program.setup, program.constants, self._delays(program), program.registers
 
     def _delays(self, program: Program) -> NDArray[np.int64]:
         """Of each delay whether it is of a state (else of an input), and its column, (delay, 2)."""

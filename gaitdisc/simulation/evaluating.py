@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.simulation.checking import check_expression
 from gaitdisc.simulation.delays import delayed_in_series
 from gaitdisc.simulation.expression import names as names_in
-from gaitdisc.simulation.program import at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.program import Program, at_points, compiled_program, leaf_columns
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation, simulation_scope
 from gaitdisc.simulation.simulation import Simulation
@@ -51,15 +52,7 @@ def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray
 def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Points) -> NDArray[np.float64]:
     """Value of many expressions at each point, (expression, point); what they share is computed once."""
     compiled = compile_simulation(simulation)
-    names = ("t", *compiled.states, *compiled.inputs, *compiled.parameters, *points.extras)
-    scope = simulation_scope(simulation)
-    known = (*names, *scope)
-    trees = [check_expression(text, known, simulation) for text in expressions]
-    needed = {name for tree in trees for name in names_in(tree)}
-    for name in reversed([*scope]):  # definitions that stand in these, one in another: no other's delays matter
-        if name in needed:
-            needed.update(names_in(scope[name]))
-    program = compiled_program(trees, names, (), {name: tree for name, tree in scope.items() if name in needed})
+    program = _program_of(simulation, tuple(expressions), tuple(points.extras))
     values = compiled.defaults if points.values is None else np.asarray(points.values, float)
     columns = leaf_columns(points.t, points.x, points.u, values)
     columns += [np.asarray(extra, float) for extra in points.extras.values()]
@@ -72,10 +65,23 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
             "the points have no rate",
             "Give Points(..., rate=...) with the samples of a single trial.",
         )
-    ago = compiled_program([seconds for _, seconds in program.delays], names, (), {})
+    ago = compiled_program([seconds for _, seconds in program.delays], program.leaves)
     seconds = at_points(ago, columns, None, count)
     late = np.empty((count, len(program.delays)))
     for k, (signal, _) in enumerate(program.delays):
         wraps = any(each.wraps for each in simulation.inputs if each.name == signal)
-        late[:, k] = delayed_in_series(columns[names.index(signal)], seconds[k], points.rate, wraps)
+        late[:, k] = delayed_in_series(columns[program.leaves.index(signal)], seconds[k], points.rate, wraps)
     return at_points(program, columns, late, count)
+
+
+@lru_cache(maxsize=16)  # trial after trial, and turn after turn, the same expressions are evaluated
+def _program_of(simulation: Simulation, expressions: tuple[str, ...], extras: tuple[str, ...]) -> Program:
+    compiled = compile_simulation(simulation)
+    names = ("t", *compiled.states, *compiled.inputs, *compiled.parameters, *extras)
+    scope = simulation_scope(simulation)
+    trees = [check_expression(text, (*names, *scope), simulation) for text in expressions]
+    needed = {name for tree in trees for name in names_in(tree)}
+    for name in reversed([*scope]):  # definitions that stand in these, one in another: no other's delays matter
+        if name in needed:
+            needed.update(names_in(scope[name]))
+    return compiled_program(trees, names, (), {name: tree for name, tree in scope.items() if name in needed})

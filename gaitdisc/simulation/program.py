@@ -250,7 +250,7 @@ def at_points(
 
     count = int(np.size(columns[0])) if points is None else points
     used = program.used()
-    spread, table = np.full(program.registers, 2, np.int64), np.zeros((len(used), count))
+    spread, table = np.full(program.registers, 2, np.int64), np.empty((len(used), count))
     for leaf, column in enumerate([*columns, *(np.asarray(late).T if program.delays else ())]):
         if used[leaf]:
             spread[leaf] = int(np.ndim(column) > 0)

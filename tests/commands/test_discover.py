@@ -7,9 +7,10 @@ import pytest
 from manufactured_discovery import manufactured
 from texts import says
 
-from gaitdisc.commands.options import REFUSED
+from gaitdisc.commands.options import REFUSED, STOPPED
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.folder import load_discovery
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.simulation_file import read_simulation
 
@@ -93,19 +94,60 @@ def refusal(lab, called):
     return refuse
 
 
-def test_the_sentence_the_files_and_the_report(lab, tmp_path, unpainted, called):
-    done = called("discover", lab / "good.toml", lab / "good.csv", "--out", tmp_path, ends=0)
+@pytest.fixture(scope="module")
+def whole(lab, called):
+    """Return the folder of a search that was not stopped, and what it said."""
+    return lab / "whole", called("discover", lab / "good.toml", lab / "good.csv", "--out", lab / "whole", ends=0)
+
+
+def test_the_sentence_the_files_and_the_report(whole, unpainted):
+    out, done = whole
     sentence = done.stdout.splitlines()[0]
     assert says(sentence, "friction", "0.40")
     assert "the held-out error falls from" in sentence
-    found = json.loads((tmp_path / "discovery.json").read_text(encoding="utf-8"))
+    found = json.loads((out / "discovery.json").read_text(encoding="utf-8"))
     assert found["sentence"] == sentence
     friction = found["effects"][0]["estimates"]["friction"]
     assert friction["value"] == pytest.approx(FRICTION, rel=0.02)
     assert friction["unit"] == "m/s^2"
-    assert read_simulation(tmp_path / "augmented.toml").effects[0].name == "coulomb_friction"
-    assert sentence[:40] in (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "weighing" in done.stderr
+    assert read_simulation(out / "augmented.toml").effects[0].name == "coulomb_friction"
+    assert sentence[:40] in (out / "report.html").read_text(encoding="utf-8")
+    assert "weighing" in done.stderr and "round 1 of 5 at most" in done.stderr
+
+
+def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tmp_path, monkeypatch, called):
+    """Stopped twice, it gives the numbers of the one that was not, to the last bit, and fits nothing again."""
+    words, fits, descended = (
+        ("discover", lab / "good.toml", lab / "good.csv", "--out", tmp_path),
+        [],
+        Shooting._descended,
+    )
+
+    def stopping_at(last):
+        def counted(self, machine, now, *more):
+            fits.append(bool(now.free))
+            if sum(fits) > last:
+                raise KeyboardInterrupt
+            return descended(self, machine, now, *more)
+
+        fits.clear()
+        monkeypatch.setattr(Shooting, "_descended", counted)
+
+    stopping_at(3)
+    assert says(
+        called(*words, "--no-report", ends=STOPPED).stderr, "Stopped. Finished parts are kept; the same command"
+    )
+    stopping_at(40)
+    assert "Stopped. So far: Coulomb friction in the equation of v; " in called(*words, ends=STOPPED).stderr
+    stopping_at(np.inf)
+    assert "continuing an earlier run: " in called(*words, "--no-report", ends=0).stderr
+    monkeypatch.setattr(Shooting, "_descended", descended)
+    for file in ("held_out.csv", "augmented.toml"):
+        assert (tmp_path / file).read_bytes() == (whole[0] / file).read_bytes()
+    found, wanted = (json.loads((one / "discovery.json").read_text(encoding="utf-8")) for one in (tmp_path, whole[0]))
+    own = {"provenance", "own_sha256"}
+    assert {name: found[name] for name in found.keys() - own} == {name: wanted[name] for name in wanted.keys() - own}
+    assert not (tmp_path / "kept").exists()
 
 
 def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch, called):

@@ -9,10 +9,8 @@ import pytest
 from manufactured_discovery import CUBIC, SPRING, manufactured
 from texts import says
 
-from gaitdisc.discovery import result as noun
 from gaitdisc.discovery.method import method_of
 from gaitdisc.discovery.page import (
-    VERDICTS,
     closed_share,
     corrections_table,
     data_findings,
@@ -171,10 +169,6 @@ def test_no_gap_is_a_page_too(tmp_path):
 def test_what_a_file_says_is_text_and_never_markup(tmp_path):
     text = write_discovery_report(manufactured(sentence="<b>lacks</b>"), tmp_path).read_text(encoding="utf-8")
     assert "&lt;b&gt;lacks" in text
-
-
-def test_every_verdict_has_its_words():
-    assert set(VERDICTS) == set(noun.VERDICTS)
 
 
 @pytest.mark.parametrize(

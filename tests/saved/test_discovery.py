@@ -27,7 +27,7 @@ def test_an_answer_without_an_effect_fits_the_schema_too():
 
 
 def test_schema_and_noun_know_the_same_verdicts():
-    assert tuple(SCHEMA["properties"]["verdict"]["enum"]) == VERDICTS
+    assert tuple(SCHEMA["properties"]["verdict"]["enum"]) == tuple(VERDICTS)
 
 
 def test_an_effect_says_its_place_by_its_kind():
