@@ -93,16 +93,29 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     if measured is not None:
         with_model(*discover_files(simulation, measured, request), out)
         return
-    whose, _, joint = participant.partition(":")
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.saved.unit_folder import unit_name
 
-    def discovered(person: str, folder: Path) -> Discovery:
-        claim_folder(folder, *FILES)
-        found, augmented = discover_study(simulation, person, request, joint or ANKLE)
-        with_model(found, augmented, folder)
-        return found
+    whose, _, joint = participant.partition(":")
+    study = load_study(simulation)
+    device, others = study.conditions.device or "", study.conditions.others
+
+    def discovered(person: str, folder: Path) -> dict[str, Discovery]:
+        places = {device: folder, **{word: folder / unit_name(person, word) for word in others}}
+        for place in places.values():
+            claim_folder(place, *FILES)
+        answers = discover_study(simulation, person, request, joint or ANKLE)
+        for word, (found, augmented) in answers.items():
+            if others:
+                typer.echo(f"{word}:")
+            with_model(found, augmented, places[word])
+        for one in next(iter(answers.values()))[0].conditions:
+            if not one.verdict:
+                LOG.info(f"{one.condition}: refused: {one.sentence}")
+        return {word: found for word, (found, _) in answers.items()}
 
     if whose == EVERYONE:
-        _everyone(simulation, out, discovered)
+        _everyone([one.id for one in study.participants], out, discovered)
     else:
         discovered(whose, out)
 
@@ -134,22 +147,21 @@ def _write(
     typer.echo(f"{'report' if draw else 'found'}: {place}")
 
 
-def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
+def _everyone(people: Sequence[str], out: Path, discovered: Callable[[str, Path], dict[str, Discovery]]) -> None:
     """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
-    from gaitdisc.discovery.device_study import lines, over_people
+    from gaitdisc.discovery.device_study import lines, over_conditions
     from gaitdisc.errors import GaitdiscError
-    from gaitdisc.ingest.study_file import load_study
     from gaitdisc.spreadsheet import write_csv
 
     claim_folder(out, "people.csv")
-    found: dict[str, Discovery] = {}
-    for person in load_study(study).participants:
-        typer.echo(f"{person.id}:")
+    found: dict[str, dict[str, Discovery]] = {}
+    for person in people:
+        typer.echo(f"{person}:")
         try:
-            found[person.id] = discovered(person.id, out / person.id)
+            found[person] = discovered(person, out / person)
         except GaitdiscError as error:
             LOG.info(f"refused: {error}")
-    table = over_people(found)
+    table = over_conditions(found)
     write_csv(table, out / "people.csv", "%.6g")
     for line in lines(table):
         typer.echo(line)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -46,7 +47,8 @@ def estimates_table(discovery: Discovery) -> Table:
     for effect in discovery.effects:
         for name, one in effect.estimates.items():
             number = name.replace("_", " ")
-            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), _degrees(one)))
+            degrees = estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
             records.append(
                 (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
             )
@@ -70,9 +72,10 @@ def gap_table(discovery: Discovery) -> Table:
             amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
             rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
+    moved = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
     caption = (
-        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, compared with noise "
+        f"Root mean square of measured minus simulated, before{moved} and after, compared with noise "
         "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
         "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
         f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
@@ -95,6 +98,31 @@ def models_table(discovery: Discovery) -> Table:
     return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
 
 
+def conditions_table(discovery: Discovery) -> Table:
+    """Return the conditions of a study side by side: what each was found to change, with its interval."""
+    models = ("Nominal", "Nominal + named effect")
+    rows, records = [], []
+    for one in discovery.conditions:
+        errors = [one.beside.get(model, math.nan) for model in models]
+        cells = [with_unit(amount(each, 0.1), "N m") if math.isfinite(each) else NONE for each in errors]
+        for effect in one.effects:
+            rows.append((one.condition, f"{spoken(effect.name)}, {effect.place}", _numbers(effect), *cells))
+            named = (one.condition, effect.name, effect.place)
+            records += [(*named, name, *asdict(each).values(), *errors) for name, each in effect.estimates.items()]
+        if not one.effects:
+            why = VERDICTS[one.verdict] if one.verdict else f"refused: {one.sentence}"
+            rows.append((one.condition, why, NONE, *cells))
+            records.append((one.condition, why, "", "", *[math.nan] * 3, "", *errors))
+    caption = (
+        f"Conditions of the study, n = {len(discovery.conditions)}, each compared with the Nominal walk, which "
+        "calibrates one moment model for all. In brackets: 95 % interval. Nominal, Nominal + named effect: root mean "
+        "square error of the net moment on the held-out strides of the condition."
+    )
+    columns = ("condition", "effect", "place", "number", "value", "low", "high", "unit", "nominal_n_m", "named_n_m")
+    headings = ("condition", "effect", "its parameters", *models)
+    return Table("conditions", caption, headings, tuple(rows), _frame(records, columns))
+
+
 def trials_table(discovery: Discovery) -> Table:
     """Root mean square error of each held-out trial, before and after, channel by channel."""
     runs, rows, records = discovery.runs, [], []
@@ -114,10 +142,6 @@ def trials_table(discovery: Discovery) -> Table:
     )
     columns = ("trial", "channel", "before", "after", "unit")
     return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
-
-
-def _before(discovery: Discovery) -> str:
-    return " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
 
 
 def _unproven(discovery: Discovery) -> str:
@@ -173,7 +197,8 @@ def explanations_table(discovery: Discovery) -> Table:
         closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
         numbers = "; ".join(_numbers(each) for each in one.effects)
-        rows.append((str(number), one.as_given, numbers, _percent(closed), _bic(first.bic), tied, apart))
+        bic = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
+        rows.append((str(number), one.as_given, numbers, _percent(closed), bic, tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
         f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
@@ -208,18 +233,10 @@ def _amounts(one: Estimate) -> list[str]:
     return [with_unit(amount(each, (one.high - one.low) / 2), unit) for each in (one.value, one.low, one.high)]
 
 
-def _degrees(one: Estimate) -> str:
-    return estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
-
-
 def _numbers(one: FoundEffect) -> str:
     numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
     outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
     return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
-
-
-def _bic(value: float) -> str:
-    return f"{value:.0f}".replace("-", "−") if math.isfinite(value) else NONE
 
 
 def _percent(share: float) -> str:
@@ -244,6 +261,8 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "explanations": explanations_table(discovery),
         "findings": data_findings(discovery),
     }
+    if discovery.conditions:
+        tables["conditions"] = conditions_table(discovery)
     if made:
         tables |= provenance_tables(made)
     save_tables(tables.values(), folder)

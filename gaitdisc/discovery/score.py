@@ -61,16 +61,13 @@ class Scorer:
 
     def scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         """Return the best score of each candidate, the greatest gain first; of a great many, those worth it alone."""
-        if len(candidates) > MOST:
-            candidates = tuple(one.candidate for one in self._on_some_segments()._scores(candidates)[:KEPT])
+        if len(candidates) > MOST:  # first on some of the segments, evenly from all
+            count = len(self.shooting.segments)
+            some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
+            shooting = replace(self.shooting, segments=self.shooting.segments.among(some))
+            part = replace(self, shooting=shooting, model=replace(self.model, fit=self.model.fit.among(some)))
+            candidates = tuple(one.candidate for one in part._scores(candidates)[:KEPT])
         return self._scores(candidates)
-
-    def _on_some_segments(self) -> Scorer:
-        """The same on some of the segments, evenly from all."""
-        count = len(self.shooting.segments)
-        some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
-        shooting = replace(self.shooting, segments=self.shooting.segments.among(some))
-        return replace(self, shooting=shooting, model=replace(self.model, fit=self.model.fit.among(some)))
 
     def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         basis, known, left = self._explained()
@@ -207,19 +204,15 @@ class Scorer:
         tried = delays(self.rhythm, either_way) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
         over = np.ones(len(tried)) if late else tried - none
         machine, values, states = self._extended(candidate, [{slot: float(one)} for one in tried])
-        columns = self.shooting.whitened(np.moveaxis(self._seen_over(machine, states, values, over), 0, -1))
+        base = self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
+        seen = (self.shooting.observed(machine, states, values) - base) / over[:, None, None, None]
+        columns = self.shooting.whitened(np.moveaxis(seen, 0, -1))
         if candidate.verdict != "sensor_error":
             landed = (
                 self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
             )
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
-
-    def _seen_over(self, machine: Compiled, states: Values, values: Values, over: Values) -> Values:
-        """What is seen to change though no state does (version, segment, sample, channel)."""
-        seen = self.shooting.observed(machine, states, values)
-        base = self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
-        return (seen - base) / over[:, None, None, None]
 
 
 @dataclass(frozen=True)
