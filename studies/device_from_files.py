@@ -38,7 +38,7 @@ from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import STIFFNESS, Person, Spring, drawn
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.discovery.changed_moment import NORMAL_95
-from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, device_walks, joint_records, weighed_foot
+from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, PersonWalks, weighed_foot
 from gaitdisc.discovery.discover_files import discover_study
 from gaitdisc.discovery.result import Estimate, FoundEffect
 from gaitdisc.ingest.c3d_writing import write_c3d
@@ -70,15 +70,16 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 def run(people: int, seed: int, quick: bool, fit: bool = False) -> pd.DataFrame:
     """Hide each effect in each person's second walk, and search the files."""
     everyone = [drawn(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
-    hiddens = ("spring",) if quick else RIGHT
-    return pd.DataFrame([found_in(one, hidden, fit) for one in everyone for hidden in hiddens])
+    return pd.DataFrame(
+        [found_in(one, hidden, fit) for one in everyone for hidden in (("spring",) if quick else RIGHT)]
+    )
 
 
 def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
     """One study of one person, one search: what it says beside what is true."""
     with TemporaryDirectory() as folder:
         study = write_person(person, hidden, Path(folder))
-        found = None if fit else discover_study(study, person.name)[0]
+        found = None if fit else discover_study(study, person.name)["exo"][0]
         effects, beside = (found.effects, dict(found.beside)) if found else (fitted(study, person.name), {})
     *wanted, truth = RIGHT[hidden]
     own = [next(iter(one.estimates.values())) for one in effects if [one.name, one.place] == wanted]
@@ -91,9 +92,10 @@ def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
 def fitted(study: Path, who: str) -> tuple[FoundEffect, ...]:
     """What the fit of both walks says: at the ankle, or where nothing changed there, of the foot."""
     read = load_study(study)
-    changed = device_walks(read, who).changed
+    walks = PersonWalks(read, read.participant(who))
+    changed = walks.calibrated("exo").changed
     if changed is None:
-        mass = weighed_foot(joint_records(read, who, FOOT_SHOWS_AT))
+        mass = weighed_foot({joint: walks.at("exo", joint) for joint in FOOT_SHOWS_AT})
         return (FoundEffect("", "added_foot_mass", "wrong_parameter", "", {"value": mass}),) if mass else ()
     half = NORMAL_95 * changed.spread
     number = Estimate(changed.value, changed.value - half, changed.value + half)

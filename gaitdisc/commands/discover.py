@@ -18,6 +18,7 @@ from gaitdisc.own_files import claim_folder
 if TYPE_CHECKING:
     from gaitdisc.discovery.catalogue import Request
     from gaitdisc.discovery.result import Discovery
+    from gaitdisc.simulation.simulation import Simulation
 
 EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
@@ -58,7 +59,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. For a study, add "
             "--participant.",
         )
-    whose, _, joint = participant.partition(":")
+    whose = participant.partition(":")[0]
     claim_folder(out, *(("people.csv",) if whose == EVERYONE and measured is None else FILES), mended=(KEPT,))
     began = time.perf_counter()
 
@@ -84,16 +85,12 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         typer.echo(f"{'report' if draw else 'found'}: {place}")
         return found
 
-    def discovered(person: str, folder: Path = out) -> Discovery:
-        if measured is None:
-            found, augmented = discover_study(simulation, person, request, joint or ANKLE)
-        else:
-            found, augmented = discover_files(simulation, measured, request)
+    def with_model(found: Discovery, augmented: Simulation, folder: Path = out) -> Discovery:
         return write(found, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
 
     with stoppable():
         from gaitdisc.discovery.catalogue import Request
-        from gaitdisc.discovery.discover_files import discover_files, discover_study
+        from gaitdisc.discovery.discover_files import discover_files
         from gaitdisc.discovery.folder import save_discovery
         from gaitdisc.discovery.kept_work import kept_work
         from gaitdisc.engines.mapping import names_engine
@@ -103,12 +100,12 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
         with kept_work(out, say) as work:
             request = Request.read(catalogue, given, alpha, work.progress)
-            if measured is not None and names_engine(simulation):
+            if measured is None:
+                _of_study(simulation, participant, request, out, with_model)
+            elif names_engine(simulation):
                 _of_engine(simulation, measured, request, write)
-            elif measured is None and whose == EVERYONE:
-                _everyone(simulation, out, discovered)
             else:
-                discovered(whose)
+                with_model(*discover_files(simulation, measured, request))
 
 
 def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., Discovery]) -> None:
@@ -127,22 +124,53 @@ def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..
     write(answer.found, partial(write_answer, answer), (*answer.written.notes, answer.runs.said))
 
 
-def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
-    """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
-    from gaitdisc.discovery.device_study import lines, over_people
-    from gaitdisc.errors import GaitdiscError
+def _of_study(
+    path: Path, participant: str, request: Request, out: Path, write: Callable[[Discovery, Simulation, Path], Discovery]
+) -> None:
+    """Compare each condition of a participant, or of all, with the Nominal walk."""
+    from gaitdisc.discovery.discover_files import discover_study
     from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.saved.unit_folder import unit_name
+
+    whose, _, joint = participant.partition(":")
+    study = load_study(path)
+    device, others = study.conditions.device or "", study.conditions.others
+
+    def discovered(person: str, folder: Path) -> dict[str, Discovery]:
+        places = {device: folder, **{word: folder / unit_name(person, word) for word in others}}
+        for place in places.values():
+            if place != out:  # which is held already
+                claim_folder(place, *FILES)
+        answers = discover_study(path, person, request, joint or ANKLE)
+        for word, (found, augmented) in answers.items():
+            if others:
+                typer.echo(f"{word}:")
+            write(found, augmented, places[word])
+        for one in next(iter(answers.values()))[0].conditions:
+            if not one.verdict:
+                LOG.info(f"{one.condition}: refused: {one.sentence}")
+        return {word: found for word, (found, _) in answers.items()}
+
+    if whose == EVERYONE:
+        _everyone([one.id for one in study.participants], out, discovered)
+    else:
+        discovered(whose, out)
+
+
+def _everyone(people: Sequence[str], out: Path, discovered: Callable[[str, Path], dict[str, Discovery]]) -> None:
+    """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
+    from gaitdisc.discovery.device_study import lines, over_conditions
+    from gaitdisc.errors import GaitdiscError
     from gaitdisc.spreadsheet import write_csv
 
-    found: dict[str, Discovery] = {}
-    for person in load_study(study).participants:
-        typer.echo(f"{person.id}:")
+    found: dict[str, dict[str, Discovery]] = {}
+    for person in people:
+        typer.echo(f"{person}:")
         try:
-            claim_folder(out / person.id, *FILES)
-            found[person.id] = discovered(person.id, out / person.id)
+            found[person] = discovered(person, out / person)
         except GaitdiscError as error:
             LOG.info(f"refused: {error}")
-    table = over_people(found)
+    table = over_conditions(found)
     write_csv(table, out / "people.csv", "%.6g")
     for line in lines(table):
         typer.echo(line)

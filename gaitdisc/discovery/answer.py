@@ -181,19 +181,15 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
         return tuple(Rival(one, one.gained, False) for one in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
-        best = search.with_others(now, one.model.parts) if one.labels[-1] in own else _best(search, now, one)
+        part, parts, sets = one.model.parts[-1], now.model.parts, [one.model.parts]
+        if one.labels[-1] not in own:  # its last explanation alone, as it was, or beside the answer's but one
+            sets = [(part,), *(sets if len(one.model.parts) > 1 else [])]
+            if len(parts) > 1:
+                sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
+        best = min((search.with_others(now, some) for some in sets), key=lambda tried: tried.bic)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
-
-
-def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
-    """Return the best model with another's last explanation in it: alone, as it was, or beside the answer's but one."""
-    part, parts = other.model.parts[-1], now.model.parts
-    sets = [(part,), *([other.model.parts] if len(other.model.parts) > 1 else [])]
-    if len(parts) > 1:
-        sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
-    return min((search.with_others(now, one) for one in sets), key=lambda one: one.bic)
 
 
 def list_explanations(

@@ -29,7 +29,6 @@ from gaitdisc.processing.muscle_moment import (
     Form,
     MuscleMoment,
     Sums,
-    Values,
     bounded,
     cycle,
     model_of,
@@ -39,6 +38,7 @@ from gaitdisc.processing.muscle_moment import (
     tied,
     usual_angle,
 )
+from gaitdisc.recording.arrays import Values
 
 LEARNED = 0.75  # of the device walk's strides, from its beginning
 CLOSES = 0.10  # of the squared error on device strides that were left out, to be kept

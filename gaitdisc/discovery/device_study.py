@@ -1,9 +1,9 @@
-"""What a device does, from a laboratory's own files: both walks of a person, to the discovery at a joint."""
+"""What a device does, from a laboratory's own files: walks of a person, to the discovery at a joint."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -12,18 +12,18 @@ import pandas as pd
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, changed_moment, foot_mass
 from gaitdisc.discovery.effect_words import estimate_text, spoken
-from gaitdisc.discovery.joint_and_trials import WORDS, changes_of, driven_of, nominal_moment, walk_of, weighed
+from gaitdisc.discovery.joint_and_trials import changes_of, nominal_moment, walk_of, weighed
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.public_words import of_trial, words_of
-from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
+from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.models.ridge import fit_ridge
 from gaitdisc.processing.joint_record import JointRecord, joint_record
-from gaitdisc.processing.muscle_moment import MuscleMoment, fitted_moment
-from gaitdisc.processing.process import StudyWalks
+from gaitdisc.processing.muscle_moment import JOINTS, MuscleMoment, driven_of, fitted_moment
+from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.processing.processed_walks import public_trial
 from gaitdisc.recording import Finding, Samples, Trial
 
@@ -81,7 +81,7 @@ class DeviceWalks:
         what, per_kg = "not estimated: no marker shows the foot", self.device.per_kg
         if per_kg.size:  # which mass at the foot would be as large as what the moment model leaves
             least = self.model.left_nm / float(np.nanstd(per_kg))
-            what = f"at the {WORDS[self.device.joint]}, {least:.1f} kg at the foot would have the size of the residual"
+            what = f"at the {JOINTS[self.device.joint]}, {least:.1f} kg at the foot would have the size of the residual"
         mass = Finding("note", "added mass", self.device.subject, what, "")
         own = (*self.nominal.findings, *self.device.findings, self._calibration(), mass)
         return (*own, self._together(self.changed)) if self.changed else own
@@ -97,12 +97,13 @@ class DeviceWalks:
         return Finding("note", "moment model", self.nominal.subject, what, "")
 
     def _calibration(self) -> Finding:
-        model, word = self.model, WORDS[self.nominal.joint]
+        model, word = self.model, JOINTS[self.nominal.joint]
+        late_ms = 1000 * (model.form.delay_s + model.form.lag_s)
         driven = driven_of(self.nominal)
         unseen = np.nanstd(model.others(driven)[np.isfinite(self.nominal.moment)])
         what = (
             f"the residual of the {word}'s moment model is {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on "
-            f"held-out Nominal strides (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms "
+            f"held-out Nominal strides (R2 {model.r2:.2f}); EMG acts {late_ms:.0f} ms "
             f"later; {unseen:.1f} N m come from muscles without an electrode"
         )
         return Finding("note", "moment model", self.nominal.subject, what, "")
@@ -136,49 +137,73 @@ class DeviceWalks:
         return f" Its size is unreliable: the hip's {which} has no electrode." if unseen else ""
 
 
-def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> DeviceWalks:
-    """Read one joint of both walks of a participant; a walk that lacks EMG or moments is refused with its name."""
-    if joint not in WORDS:
-        raise SchemaError(f"the joint must be one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
-    nominal, device = joint_records(study, participant, (joint,))[joint]
-    model = nominal_moment(nominal)
-    check_calibrated(model, nominal)
-    return DeviceWalks(nominal, device, model)
+@dataclass(frozen=True, eq=False)
+class PersonWalks:
+    """Walks of a participant: each is read once, and the Nominal one calibrates a joint once for all others."""
+
+    study: Study
+    participant: Participant
+    _reader: C3DReader = field(default_factory=C3DReader, init=False)
+    _read: dict[str, ReadWalk] = field(default_factory=dict, init=False)
+    _models: dict[str, MuscleMoment] = field(default_factory=dict, init=False)
+
+    @cached_property
+    def _words(self) -> PublicWords:
+        return words_of(self.study, self.participant)
+
+    @cached_property
+    def _walks(self) -> StudyWalks:
+        public = partial(public_trial, self.study, self.participant, self._words, self._reader)
+        return StudyWalks(self.study, self.participant, public)
+
+    def calibrated(self, condition: str, joint: str = "ankle_angle") -> DeviceWalks:
+        """Return one joint of the Nominal walk and another; a walk that lacks EMG or moments is refused by its name."""
+        if joint not in JOINTS:
+            raise SchemaError(f"the joint must be one of {', '.join(JOINTS)}", f"found {joint!r}", "Correct --joint.")
+        walks = self.at(condition, joint)
+        check_calibrated(walks.model, walks.nominal)
+        return walks
+
+    def at(self, condition: str, joint: str) -> DeviceWalks:
+        """Return one joint of the Nominal walk and another, whatever the moment model explains."""
+        if lacking := not_compared(against(self.study, condition), self.participant):
+            needed = f"both walks of {self.participant.id} are required"
+            raise SchemaError(needed, lacking, "Name one trial of each condition.")
+        nominal, device = (self._record(word, joint) for word in (self.study.conditions.nominal, condition))
+        if joint not in self._models:
+            self._models[joint] = nominal_moment(nominal)
+        return DeviceWalks(nominal, device, self._models[joint])
+
+    def _record(self, condition: str, joint: str) -> JointRecord:
+        planned = self.participant.trials_of(condition)[0]
+        if condition not in self._read:
+            with self._reader:
+                self._read[condition] = self._walks.read_walk(planned)
+        read = self._read[condition]
+        check_kinetics(read.trial)
+        mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
+        public = of_trial(self._words, self.participant, planned)
+        record = public.of(partial(joint_record, read.trial, self.study, joint, mass_kg))
+        return replace(record, subject=self.participant.id)
 
 
-def joint_records(
-    study: Study, participant: str, joints: tuple[str, ...]
-) -> dict[str, tuple[JointRecord, JointRecord]]:
-    """Read some joints of both walks of a participant: the Nominal one and the one with the device, by joint."""
-    person = study.participant(participant)
-    lacking = not_compared(study, person)
-    if lacking:
-        raise SchemaError(f"both walks of {participant} are required", lacking, "Name one trial of each condition.")
-    words = words_of(study, person)
-    records = []
-    with C3DReader() as reader:
-        own = StudyWalks(study, person, partial(public_trial, study, person, words, reader))
-        for word in study.conditions.both:
-            planned = person.trials_of(word)[0]
-            read = own.read_walk(planned)
-            check_kinetics(read.trial)
-            mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
-            public = of_trial(words, person, planned)
-            each = [public.of(partial(joint_record, read.trial, study, joint, mass_kg)) for joint in joints]
-            records.append([replace(one, subject=participant) for one in each])
-    return dict(zip(joints, zip(*records, strict=True), strict=True))
+def against(study: Study, condition: str) -> Study:
+    """Return the study that compares this condition with the reference, if it compares a device at all."""
+    if study.conditions.device is None:
+        return study
+    conditions = study.conditions.model_copy(update={"device": condition})
+    return study.model_copy(update={"conditions": conditions}).placed(study.folder)
 
 
-def weighed_foot(walks: Mapping[str, Sequence[JointRecord]]) -> Estimate | None:
+def weighed_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
     """Return the mass at the foot that the knee shows and the hip bears out [kg]; None where they show none.
 
     At the hip it comes out too small: the two strongest muscles, which take part in carrying it, have no electrode.
     """
     found = {}
-    for joint, (nominal, device) in walks.items():
-        model = nominal_moment(nominal)
-        if device.per_kg.size and model.r2 >= LEAST_R2:
-            found[joint] = foot_mass(model, walk_of(nominal), walk_of(device), device.per_kg)
+    for joint, one in walks.items():
+        if one.device.per_kg.size and one.model.r2 >= LEAST_R2:
+            found[joint] = foot_mass(one.model, walk_of(one.nominal), walk_of(one.device), one.device.per_kg)
     if set(found) != set(FOOT_SHOWS_AT):
         return None
     (value, spread), (beside, its_spread) = (found[joint] for joint in FOOT_SHOWS_AT)
@@ -187,10 +212,10 @@ def weighed_foot(walks: Mapping[str, Sequence[JointRecord]]) -> Estimate | None:
     return Estimate(value, value - half, value + half, "kg") if named else None
 
 
-def with_foot_mass(found: Discovery, study: Study, participant: str) -> Discovery:
+def with_foot_mass(found: Discovery, walks: PersonWalks, condition: str) -> Discovery:
     """Return what was found at the ankle where nothing is missing there, with a mass that knee and hip show."""
     try:
-        mass = weighed_foot(joint_records(study, participant, FOOT_SHOWS_AT))
+        mass = weighed_foot({joint: walks.at(condition, joint) for joint in FOOT_SHOWS_AT})
     except ChannelError:  # files that know the ankle alone
         return found
     if mass is None:
@@ -240,7 +265,7 @@ def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
     raise SchemaError(
         f"the moment model must explain at least {100 * LEAST_R2:.0f} % of the variance of held-out Nominal strides "
         "before a device is named",
-        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, with {nominal.stride.max() + 1} "
+        f"the {JOINTS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, with {nominal.stride.max() + 1} "
         "strides",
         "Record more strides, add muscles that span the joint, or check that EMG and forces share a clock.",
     )
@@ -272,7 +297,7 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     samples = Samples(library, (device.moment - nominal)[:, None], names, ("left",), device.time, library[:, -1])
     augmented = nominal + fit_ridge(samples.rows(learned), HARMONICS)(library)[:, 0]
     blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
-    exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, (model.delay_s, model.lag_s))
+    exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, model.form)
     exo = exo_model.net(driven)
     own = known & held
     _, after, _ = found.held_out.channels["net_moment"]
@@ -303,11 +328,27 @@ def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
     return table.sort_values("people", ascending=False, kind="stable", ignore_index=True)
 
 
+def over_conditions(found: Mapping[str, Mapping[str, Discovery]]) -> pd.DataFrame:
+    """Rows of `over_people` for each condition, which a first column names where a study has several.
+
+    found: person -> condition -> answer
+    """
+    people: dict[str, dict[str, Discovery]] = {}
+    for person, answers in found.items():
+        for word, one in answers.items():
+            people.setdefault(word, {})[person] = one
+    if not any(one.conditions for answers in found.values() for one in answers.values()):
+        return over_people(next(iter(people.values()), {}))
+    tables = {word: over_people(own) for word, own in people.items()}
+    return pd.concat(tables, names=["condition"]).reset_index(0).reset_index(drop=True)
+
+
 def lines(table: pd.DataFrame) -> list[str]:
-    """Each row of `over_people` as a line of text."""
+    """Each row of `over_conditions` as a line of text."""
     said = []
     for row in table.to_dict("records"):
-        what = f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
+        what = f"{row['condition']}: " if "condition" in row else ""
+        what += f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
         mean = f", mean {row['mean']:.3g}" if row["place"] else ""
         if np.isfinite(row["low"]):
             mean += f" (95 % {row['low']:.3g} to {row['high']:.3g})"

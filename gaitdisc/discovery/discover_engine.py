@@ -65,7 +65,9 @@ def discover_engine(
     mapping, engine = read_mapping(model)
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
-    states = smoothed_states(mapping, engine, data)
+    clean, rate_of = without_spikes(data), {one.name: one.speed for one in engine.coordinates}
+    span = (SMOOTH if engine.fibres else NARROW) * rhythm_of(clean.observed, clean.rate).period
+    states = guess_states(replace(mapping, model=""), clean, span, rate_of).states  # coordinates and speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
@@ -204,14 +206,6 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
                 f"no column shows {one.called!r}; the observations show {', '.join(sorted(seen)) or 'none'}",
                 "Name its column under [observations], or lock the coordinate in the model.",
             )
-
-
-def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> Values:
-    """Coordinates and speeds along the record (trial, sample, state)."""
-    data, plain = without_spikes(data), replace(mapping, model="")
-    period = rhythm_of(data.observed, data.rate).period
-    rate_of = {one.name: one.speed for one in engine.coordinates}
-    return guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
 
 
 def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:

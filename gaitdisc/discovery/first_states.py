@@ -152,7 +152,13 @@ def followed(shooting: Shooting, simulation: Simulation, values: Values) -> Valu
     """
     assert shooting.past is not None
     drive = shooting.measured.drive
-    inputs = np.concatenate([_bridged_trials(shooting.past, drive.samples), drive.inputs], axis=2)
+    past = np.zeros(shooting.past.shape)  # unknown samples bridged by straight lines, zero beyond the end
+    for trial, length in enumerate(drive.samples):
+        for state, seen in enumerate(shooting.past[trial, :length].T):
+            known = np.isfinite(seen)
+            if known.any():
+                past[trial, :length, state] = _bridged(seen, known)
+    inputs = np.concatenate([past, drive.inputs], axis=2)
     along = Drive(drive.rate, drive.time0, inputs, drive.samples)
     machine = compile_simulation(
         driven_by_others(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
@@ -193,17 +199,6 @@ def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation
         sensors=(),
         effects=(),
     )
-
-
-def _bridged_trials(states: Values, samples: NDArray[np.int64]) -> Values:
-    """States of every trial, unknown samples bridged by straight lines, zero beyond the end (trial, sample, state)."""
-    out = np.zeros(states.shape)
-    for trial, length in enumerate(samples):
-        for state, values in enumerate(states[trial, :length].T):
-            known = np.isfinite(values)
-            if known.any():
-                out[trial, :length, state] = _bridged(values, known)
-    return out
 
 
 @dataclass(frozen=True)

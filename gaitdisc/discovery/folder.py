@@ -10,6 +10,7 @@ import numpy as np
 
 from gaitdisc.discovery.result import (
     SIZES,
+    ConditionAnswer,
     Correction,
     Discovery,
     Estimate,
@@ -73,6 +74,7 @@ def load_discovery(folder: Path) -> Discovery:
             explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
             beside=_known(data.get("beside", {})),
+            conditions=tuple(map(_condition, data.get("conditions", ()))),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own
@@ -115,6 +117,10 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
 def _correction(row: Mapping[str, Any]) -> Correction:
     given, value, low, high = (_known(row[name]) for name in ("from", "to", "low", "high"))
     return Correction(row["parameter"], given, Estimate(value, low, high, row["unit"]))
+
+
+def _condition(row: Mapping[str, Any]) -> ConditionAnswer:
+    return ConditionAnswer(**{**row, "effects": tuple(map(_effect, row["effects"])), "beside": _known(row["beside"])})
 
 
 def _explanation(row: Mapping[str, Any]) -> Explanation:

@@ -81,20 +81,15 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
             * (scale.size / scale.spread) ** 2
         )
-        doubt = doubt + spread_by_inputs(case, whole, shooting, now) / scale.spread**2
+        moved = np.zeros_like(whole.residual)  # mean square that the stated errors of inputs move the run by
+        for seed in range(DRAWN if wandering(case.search.base) else 0):
+            drawn = with_drawn_errors(case.measured, case.search.base, seed)
+            _, there = replace(shooting, measured=drawn).run(now.model.machine, whole.starts[None], whole.values[None])
+            moved += (shooting.seen - whole.residual - there[0]) ** 2 / DRAWN
+        doubt = doubt + moved / scale.spread**2
         found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
     error, doubt = np.mean(found, axis=0)
     return float(error), float(doubt)
-
-
-def spread_by_inputs(case: Case, run: Fitted, shooting: Shooting, now: ScoredModel) -> Values:
-    """Mean square that the stated errors of inputs move a run by (run, sample, channel); 0 where none wanders."""
-    base, moved = case.search.base, np.zeros_like(run.residual)
-    for seed in range(DRAWN if wandering(base) else 0):
-        drawn = with_drawn_errors(case.measured, base, seed)
-        _, seen = replace(shooting, measured=drawn).run(now.model.machine, run.starts[None], run.values[None])
-        moved += (shooting.seen - run.residual - seen[0]) ** 2 / DRAWN
-    return moved
 
 
 def strays(case: Case, now: ScoredModel, before: float) -> bool:

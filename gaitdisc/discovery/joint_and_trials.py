@@ -9,9 +9,9 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import Change, Walk
-from gaitdisc.errors import ChannelError, StrideError
+from gaitdisc.errors import StrideError
 from gaitdisc.processing.joint_record import JointRecord
-from gaitdisc.processing.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
+from gaitdisc.processing.muscle_moment import JOINTS, Driven, MuscleMoment, driven_of, fitted_moment, sign_at
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
@@ -38,27 +38,6 @@ EFFECTS = (
     "constant_load", "linear_stiffness", "one_sided_spring", "dead_zone_spring", "viscous_damping", "one_sided_damper",
     "coulomb_friction", "phase_locked_moment",
 )  # fmt: skip
-WORDS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
-
-
-def driven_of(record: JointRecord) -> Driven:
-    """Return what drives the muscles about the joint of a record."""
-    signs = np.array([sign_at(record.joint, name) for name in record.muscles], float)
-    if not signs.any():
-        raise ChannelError(
-            f"naming a device at the {WORDS[record.joint]} needs EMG of a muscle that spans the {WORDS[record.joint]}",
-            f"{record.subject} {record.condition} has {', '.join(record.muscles)}",
-            f"Choose another joint, such as --participant {record.subject}:ankle_angle, or name a muscle in "
-            "[channels].",
-        )
-    return Driven(
-        np.nan_to_num(record.envelopes[:, signs != 0]),
-        signs[signs != 0],
-        np.nan_to_num(record.angle),
-        np.nan_to_num(record.rate),
-        record.phase,
-        1 / float(np.median(np.diff(record.time))),
-    )
 
 
 def nominal_moment(record: JointRecord) -> MuscleMoment:
@@ -77,10 +56,10 @@ def walk_of(record: JointRecord) -> Walk:
 
 def changes_of(record: JointRecord) -> list[Change]:
     """List what a device, a muscle or a mass may change in a walk, by the names of the simulation and the catalogue."""
-    word, once = f"{WORDS[record.joint]}_moment", np.zeros(1)
+    word, once = f"{JOINTS[record.joint]}_moment", np.zeros(1)
     low, high = np.quantile(record.angle[record.stride >= 0], ENGAGED)
     angles = np.arange(low, high, ENGAGED_STEP)
-    above, below = f"max(0, {WORDS[record.joint]} ", "max(0, _"
+    above, below = f"max(0, {JOINTS[record.joint]} ", "max(0, _"
     shapes = (
         ("constant_load", "load", once, "", lambda d, _: np.ones((len(d.angle), 1))),
         ("linear_stiffness", "stiffness", once, "", lambda d, _: np.column_stack([d.angle**0, -d.angle])),
@@ -118,7 +97,7 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
     record: of the device walk
     model: calibrated on the Nominal walk of the same person
     """
-    word, (against, towards) = WORDS[record.joint], GROUPS[record.joint]
+    word, (against, towards) = JOINTS[record.joint], GROUPS[record.joint]
     carried = record.per_kg.size > 0
     muscles = [(name.split("_")[1], sign_at(record.joint, name)) for name in record.muscles]
     muscles = [(name, against if sign < 0 else towards) for name, sign in muscles if sign]
@@ -171,7 +150,7 @@ def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulat
     names = [name.split("_")[1] for name in record.muscles if sign_at(record.joint, name)]
     columns = {
         "reference": TRACKED[0] * record.angle + TRACKED[1] * record.rate + TRACKED[2] * record.speedup,
-        **dict(zip(names, driven.activation(model.delay_s, model.lag_s).T, strict=True)),
+        **dict(zip(names, driven.activation(model.form.delay_s, model.form.lag_s).T, strict=True)),
         **{f"{name}_gain": gain for name, gain in zip(names, model.gain(driven).T, strict=True)},
         "others": model.others(driven),
         "phase": record.phase,

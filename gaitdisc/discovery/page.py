@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -60,10 +61,10 @@ def gap_table(discovery: Discovery) -> Table:
             amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
             rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
+    moved = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
-    begun = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
     caption = (
-        f"Root mean square of measured minus simulated, before{begun} and after, compared with noise "
+        f"Root mean square of measured minus simulated, before{moved} and after, compared with noise "
         "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
         "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
         f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
@@ -84,6 +85,31 @@ def models_table(discovery: Discovery) -> Table:
         "latter two are trained on the device walk's other strides."
     )
     return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
+
+
+def conditions_table(discovery: Discovery) -> Table:
+    """Return the conditions of a study side by side: what each was found to change, with its interval."""
+    models = ("Nominal", "Nominal + named effect")
+    rows, records = [], []
+    for one in discovery.conditions:
+        errors = [one.beside.get(model, math.nan) for model in models]
+        cells = [with_unit(amount(each, 0.1), "N m") if math.isfinite(each) else NONE for each in errors]
+        for effect in one.effects:
+            rows.append((one.condition, f"{spoken(effect.name)}, {effect.place}", _numbers(effect), *cells))
+            named = (one.condition, effect.name, effect.place)
+            records += [(*named, name, *asdict(each).values(), *errors) for name, each in effect.estimates.items()]
+        if not one.effects:
+            why = VERDICTS[one.verdict] if one.verdict else f"refused: {one.sentence}"
+            rows.append((one.condition, why, NONE, *cells))
+            records.append((one.condition, why, "", "", *[math.nan] * 3, "", *errors))
+    caption = (
+        f"Conditions of the study, n = {len(discovery.conditions)}, each compared with the Nominal walk, which "
+        "calibrates one moment model for all. In brackets: 95 % interval. Nominal, Nominal + named effect: root mean "
+        "square error of the net moment on the held-out strides of the condition."
+    )
+    columns = ("condition", "effect", "place", "number", "value", "low", "high", "unit", "nominal_n_m", "named_n_m")
+    headings = ("condition", "effect", "its parameters", *models)
+    return Table("conditions", caption, headings, tuple(rows), _frame(records, columns))
 
 
 def trials_table(discovery: Discovery) -> Table:
@@ -160,8 +186,8 @@ def explanations_table(discovery: Discovery) -> Table:
         closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
         numbers = "; ".join(_numbers(each) for each in one.effects)
-        evidence = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
-        rows.append((str(number), one.as_given, numbers, _percent(closed), evidence, tied, apart))
+        bic = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
+        rows.append((str(number), one.as_given, numbers, _percent(closed), bic, tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
         f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
@@ -224,6 +250,8 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "explanations": explanations_table(discovery),
         "findings": data_findings(discovery),
     }
+    if discovery.conditions:
+        tables["conditions"] = conditions_table(discovery)
     if made:
         tables |= provenance_tables(made)
     save_tables(tables.values(), folder)

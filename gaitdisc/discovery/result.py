@@ -149,6 +149,17 @@ class Explanation:
 
 
 @dataclass(frozen=True)
+class ConditionAnswer:
+    """What one of several conditions of a study shows against the Nominal one."""
+
+    condition: str  # the study's word
+    sentence: str  # the answer, or why there is none
+    verdict: str = ""  # empty where the condition was refused
+    effects: tuple[FoundEffect, ...] = ()
+    beside: Mapping[str, float] = field(default_factory=dict)  # as in the condition's own discovery
+
+
+@dataclass(frozen=True)
 class Runs:
     """Measured, simulated and augmented runs of one set of trials."""
 
@@ -215,6 +226,8 @@ class Discovery(Saved, file="discovery.json"):
     explanations : tuple of Explanation
         The first five explanations of the entire gap (single effects or sets): the named one, then those that close
         most on held-out data.
+    conditions : tuple of ConditionAnswer
+        Of a study with several conditions besides Nominal: the answers of all.
     given : str
         ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
     hide : callable, optional
@@ -236,6 +249,7 @@ class Discovery(Saved, file="discovery.json"):
     corrections: tuple[Correction, ...] = ()
     beside: Mapping[str, float] = field(default_factory=dict)
     explanations: tuple[Explanation, ...] = ()
+    conditions: tuple[ConditionAnswer, ...] = ()
     given: str = ""
     hide: Callable[[Discovery], Discovery] | None = field(default=None, repr=False, compare=False)
 
@@ -296,6 +310,11 @@ class Discovery(Saved, file="discovery.json"):
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
             **({"beside": self.beside} if self.beside else {}),
+            **(
+                {"conditions": [asdict(one) | {"effects": [*map(_effect, one.effects)]} for one in self.conditions]}
+                if self.conditions
+                else {}
+            ),
         }
         return _finite(found) | {
             "findings": [asdict(one) for one in self.findings],

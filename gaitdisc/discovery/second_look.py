@@ -174,14 +174,15 @@ def relatives_of(case: Case, now: ScoredModel, number: int) -> list[Candidate]:
     """List the simpler relatives of one of a model's explanations: at its place, of the same motion."""
     own = now.model.parts[number].candidate
     names, present = RELATIVES.get(own.name, ()), now.model.explanations
-
-    def is_alike(one: Candidate) -> bool:
+    found = []
+    for one in case.search.candidates:
+        if one.name not in names or one.identity in present:
+            continue
         same = one.role == own.role or one.pieces[0] in own.pieces[0].split("*")
         # a lag of what drives it may be a time constant of the simulation's own
-        return own.kind == "input" or ((one.kind, one.place) == (own.kind, own.place) and same)
-
-    found = [one for one in case.search.candidates if one.name in names and one.identity not in present]
-    return sorted(filter(is_alike, found), key=lambda one: names.index(one.name))
+        if own.kind == "input" or ((one.kind, one.place) == (own.kind, own.place) and same):
+            found.append(one)
+    return sorted(found, key=lambda one: names.index(one.name))
 
 
 def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate) -> ScoredModel | None:

@@ -56,16 +56,6 @@ class JointRecord:
     per_kg: Values
     findings: tuple[Finding, ...] = ()
 
-    def strides(self, some: NDArray[np.intp]) -> JointRecord:
-        """Return the samples of some strides."""
-        return self.samples(np.isin(self.stride, some))
-
-    def samples(self, kept: NDArray[np.bool_]) -> JointRecord:
-        """Return some samples."""
-        names = ("time", "seen", "angle", "rate", "speedup", "moment", "envelopes", "phase", "stride")
-        part = {name: getattr(self, name)[kept] for name in names}
-        return replace(self, **part, per_kg=self.per_kg[kept] if self.per_kg.size else self.per_kg)
-
 
 def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) -> JointRecord:
     """Return one joint (`ankle_angle`): low-passed angles, EMG envelopes, moments in N m by the mass, on one side."""

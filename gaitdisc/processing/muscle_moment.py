@@ -26,6 +26,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import ChannelError
+from gaitdisc.processing.joint_record import JointRecord
+from gaitdisc.recording.arrays import Values
+
 DELAYS_S = np.arange(0.0, 0.11, 0.02)
 LAGS_S = (0.015, 0.03, 0.05)
 GAIN_RIDGE = 0.3  # ridge that pulls the two gains of a muscle together, of the mean squared regressor
@@ -58,7 +62,7 @@ SPANS: Mapping[str, Mapping[str, int]] = {
         **{"rf": 1, "sart": 1, "tfl": 1, "ilio": 1, "psoas": 1, "addl": 1},
     },
 }
-Values = NDArray[np.float64]
+JOINTS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
 
 
 def sign_at(joint: str, muscle: str) -> int:
@@ -89,6 +93,26 @@ class Driven:
         late = np.column_stack([np.interp(at - delay_s * self.rate_hz, at, one) for one in self.envelopes.T])
         keep = np.exp(-1 / (lag_s * self.rate_hz))
         return np.column_stack([lfilter([1 - keep], [1, -keep], one - one[0]) + one[0] for one in late.T])
+
+
+def driven_of(record: JointRecord) -> Driven:
+    """Return what drives the muscles about the joint of a record."""
+    word, signs = JOINTS[record.joint], np.array([sign_at(record.joint, name) for name in record.muscles], float)
+    if not signs.any():
+        raise ChannelError(
+            f"naming a device at the {word} needs EMG of a muscle that spans the {word}",
+            f"{record.subject} {record.condition} has {', '.join(record.muscles)}",
+            f"Choose another joint, such as --participant {record.subject}:ankle_angle, or name a muscle in "
+            "[channels].",
+        )
+    return Driven(
+        np.nan_to_num(record.envelopes[:, signs != 0]),
+        signs[signs != 0],
+        np.nan_to_num(record.angle),
+        np.nan_to_num(record.rate),
+        record.phase,
+        1 / float(np.median(np.diff(record.time))),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,19 +166,9 @@ class MuscleMoment:
         """Share of the moment's variance that is explained on strides left out of the fit."""
         return 1 - (self.left_nm / self.before_nm) ** 2
 
-    @property
-    def delay_s(self) -> float:
-        """Of activation behind the envelope [s]."""
-        return self.form.delay_s
-
-    @property
-    def lag_s(self) -> float:
-        """Of activation behind the delayed envelope [s]."""
-        return self.form.lag_s
-
     def by_muscle(self, driven: Driven) -> Values:
         """Return each muscle's moment (sample, muscle) [N m]."""
-        return driven.activation(self.delay_s, self.lag_s) * self.gain(driven)
+        return driven.activation(self.form.delay_s, self.form.lag_s) * self.gain(driven)
 
     def net(self, driven: Driven) -> Values:
         """Return the moment of muscles and of what no electrode sees together (sample,) [N m]."""
@@ -241,10 +255,8 @@ def model_of(form: Form, found: Values, muscles: int, left_nm: float, before_nm:
     return MuscleMoment(form, gains, float(rest[0]), firmness=firm, unseen=waves, left_nm=left_nm, before_nm=before_nm)
 
 
-def fitted_moment(
-    driven: Driven, moment: Values, blocks: NDArray[np.intp], timing: tuple[float, float] | None = None
-) -> MuscleMoment:
-    """Fit the model to a walk; delay and lag [s] are searched where they are not given.
+def fitted_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp], like: Form | None = None) -> MuscleMoment:
+    """Fit the model to a walk; delay and lag are those of a known form, else they are searched.
 
     `moment` is the net moment towards the positive angle [N m]; `blocks` numbers the blocks of strides that are left
     out of the fit in turn, -1 for none.
@@ -252,7 +264,7 @@ def fitted_moment(
     known = np.isfinite(moment) & np.isfinite(driven.phase) & (blocks >= 0)
     span = np.quantile(driven.angle[known], EDGES)
     usual = usual_angle(driven, known)
-    timings = [timing] if timing else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
+    timings = [(like.delay_s, like.lag_s)] if like else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
     muscles, count = driven.envelopes.shape[1], int(blocks.max()) + 1
     tried = []
     for one in timings:

@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
 from texts import says
@@ -10,6 +11,7 @@ from texts import says
 from gaitdisc.commands.options import REFUSED, STOPPED
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.folder import load_discovery
+from gaitdisc.discovery.result import ConditionAnswer
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.simulation_file import read_simulation
@@ -216,18 +218,22 @@ def test_of_one_trial_it_says_what_cannot_be_held_out(lab, tmp_path, called):
 def test_of_a_study_everyone_is_searched_and_who_is_refused_costs_nobody_else(lab, tmp_path, monkeypatch, called):
     person = '[[participants]]\nid = "{}"\n[[participants.trials]]\ncondition = "nominal"\nfiles = ["a.mot"]\n'
     people = "".join(map(person.format, ("W01", "W02", "W03")))
-    (tmp_path / "study.toml").write_text(f'title = "three"\n[conditions]\nnominal = "nominal"\n{people}')
+    conditions = '[conditions]\nnominal = "nominal"\ndevice = "exo"\nothers = ["soft", "turn"]\n'
+    (tmp_path / "study.toml").write_text(f'title = "three"\n{conditions}{people}')
 
     def searched(_, who, *rest):
         assert rest[-1] == "knee_angle"
         if who == "W02":
             raise GaitdiscError("walks of W02 are needed", "one is there", "Name the other.")
-        return manufactured(), read_simulation(lab / "good.toml")
+        rows = (ConditionAnswer("exo", "", "no_gap"), ConditionAnswer("turn", "walks are needed"))
+        return dict.fromkeys(("exo", "soft"), (manufactured(conditions=rows), read_simulation(lab / "good.toml")))
 
     monkeypatch.setattr("gaitdisc.discovery.discover_files.discover_study", searched)
     words = ("--participant", "all:knee_angle", "--out", tmp_path / "found", "--no-report", "-q")
     done = called("discover", tmp_path / "study.toml", *words, ends=0)
-    assert says(done.stderr, "walks of W02")
+    assert says(done.stderr, "walks of W02", "turn: refused: walks are needed")
     assert says(done.stdout, "2 of 2", "286")
-    assert "W01 286, W03 286" in (tmp_path / "found" / "people.csv").read_text()
-    assert load_discovery(tmp_path / "found" / "W03").verdict == "missing_physics"
+    people = pd.read_csv(tmp_path / "found" / "people.csv").query("number == 'stiffness'")
+    assert people[["condition", "who"]].values.tolist() == [[word, "W01 286, W03 286"] for word in ("exo", "soft")]
+    for folder in ("W03", "W03/W03-soft"):
+        assert load_discovery(tmp_path / "found" / folder).verdict == "missing_physics"

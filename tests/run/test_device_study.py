@@ -3,6 +3,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from made_joint import made_joint
 from manufactured_discovery import manufactured
@@ -10,18 +11,23 @@ from texts import says
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.device_study import (
     DeviceWalks,
     NoMomentsError,
+    PersonWalks,
     beside,
     check_calibrated,
     check_kinetics,
-    device_walks,
+    lines,
+    over_conditions,
     weighed_foot,
 )
 from gaitdisc.discovery.discover_files import discover_study
 from gaitdisc.discovery.effect_words import estimate_text
+from gaitdisc.discovery.folder import load_discovery, save_discovery
 from gaitdisc.discovery.joint_and_trials import nominal_moment
+from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.public_words import PublicWords
@@ -61,14 +67,88 @@ def one_walk(word="nominal", **others):
     return Study(title="x", conditions=Conditions(nominal="nominal", device="exo"), participants=(person,), **others)
 
 
-def test_conditions_without_a_pair_are_refused():
-    with pytest.raises(SchemaError, match=r"both.*W01.*1.*'nominal', none.*'exo'"):
-        device_walks(one_walk(), "W01")
+@pytest.mark.parametrize(
+    ("joint", "said"),
+    [
+        ("ankle_angle", r"both.*W01.*1.*'nominal', none.*'exo'"),
+        ("toe", r"ankle_angle, knee_angle, hip_flexion.*'toe'"),
+    ],
+)
+def test_conditions_without_a_pair_and_a_joint_that_is_none_are_refused(joint, said):
+    study = one_walk()
+    with pytest.raises(SchemaError, match=said):
+        PersonWalks(study, study.participants[0]).calibrated("exo", joint)
 
 
-def test_a_joint_that_is_none_is_refused():
-    with pytest.raises(SchemaError, match=r"ankle_angle, knee_angle, hip_flexion.*'toe'"):
-        device_walks(one_walk(), "W01", "toe")
+def test_a_study_without_a_device_compares_none_of_its_conditions(tmp_path):
+    study = one_walk().model_copy(update={"conditions": Conditions(nominal="nominal", others=("turn",))})
+    write_study(study, tmp_path / "study.toml")
+    with pytest.raises(SchemaError, match=r"both walks of W01 are required; the study does not compare a device"):
+        discover_study(tmp_path / "study.toml", "W01")
+
+
+CONDITIONS = Conditions(nominal="nominal", device="exo", others=("exo_soft", "turn"))
+SPRINGS = {"nominal": 0.0, "exo": 150.0, "exo_soft": 75.0}
+
+
+@pytest.fixture
+def three_walks(tmp_path, monkeypatch):
+    """Three walks of a person, in a study of four conditions."""
+    trials = tuple(PlannedTrial(condition=word, files=(f"{word}.mot",)) for word in SPRINGS)
+    people = (Participant(id="W01", trials=trials),)
+    study = Study(title="x", conditions=CONDITIONS, participants=people).placed(tmp_path)
+    write_study(study, tmp_path / "study.toml")
+    for word in SPRINGS:
+        (tmp_path / f"{word}.mot").touch()
+    records = {word: made_joint(seed=seed, spring=SPRINGS[word]) for seed, word in enumerate(SPRINGS, 1)}
+    monkeypatch.setattr(PersonWalks, "_record", lambda _, word, __: records[word])
+    return study
+
+
+def test_the_nominal_walk_calibrates_one_model_for_all_conditions(three_walks):
+    walks = PersonWalks(three_walks, three_walks.participants[0])
+    stiff, soft = (walks.calibrated(word) for word in ("exo", "exo_soft"))
+    assert stiff.model is soft.model and stiff.nominal is soft.nominal and stiff.device is not soft.device
+
+
+def test_conditions_stand_side_by_side_and_one_without_a_walk_costs_no_other(three_walks, tmp_path, monkeypatch):
+    def answered(walks, word, request, joint):
+        walks.calibrated(word, joint)
+        request.progress("done")
+        spring = FoundEffect("port", "ankle_moment", "one_sided_spring", "", {"stiffness": numbers[word]}, 0.9, 80.0)
+        return manufactured(sentence=word, effects=(spring,), beside={"Nominal": 9.0, "Exo": 5.0}), None
+
+    numbers = {word: Estimate(size, size - 9, size + 9, "N m/rad") for word, size in SPRINGS.items()}
+    monkeypatch.setattr("gaitdisc.discovery.discover_files._discover_condition", answered)
+    steps = []
+    answers = discover_study(tmp_path / "study.toml", "W01", Request(progress=steps.append))
+    assert "exo_soft: done" in steps
+    found = answers["exo_soft"][0]
+    assert list(answers) == ["exo", "exo_soft"]
+    exo, soft, turn = found.conditions
+    assert (exo.sentence, soft.sentence) == ("exo", "exo_soft")
+    assert (turn.condition, turn.verdict, turn.effects) == ("turn", "", ())
+    assert says(turn.sentence, "both walks of W01 are required", "none of 'turn'")
+    save_discovery(found, tmp_path / "found")
+    kept = load_discovery(tmp_path / "found")
+    assert kept.conditions == answers["exo"][0].conditions == found.conditions
+    page = write_discovery_report(kept, tmp_path / "found").read_text()
+    assert says(page, "Conditions of the study, n = 3", "refused: both walks of W01 are required")
+    table = pd.read_csv(tmp_path / "found" / "tables" / "conditions.csv").set_index("condition")
+    assert table.loc["exo_soft", ["value", "low", "high", "nominal_n_m"]].tolist() == [75.0, 66.0, 84.0, 9.0]
+    people = over_conditions({"W01": {word: one for word, (one, _) in answers.items()}})
+    assert people["condition"].tolist() == ["exo", "exo_soft"]
+    assert lines(people)[1].startswith("exo_soft: one_sided_spring at ankle_moment, stiffness: 1 of 1, mean 75")
+
+
+@pytest.mark.slow
+def test_each_spring_of_a_study_has_its_own_number(three_walks, tmp_path):
+    answers = discover_study(tmp_path / "study.toml", "W01")
+    for word in ("exo", "exo_soft"):
+        found = answers[word][0]
+        number = found.effects[0].estimates["stiffness"]
+        assert number.low < SPRINGS[word] < number.high
+        assert found.provenance.settings["title"].endswith(f", {word}")
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +185,7 @@ def loaded(seed, kg, per_kg):
 
 
 def knee_and_hip(walks, knee, hip):
-    return {"knee_angle": (walks.nominal, knee), "hip_flexion": (walks.nominal, hip)}
+    return {"knee_angle": replace(walks, device=knee), "hip_flexion": replace(walks, device=hip)}
 
 
 @pytest.mark.parametrize(("kg", "named"), [(0.8, True), (0.0, False)])
@@ -118,7 +198,7 @@ def test_a_mass_at_the_foot_is_what_the_knee_says_and_the_hip_bears_out(walks, k
 def test_joints_that_disagree_about_a_mass_or_do_not_know_the_foot_name_none(walks):
     assert weighed_foot(knee_and_hip(walks, loaded(5, 1.2, 5.0), loaded(6, -0.4, 5.0))) is None
     assert weighed_foot(knee_and_hip(walks, made_joint(seed=5), made_joint(seed=5))) is None
-    assert weighed_foot({"knee_angle": (walks.nominal, loaded(5, 1.2, 5.0))}) is None
+    assert weighed_foot({"knee_angle": replace(walks, device=loaded(5, 1.2, 5.0))}) is None
 
 
 def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscles_is_doubted(walks):
@@ -174,14 +254,17 @@ def test_a_walk_without_emg_has_one_verdict(monkeypatch, verdict):
     def refused(*_):
         raise NoMomentsError("naming the effect needs EMG in both walks", "W01 exo has no EMG", "Add it.")
 
-    study = SimpleNamespace(participant=lambda _: SimpleNamespace(trials=()))
+    study = SimpleNamespace(
+        participant=lambda _: SimpleNamespace(id="W01", trials=()), conditions=one_walk().conditions
+    )
     monkeypatch.setattr("gaitdisc.ingest.study_file.load_study", lambda _: study)
     monkeypatch.setattr("gaitdisc.ingest.public_words.words_of", lambda *_: PublicWords())
-    monkeypatch.setattr("gaitdisc.discovery.device_study.device_walks", refused)
+    monkeypatch.setattr(PersonWalks, "calibrated", refused)
+    monkeypatch.setattr("gaitdisc.discovery.device_study.against", lambda study, _: study)
     monkeypatch.setattr("gaitdisc.discovery.nominal_model.nominal_and_trials", lambda *_: (None, None))
     compared = manufactured(sentence=verdict)
     monkeypatch.setattr("gaitdisc.discovery.discover_files.discovered", lambda *_: (compared, None))
-    found, _ = discover_study(Path("study.toml"), "W01")
+    found, _ = discover_study(Path("study.toml"), "W01")["exo"]
     reason, _, said = found.sentence.partition(". ")
     assert reason == (
         "Naming the effect needs EMG in both walks, but W01 exo has no EMG: only the motion of both walks was "
@@ -196,6 +279,6 @@ def test_without_moments_the_motion_is_compared(tmp_path):
 
     study = write_demonstration(tmp_path, 30.0, 1)
     write_study(study, tmp_path / "study.toml")
-    found = discover_study(tmp_path / "study.toml", "W01")[0]
+    found, _ = discover_study(tmp_path / "study.toml", "W01")["exo"]
     assert "has no joint moments" in found.sentence
     assert says(found.sentence, "needs joint moments in both walks")
