@@ -70,14 +70,15 @@ def compare_study(
                 "Correct the walk, or choose another participant.",
             )
         return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
-    pairs, left_out = [], []
+    nominal, device, left_out = [], [], []
     for person in study.participants:
         walks = _walks_of(study, person.id)
         if isinstance(walks, str):
             left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
         else:
-            pairs.append(walks)
-    mismatch = compare_people(pairs, channels, smallest=smallest)
+            nominal.append(walks[0])
+            device.append(walks[1])
+    mismatch = compare_people(nominal, device, channels, smallest=smallest)
     return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
 
 

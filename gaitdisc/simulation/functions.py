@@ -115,7 +115,7 @@ def simulation_from_function(
     except NotTraced as reason:
         rates = _Called(taken, count, by_points=False)
         rates = rates if rates.agrees else _Called(taken, count, by_points=True)
-        model = python_simulation(taken.title, rates, *parts, seen)
+        model = python_simulation(taken.title, rates, *parts, observations)
         return replace(model, manner=f"{rates.manner}, because its equations could not be derived: {reason}")
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from gaitdisc.notebook import html_of
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parsed, substituted, written
-from gaitdisc.simulation.parts import Lines, Parameter, Parts, Sensor, State, Term
+from gaitdisc.simulation.parts import Parameter, Parts, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 
 
@@ -67,7 +66,9 @@ class Simulation(Parts):
         for part in ("states", "inputs", "parameters", "ports", "effects", "sensors"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
         for part in ("definitions", "equations", "observations"):
-            object.__setattr__(self, part, _lines(getattr(self, part)))
+            given = getattr(self, part)
+            pairs = given.items() if isinstance(given, Mapping) else given
+            object.__setattr__(self, part, tuple((str(name), str(text)) for name, text in pairs))
         if not self.observations:
             object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
         order = {name: number for number, (name, _) in enumerate(self.observations)}
@@ -261,11 +262,6 @@ class Simulation(Parts):
             observations=tuple((key, changed(text)) for key, text in self.observations),
             effects=tuple(replace(each, term=changed(each.term)) for each in self.effects),
         )
-
-
-def _lines(given: Mapping[str, Any] | Sequence[tuple[str, Any]]) -> Lines:
-    pairs = given.items() if isinstance(given, Mapping) else given
-    return tuple((str(name), str(text)) for name, text in pairs)
 
 
 def _refuse_unknown(names: Iterable[str], kind: str, known: Collection[str]) -> None:

@@ -18,7 +18,7 @@ def _ball():
         return -values[:, :1] + ports + u
 
     return python_simulation(
-        "ball", falling, [State("v")], [Input("wind")], [Parameter("g", 9.81)], [Port("drag")], [("speed", "abs(v)")]
+        "ball", falling, [State("v")], [Input("wind")], [Parameter("g", 9.81)], [Port("drag")], {"speed": "abs(v)"}
     )
 
 
