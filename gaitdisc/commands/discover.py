@@ -65,7 +65,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     from gaitdisc.discovery.catalogue import Request
     from gaitdisc.discovery.discover_files import discover_files, discover_study
-    from gaitdisc.engines.mapping import names_engine
+    from gaitdisc.simulation.simulation_file import names_engine
     from gaitdisc.simulation.writing import write_simulation
 
     given = tuple(one.strip() for one in effects.split(",") if one.strip())

@@ -10,7 +10,7 @@ from pathlib import Path
 from gaitdisc.comparison.compare import CLINICAL, compare_people, compare_walks
 from gaitdisc.comparison.mismatch import Mismatch, Smallest
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.public_words import PublicWords, package_words, public_settings
+from gaitdisc.ingest.public_words import PublicWords, package_words
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
@@ -60,7 +60,7 @@ def compare_study(
     study: with both conditions; its filters and its detector are used
     returns: device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings
     """
-    settings = public_settings(study, {"filters", "strides", "conditions"})
+    settings = study.public_settings({"filters", "strides", "conditions"})
     if participant:
         walks = _walks_of(study, participant)
         if isinstance(walks, str):

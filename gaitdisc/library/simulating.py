@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel, side_of
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.mapping import names_engine, replaced_inputs
+from gaitdisc.engines.mapping import replaced_inputs
 from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
@@ -29,7 +29,7 @@ from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.simulation_file import names_engine, read_simulation
 
 if TYPE_CHECKING:
     import pandas as pd
