@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
-from gaitdisc.notebook import html_of
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.saved.kind import CSV, Kind, Saved, check_columns
 from gaitdisc.saved.provenance import Provenance
+from gaitdisc.words import html_of
 
 AGAIN = "Compare the walks again: `gaitdisc compare`."
 CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")

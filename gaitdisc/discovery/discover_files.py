@@ -16,8 +16,8 @@ from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.result import DEVICE, SIMULATION, Discovery, GapSize
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.public_words import PublicWords
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
+from gaitdisc.regular_file import file_sha256
 from gaitdisc.saved.provenance import made_now
 from gaitdisc.simulation.even_time import MILLISECONDS
 from gaitdisc.simulation.measured import Measured

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.recording.recording import several
 from gaitdisc.simulation.expression import LONGEST, written
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation, python_simulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.traced import NotTraced, flat, traced_equations

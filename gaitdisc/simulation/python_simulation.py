@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.parts import Input, Lines, Parameter, Port, State
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 RightHandSide = Callable[..., NDArray[np.float64]]

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import MissingFileError, ReadError, SchemaError
+from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.delays import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml

@@ -16,7 +16,7 @@ from gaitdisc.engines.motion import Coordinate, Motion
 from gaitdisc.engines.tracked_files import drafted_tracked
 from gaitdisc.engines.tracked_mapping import Tracked, read_tracked, write_tracked_mapping
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.parts import Input, Sensor, State
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
