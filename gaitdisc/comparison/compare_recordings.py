@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,10 +29,15 @@ def compare_files(
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two recordings, second minus first; `cutoff_hz` [Hz]: -3 dB of one pass, angles and moments."""
-    one, other = _apart(
+    words = [
         [word for word in re.split(r"[\W_]+", path.stem) if word.isalpha() and word.lower() in package_words()]
         for path in (first, second)
-    )
+    ]
+    for end in (0, -1):  # without the words that both begin or end with
+        while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
+            for own in words:
+                del own[end]
+    one, other = map("_".join, words)
     names = (one, other) if one and other and one != other else ("first walk", "second walk")
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
     trials = []
@@ -93,16 +97,6 @@ def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary]
     if refusals:
         return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
     return walks[nominal].summary(), walks[device].summary()
-
-
-def _apart(names: Iterable[list[str]]) -> tuple[str, str]:
-    """Names without the words that both begin or end with."""
-    words = list(names)
-    for end in (0, -1):
-        while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
-            for one in words:
-                del one[end]
-    return "_".join(words[0]), "_".join(words[1])
 
 
 def _with_settings(mismatch: Mismatch, settings: dict[str, object]) -> Mismatch:

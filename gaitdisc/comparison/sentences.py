@@ -20,8 +20,14 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     moved = alignment_sentences(mismatch)
     small = [name for name in mismatch.names if mismatch.summary_of(name)["too_small"]]
     unseen = [name for name in mismatch.names if name not in ordered and name not in small]
-    agreeing = [_agreeing(mismatch, unseen)] if unseen else []
     walks, done = f"{mismatch.first} and {mismatch.second}", mismatch.exchange
+    agreeing = []
+    if unseen:
+        bounds, sure = _by_unit(mismatch, unseen, "within"), f"{100 * (1 - done.alpha):g} %"
+        agreeing.append(
+            f"No significant gap in {_shortened(unseen)}: with {sure} confidence they agree to within {bounds} at "
+            f"every point."
+        )
     if not ordered and not small:
         strides = f"{done.strides_first} and {done.strides_second} strides"
         n = counted(done.first, "participant") if done.unit == "participant" else strides
@@ -183,13 +189,6 @@ def _timing(mismatch: Mismatch, name: str) -> str:
         f"Much of the largest gap is timing: after a shift {way}, the curve of {mismatch.first} differs by "
         f"{number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
     )
-
-
-def _agreeing(mismatch: Mismatch, names: list[str]) -> str:
-    words = _shortened(names)
-    bounds = _by_unit(mismatch, names, "within")
-    sure = f"{100 * (1 - mismatch.exchange.alpha):g} %"
-    return f"No significant gap in {words}: with {sure} confidence they agree to within {bounds} at every point."
 
 
 def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool = False) -> str:
