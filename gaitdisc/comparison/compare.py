@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -119,7 +118,7 @@ def compare_walks(
     after = _Side(names[1], blocks.mean(axis=0), _sd(other), len(blocks), len(other))
     limits = _limits(common.channels, other.mean(axis=0), smallest)
     compared = _Compared(before, after, unit, test, after.mean - before.mean, alignment, limits)
-    return _mismatch(common, compared, (first, second), _settings(plan, smallest))
+    return _mismatch(common, compared, (first, second), plan, smallest)
 
 
 def compare_people(
@@ -162,7 +161,7 @@ def compare_people(
     )
     gap, limits = (means[1] - means[0]).mean(axis=0), _limits(common.channels, after.mean, smallest)
     compared = _Compared(before, after, "participant", test, gap, alignment, limits)
-    return _mismatch(common, compared, walks, _settings(plan, smallest))
+    return _mismatch(common, compared, walks, plan, smallest)
 
 
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
@@ -184,12 +183,13 @@ def _limits(channels: Sequence[Channel], curves: NDArray[np.float64], smallest: 
 
 
 def _mismatch(
-    common: CommonCurves, compared: _Compared, walks: Sequence[WalkSummary], settings: Mapping[str, Any]
+    common: CommonCurves, compared: _Compared, walks: Sequence[WalkSummary], plan: PermutationPlan, smallest: Smallest
 ) -> Mismatch:
     """Mismatch with the findings about what was compared, each once, the severest first."""
     about = {channel.name for channel in common.channels} | {""}
     findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
     kept = dict.fromkeys(finding for finding in findings if finding.channel in about or finding.kind == "unit")
+    limits = {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
     files = {name: sha256 for walk in walks for name, sha256 in walk.files.items()}
     first, second, test = compared.first, compared.second, compared.test
     half = test.threshold * test.standard_error
@@ -203,6 +203,15 @@ def _mismatch(
         "high": compared.gap + half,
         "t": test.t,
     }
+    regions = []
+    for cluster in compared.named():
+        column, inside = cluster.channel, slice(cluster.first, cluster.last + 1)
+        at = cluster.first + int(np.argmax(np.abs(compared.gap[inside, column])))
+        channel, largest = common.channels[column], float(compared.gap[at, column])
+        regions.append((
+            channel.name, channel.unit, PERCENT[cluster.first], PERCENT[cluster.last], largest, PERCENT[at],
+            _in_sd(largest, float(second.sd[at, column])), float(compared.gap[inside, column].mean()), cluster.p,
+        ))  # fmt: skip
     exchange = Exchange(
         unit=compared.unit,
         first=first.units,
@@ -219,29 +228,13 @@ def _mismatch(
         second=second.name,
         channels=common.channels,
         curves=curves,
-        regions=_regions(common.channels, compared),
+        regions=pd.DataFrame(regions, columns=pd.Index(REGION_COLUMNS)),
         summary=_summary(common.channels, compared),
         exchange=exchange,
         findings=tuple(sorted(kept, key=lambda finding: finding.rank)),
-        provenance=made_now(settings, settings["seed"], files, SECTION),
+        provenance=made_now(asdict(plan) | limits, plan.seed, files, SECTION),
         alignment=compared.alignment,
     )
-
-
-def _regions(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
-    rows = []
-    for cluster in compared.named():
-        inside = slice(cluster.first, cluster.last + 1)
-        gap = compared.gap[inside, cluster.channel]
-        at = cluster.first + int(np.argmax(np.abs(gap)))
-        channel = channels[cluster.channel]
-        largest = float(compared.gap[at, cluster.channel])
-        sd = float(compared.second.sd[at, cluster.channel])
-        rows.append((
-            channel.name, channel.unit, PERCENT[cluster.first], PERCENT[cluster.last], largest, PERCENT[at],
-            _in_sd(largest, sd), float(gap.mean()), cluster.p,
-        ))  # fmt: skip
-    return pd.DataFrame(rows, columns=pd.Index(REGION_COLUMNS))
 
 
 def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
@@ -262,10 +255,6 @@ def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
             float(np.abs(gap[:, column] - offset).max()), column in beyond_chance - differing,
         ))  # fmt: skip
     return pd.DataFrame(rows, columns=pd.Index(CHANNEL_COLUMNS))
-
-
-def _settings(plan: PermutationPlan, smallest: Smallest) -> dict[str, Any]:
-    return asdict(plan) | {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
 
 
 def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:

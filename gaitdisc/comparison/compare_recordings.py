@@ -74,14 +74,14 @@ def compare_study(
                 "Correct the walk, or choose another participant.",
             )
         return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
-    nominal, device, left_out = [], [], []
+    pairs, left_out = [], []
     for person in study.participants:
         walks = _walks_of(study, person.id)
         if isinstance(walks, str):
             left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
         else:
-            nominal.append(walks[0])
-            device.append(walks[1])
+            pairs.append(walks)
+    nominal, device = ([pair[k] for pair in pairs] for k in (0, 1))
     mismatch = compare_people(nominal, device, channels, smallest=smallest)
     return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
 

@@ -122,7 +122,20 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
             "p refers to these two recordings only, not to other days, marker placements or people. Two walks of one "
             "person often differ by more than their strides do."
         )
-        units = _units(mismatch)
+        if done.first == 1:
+            units = (
+                f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was treated as a curve without "
+                f"spread; {counted(done.strides_second, 'stride')} of {mismatch.second}"
+                f"{_blocks(done, str(done.second))} were tested against it. Under the null hypothesis the sign of each "
+                "difference is random."
+            )
+        else:
+            units = (
+                f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of "
+                f"{mismatch.second}{_blocks(done, f'{done.first} and {done.second}')} are the units. Under the null "
+                "hypothesis the sign of each deviation from its walk's mean is random, so that the two walks may "
+                "differ in spread."
+            )
     return [
         f"The gap is the mean curve of {mismatch.second} minus that of {mismatch.first}, each channel over the "
         "strides of its own foot, on 101 points of the stride.",
@@ -137,22 +150,6 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
         "strides are correlated.",
         f"Standard deviations are those of {mismatch.second} over strides at the same point. {about}",
     ]
-
-
-def _units(mismatch: Mismatch) -> str:
-    done = mismatch.exchange
-    if done.first == 1:
-        return (
-            f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was treated as a curve without spread; "
-            f"{counted(done.strides_second, 'stride')} of {mismatch.second}{_blocks(done, str(done.second))} were "
-            "tested against it. Under the null hypothesis the sign of each difference is random."
-        )
-    return (
-        f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of "
-        f"{mismatch.second}{_blocks(done, f'{done.first} and {done.second}')} are the units. Under the null "
-        "hypothesis the sign of each deviation from its walk's mean is random, so that the two walks may differ in "
-        "spread."
-    )
 
 
 def _blocks(done: Exchange, counts: str) -> str:

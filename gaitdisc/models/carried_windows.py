@@ -112,8 +112,7 @@ def lstm_step(read: Array, states: Array, cells: Array, of_input: Linear, of_sta
 
     read (window, input): what each window reads now
     states, cells (window, node): before
-    of_input, of_state (input, 4 node), (node, 4 node): to the input gate, the forget gate, the candidate and the output
-        gate
+    of_input, of_state (input, 4 node), (node, 4 node): to input gate, forget gate, candidate, output gate
     Source: Hochreiter and Schmidhuber 1997, with the forget gate of Gers et al. 2000, as in torch.
 
     >>> one, none = Linear(np.ones((1, 4)), np.zeros(4)), Linear(np.zeros((1, 4)), np.zeros(4))
