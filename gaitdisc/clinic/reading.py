@@ -209,7 +209,7 @@ def _score(value: float, cycles: NDArray[np.float64], controls: Sequence[float],
     low, high = (float(cycles.min()), float(cycles.max())) if len(cycles) else (float("nan"), float("nan"))
     known = len(controls) > 1
     mean, sd = (float(np.mean(controls)), float(np.std(controls, ddof=1))) if known else (float("nan"), float("nan"))
-    return Score(value, low, high, len(cycles), mean, sd, people)
+    return Score(value, low, high, len(cycles), reference_mean=mean, reference_sd=sd, people=people)
 
 
 def _own_scores(reference: Sequence[ReferenceLeg]) -> dict[str, list[float]]:

@@ -117,7 +117,7 @@ def compare_walks(
     before = _Side(names[0], mean, _sd(one), count, len(one))
     after = _Side(names[1], blocks.mean(axis=0), _sd(other), len(blocks), len(other))
     limits = _limits(common.channels, other.mean(axis=0), smallest)
-    compared = _Compared(before, after, unit, test, after.mean - before.mean, alignment, limits)
+    compared = _Compared(before, after, unit, test, after.mean - before.mean, alignment=alignment, limits=limits)
     return _mismatch(common, compared, (first, second), plan, smallest)
 
 
@@ -160,7 +160,7 @@ def compare_people(
         for walk, mean, part in zip(walks[:2], means, curves, strict=True)
     )
     gap, limits = (means[1] - means[0]).mean(axis=0), _limits(common.channels, after.mean, smallest)
-    compared = _Compared(before, after, "participant", test, gap, alignment, limits)
+    compared = _Compared(before, after, "participant", test, gap, alignment=alignment, limits=limits)
     return _mismatch(common, compared, walks, plan, smallest)
 
 
