@@ -41,7 +41,7 @@ from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.first_states import SHARE_OF_PERIOD, guess_states
 from gaitdisc.discovery.grids import Rhythm, cells, delays, rhythm_of
 from gaitdisc.discovery.places import kinematic_rates, places_of
-from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.compiled_simulation import Rows
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured

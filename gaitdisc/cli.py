@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from gaitdisc._version import __version__
 from gaitdisc.commands.options import ENDED, REFUSED, Overwrite
 from gaitdisc.errors import LOG, GaitdiscError
 from gaitdisc.own_files import guarded
 
-NAMES = (
+COMMANDS = (
     "new",
     "check",
     "angles",
@@ -44,11 +45,6 @@ NAMES = (
     "chapter",
     "doctor",
 )
-COMMANDS: tuple[Callable[..., None], ...] = tuple(
-    getattr(import_module(f"gaitdisc.commands.{name}"), name) for name in NAMES
-)
-
-app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
 UNGUARDED = ("check", "doctor", "watch")  # two that write nothing, and one that guards each of its runs
 
 
@@ -69,8 +65,29 @@ def _guarded(command: Callable[..., None]) -> Callable[..., None]:
     return writing
 
 
-for _command in COMMANDS:
-    app.command()(_command if _command.__name__ in UNGUARDED else _guarded(_command))
+class _Commands(TyperGroup):
+    """The commands of the list: one is loaded when it is called, all when they are listed."""
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 form of the group
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
+        for name in (cmd_name,) if cmd_name in COMMANDS else COMMANDS:  # all, to find the one that is misspelt
+            if name not in self.commands:
+                command = getattr(import_module(f"gaitdisc.commands.{name}"), name)
+                alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+                alone.command()(command if name in UNGUARDED else _guarded(command))
+                self.add_command(typer.main.get_command(alone))
+        return self.commands.get(cmd_name)
+
+
+app = typer.Typer(
+    cls=_Commands,
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
 
 
 def _version(wanted: bool) -> None:  # called at the start of every command

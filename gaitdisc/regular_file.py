@@ -1,8 +1,11 @@
-"""Only regular files of a bounded size are opened: a pipe waits for ever, a device never ends."""
+"""Only regular files of a bounded size are opened: a pipe waits for ever, a device never ends. Their hash is kept."""
 
 from __future__ import annotations
 
+import hashlib
+import os
 import stat
+import time
 from pathlib import Path
 
 from gaitdisc.errors import ReadError
@@ -11,6 +14,7 @@ from gaitdisc.own_files import note_inputs
 GIBIBYTE = 2**30
 LARGEST_BYTES = 4 * GIBIBYTE  # a binary recording: twenty hours of 50 markers and 40 analog channels
 LARGEST_TEXT_BYTES = GIBIBYTE  # a text takes about ten times its size of memory while it is parsed
+SETTLED_S = 2.0  # a file younger than this may be written again within the clock of its folder
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a named pipe"),
@@ -18,6 +22,7 @@ _KINDS = (
     (stat.S_ISCHR, "a device"),
     (stat.S_ISBLK, "a device"),
 )
+_known: dict[tuple[int, ...], str] = {}
 
 
 def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
@@ -54,3 +59,32 @@ def refuse_nul(path: Path) -> None:
 def size_in_words(count: int) -> str:
     """Bytes as GiB or MiB."""
     return f"{count / GIBIBYTE:.3g} GiB" if count >= GIBIBYTE else f"{count / 2**20:.3g} MiB"
+
+
+def file_sha256(path: Path) -> str:
+    """SHA-256 of a file's bytes; a file that did not change since it was last hashed is not read again.
+
+    Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
+    """
+    known = known_sha256(path)
+    if known:
+        return known
+    check_regular(path)
+    with path.open("rb") as file:
+        before = os.fstat(file.fileno())
+        found = hashlib.file_digest(file, "sha256").hexdigest()
+        if time.time() - before.st_mtime > SETTLED_S and _state(os.fstat(file.fileno())) == _state(before):
+            _known[_state(before)] = found
+    return found
+
+
+def known_sha256(path: Path) -> str:
+    """Hash of a file if it was computed and the file is as it was; empty otherwise."""
+    try:
+        return _known.get(_state(path.stat()), "")
+    except OSError:
+        return ""
+
+
+def _state(found: os.stat_result) -> tuple[int, ...]:
+    return (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)

@@ -1,10 +1,11 @@
-"""Words of the report: names, signs, units and gaps as a clinician reads them."""
+"""Words of the report: names, signs, units and gaps as a clinician reads them; a short table, as notebooks show it."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 from gaitdisc.channel import side_of, vocabulary
@@ -200,3 +201,13 @@ def plain(words: str, style: str = "") -> rich.text.Text:
     from rich.text import Text
 
     return Text(words, style)
+
+
+def html_of(title: str, rows: Iterable[tuple[str, str]]) -> str:
+    """HTML of a title and a few rows of two cells; every text is escaped.
+
+    >>> html_of("<walk>", [("rate", "100 Hz")])
+    '<table><caption>&lt;walk&gt;</caption><tr><th>rate</th><td>100 Hz</td></tr></table>'
+    """
+    cells = "".join(f"<tr><th>{escape(what)}</th><td>{escape(much)}</td></tr>" for what, much in rows)
+    return f"<table><caption>{escape(title)}</caption>{cells}</table>"

@@ -36,7 +36,7 @@ def run(data: Path, first: str = EASY, second: str = HARD) -> gd.Mismatch:
     signals = [str(name) for name in stored["signals"]][FORCES:]
     people = [f"S{number:02d}" for number in range(1, PEOPLE + 1)]
     both = [[summary(stored[f"x_{who}{one}"], signals, who, one) for who in people] for one in (first, second)]
-    return compare_people(list(zip(*both, strict=True)))
+    return compare_people(*both)
 
 
 def summary(strides: NDArray[np.float64], signals: list[str], person: str, condition: str) -> WalkSummary:

@@ -83,11 +83,12 @@ def list_help() -> dict[str, str]:
     """What `--help` says of each command: itself, its arguments and options, without the layout of a terminal."""
     import typer
 
-    from gaitdisc.cli import app
+    from gaitdisc.cli import COMMANDS, app
 
-    commands: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    group: Any = typer.main.get_command(app)
     texts = {}
-    for name, command in commands.items():
+    for name in COMMANDS:
+        command = group.get_command(None, name)
         lines = [command.help, ""]
         for one in command.params:
             lines.append(f"{', '.join((*one.opts, *one.secondary_opts))}: {getattr(one, 'help', '') or ''}")

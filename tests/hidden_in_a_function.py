@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.parts import Input, Parameter, Port, State
 from gaitdisc.simulation.python_simulation import PythonSimulation, python_simulation
 from gaitdisc.simulation.running import compile_simulation

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State, Term
 from gaitdisc.simulation.running import compile_simulation

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaitdisc.recording import Axis, Field
+from gaitdisc.recording.field import Axis, Field
 
 ROWS, COLUMNS = 6, 12
 

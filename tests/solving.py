@@ -5,10 +5,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaitdisc.errors import SamplingError
+from gaitdisc.errors import SamplingError, SimulationError
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.machine import BOUND
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 

@@ -2,6 +2,7 @@ import os
 import signal
 import subprocess
 import sys
+from importlib import import_module
 
 import pytest
 from fresh_process import modules_loaded_by
@@ -28,11 +29,18 @@ def test_version():
 
 
 def test_each_command_is_the_file_of_its_name():
-    assert all(command.__module__ == f"gaitdisc.commands.{command.__name__}" for command in COMMANDS)
+    commands = [getattr(import_module(f"gaitdisc.commands.{name}"), name) for name in COMMANDS]
+    assert all(command.__module__ == f"gaitdisc.commands.{command.__name__}" for command in commands)
 
 
 def test_the_help_loads_no_library_that_computes():
-    assert not modules_loaded_by("gaitdisc.cli") & {"numpy", "pandas", "torch"}
+    loaded = modules_loaded_by(", ".join(["gaitdisc.cli", *(f"gaitdisc.commands.{name}" for name in COMMANDS)]))
+    assert not loaded & {"numpy", "pandas", "torch"}
+
+
+def test_a_command_is_loaded_when_it_is_called():
+    loaded = modules_loaded_by("gaitdisc.cli")
+    assert not loaded & {f"gaitdisc.commands.{name}" for name in COMMANDS}
 
 
 def test_a_refusal_ends_with_its_code(tmp_path):

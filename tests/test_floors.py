@@ -10,7 +10,7 @@ PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
     (
         *("errors", "units", "channel", "own_files", "whole_file", "write_lock", "regular_file", "toml_text"),
-        *("spreadsheet", "compiled", "notebook", "_version", "words"),
+        *("spreadsheet", "compiled", "_version", "words"),
     ),
     ("recording", "model"),
     ("ingest", "signals", "kinematics", "simulation", "models", "statistics", "saved"),

@@ -5,9 +5,9 @@ from manufactured_discovery import manufactured
 from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.notebook import html_of
 from gaitdisc.recording import Recording, Source, Strides, Trial
 from gaitdisc.recording.strides import DroppedStride
+from gaitdisc.words import html_of
 
 
 def test_every_text_is_escaped():

@@ -14,10 +14,9 @@ import gaitdisc as gd
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular
+from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular, file_sha256
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation_file import bundled, read_simulation
 from gaitdisc.whole_file import write_whole

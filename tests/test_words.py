@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import typer.main
 
-from gaitdisc.cli import app
+from gaitdisc.cli import COMMANDS, app
 
 PROJECT = Path(__file__).parents[1]
 # In the field's English: reconstructed, estimated, reported, distinguished, requested, tested, fitted, stable, added.
@@ -56,17 +56,12 @@ def test_pages(page):
     assert page.name != "README.md" or len(text.splitlines()) <= 90
 
 
-def commands(command, name="gaitdisc"):
-    """Every command with its name."""
-    yield name, command
-    for word, one in getattr(command, "commands", {}).items():
-        yield from commands(one, f"{name} {word}")
-
-
 def test_help_of_every_command():
+    group = typer.main.get_command(app)
+    commands = {name: group.get_command(None, name) for name in COMMANDS} | {"gaitdisc": group}
     helps = {
         name: " ".join([command.help or "", *(getattr(one, "help", None) or "" for one in command.params)])
-        for name, command in commands(typer.main.get_command(app))
+        for name, command in commands.items()
     }
     assert len(helps) > 10
     assert {name: found for name, text in helps.items() if (found := found_in(text))} == {}

@@ -114,17 +114,14 @@ def write_week(
     """Write `controls/` and `week/`, and apart from them what was planted by person and session, "" for the healthy."""
     visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
     own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
-    truth = {f"{one.name} {one.session}".strip(): _words(one) for one in WEEK}
+    truth = {}
+    for one in WEEK:
+        side = "left" if one.side == "l" else "right"
+        truth[f"{one.name} {one.session}".strip()] = one.what if one.what in ("", *NO_GAIT) else f"{one.what} {side}"
     said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
     week = _written(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, progress)
     write_whole(folder / "planted.json", json.dumps(truth, indent=1))
     return own, week, truth
-
-
-def _words(visit: Visit) -> str:
-    if visit.what in ("", *NO_GAIT):
-        return visit.what
-    return f"{visit.what} {'left' if visit.side == 'l' else 'right'}"
 
 
 def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, progress: Callable[[str], None]) -> Study:

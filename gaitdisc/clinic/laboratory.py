@@ -10,16 +10,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gaitdisc.channel import schema_folder
-from gaitdisc.clinic.panels import Panel
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, VARIABLES
 from gaitdisc.processing.tables import VALUES
 from gaitdisc.report.table import Table
 from gaitdisc.toml_text import parsed_toml
 from gaitdisc.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from gaitdisc.clinic.panels import Panel
 
 FILE, TABLE = "clinic.toml", "clinical_axes.csv"
 LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed

@@ -179,7 +179,7 @@ def profile_of(
         names = ", ".join(next(iter(absent.values()), PROFILE)).replace("_", " ")
         return None, f"the recording lacks {names}; the score is over nine curves"
     means = {name: known[name].mean for name in PROFILE}
-    spread = _own_spread(reference)
+    controls = _own_scores(reference)
     people = max(known[name].people for name in PROFILE)
     variables, whole = {}, {}
     for side, leg in legs.items():
@@ -188,27 +188,29 @@ def profile_of(
         each = {name: variable_score(leg.cycles[name], means[name]) for name in PROFILE}
         for name in PROFILE:
             value = float(variable_score(leg.mean(name), means[name]))
-            variables[name, side] = _score(value, each[name], spread.get(name), people)
+            variables[name, side] = _score(value, each[name], controls.get(name, ()), people)
         whole_cycles = len({len(scores) for scores in each.values()}) == 1  # else cycles would not be the same
         single = np.sqrt(np.mean(np.array([*each.values()]) ** 2, axis=0)) if whole_cycles else np.array([])
         whole[side] = _score(
-            profile_score([variables[n, side].value for n in PROFILE]), single, spread.get("leg"), people
+            profile_score([variables[n, side].value for n in PROFILE]), single, controls.get("leg", ()), people
         )
     both = None
     if set(whole) == set(FEET):
         fifteen = [variables[n, "l"].value for n in PROFILE]
         fifteen += [variables[n, "r"].value for n in PROFILE if n not in PELVIS]
-        both = _score(profile_score(fifteen), np.array([]), spread.get("both"), people)
+        both = _score(profile_score(fifteen), np.array([]), controls.get("both", ()), people)
     return Profile(variables, whole, both), ""
 
 
-def _score(value: float, cycles: NDArray[np.float64], spread: tuple[float, float] | None, people: int) -> Score:
+def _score(value: float, cycles: NDArray[np.float64], controls: Sequence[float], people: int) -> Score:
     low, high = (float(cycles.min()), float(cycles.max())) if len(cycles) else (float("nan"), float("nan"))
-    return Score(value, low, high, len(cycles), *(spread or (float("nan"), float("nan"))), people)
+    known = len(controls) > 1
+    mean, sd = (float(np.mean(controls)), float(np.std(controls, ddof=1))) if known else (float("nan"), float("nan"))
+    return Score(value, low, high, len(cycles), reference_mean=mean, reference_sd=sd, people=people)
 
 
-def _own_spread(reference: Sequence[ReferenceLeg]) -> dict[str, tuple[float, float]]:
-    """Mean and standard deviation of the scores of controls, each against all the others."""
+def _own_scores(reference: Sequence[ReferenceLeg]) -> dict[str, list[float]]:
+    """Scores of controls, each against all the others."""
     found: dict[str, list[float]] = {}
     whole = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
     people = list(dict.fromkeys(leg.person for leg in whole))
@@ -225,7 +227,7 @@ def _own_spread(reference: Sequence[ReferenceLeg]) -> dict[str, tuple[float, flo
         if len(own) == 2 * len(PROFILE):
             pelvis_once = [value for (name, side), value in own.items() if side == "l" or name not in PELVIS]
             found.setdefault("both", []).append(profile_score(pelvis_once))
-    return {name: (float(np.mean(each)), float(np.std(each, ddof=1))) for name, each in found.items() if len(each) > 1}
+    return found
 
 
 def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]) -> tuple[dict[str, float], str]:

@@ -96,16 +96,12 @@ def activity(
     width: float = 1.0,
 ) -> NDArray[np.float64]:
     """Activation that a person's synergies give a muscle; delay [share of a stride] and weight are each synergy's."""
-    bursts = [
-        weight[synergy] * _burst(phase - delay[synergy], centre, half_width * width, height)
-        for synergy, centre, half_width, height in BURSTS[muscle]
-    ]
+    bursts = []
+    for synergy, centre, half_width, height in BURSTS[muscle]:
+        apart = np.abs(np.mod(phase - delay[synergy] - centre + 0.5, 1.0) - 0.5) / (half_width * width)
+        burst = np.where(apart < 1.0, height * np.cos(0.5 * np.pi * np.minimum(apart, 1.0)) ** 2, 0.0)
+        bursts.append(weight[synergy] * burst)
     return np.sum(bursts, axis=0) * (1.0 + 1.5 * (speed - 0.429))
-
-
-def _burst(phase: NDArray[np.float64], centre: float, half_width: float, height: float) -> NDArray[np.float64]:
-    apart = np.abs(np.mod(phase - centre + 0.5, 1.0) - 0.5) / half_width
-    return np.where(apart < 1.0, height * np.cos(0.5 * np.pi * np.minimum(apart, 1.0)) ** 2, 0.0)
 
 
 @cache

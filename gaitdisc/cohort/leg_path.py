@@ -147,7 +147,10 @@ def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64
     phase = staged(person, phase)
     force = habitual_force(phase, person.dimensionless_speed)
     both = GRAVITY * (force + np.roll(force, len(phase) // 2, axis=0))
-    centre = _integrated(both, person.stride_s / len(phase))
+    spectrum = np.fft.rfft(both, axis=0)  # its periodic integral, without the mean
+    spectrum[1:] /= 2j * np.pi * np.fft.rfftfreq(len(both), person.stride_s / len(phase))[1:, None]
+    spectrum[0] = 0.0
+    centre = np.fft.irfft(spectrum, len(both), axis=0)
     turns = [habitual(name, person.dimensionless_speed).at(phase) for name in ("pelvis_rotation", "pelvis_obliquity")]
     offset = HALF_WIDTH * person.height_m * np.sin(np.radians(np.column_stack(turns)))
     return centre + cycle_rate(offset, person.stride_s / len(phase))
@@ -220,12 +223,3 @@ def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.floa
 def by_phase(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rate by phase of one whole cycle (phase, ...), evenly spaced, without its end."""
     return cycle_rate(cycle, 1 / len(cycle))
-
-
-def _integrated(cycle: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:
-    """Periodic integral without its mean."""
-    spectrum = np.fft.rfft(cycle, axis=0)
-    turns = 2j * np.pi * np.fft.rfftfreq(len(cycle), step_s)
-    spectrum[1:] /= turns[1:, None]
-    spectrum[0] = 0.0
-    return np.fft.irfft(spectrum, len(cycle), axis=0)

@@ -103,7 +103,8 @@ def electrode_volts(
     """
     from scipy.signal import butter, lfilter, sosfilt
 
-    drive = _delayed(excitation, round((late_s - DELAY_S) * rate_hz))
+    moments = np.arange(len(excitation)) - round((late_s - DELAY_S) * rate_hz)
+    drive = excitation[np.clip(moments, 0, len(excitation) - 1)]  # the ends are held
     carrier = np.asarray(sosfilt(butter(2, BAND_HZ, "bandpass", fs=rate_hz, output="sos"), _drawn(rng, drive), axis=0))
     carrier /= carrier.std(axis=0)
     keep = np.exp(-1 / (UNITS_S * rate_hz))
@@ -122,11 +123,6 @@ def heard(sides: int) -> NDArray[np.float64]:
     for (electrode, muscle), share in CROSS_TALK.items():
         leg[MUSCLES.index(electrode), MUSCLES.index(muscle)] = share
     return np.asarray(np.kron(np.eye(sides), leg), dtype=np.float64)
-
-
-def _delayed(values: NDArray[np.float64], samples: int) -> NDArray[np.float64]:
-    """Later by some samples, or earlier where they are negative; the ends are held."""
-    return values[np.clip(np.arange(len(values)) - samples, 0, len(values) - 1)]
 
 
 def _drawn(rng: np.random.Generator, like: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gaitdisc.clinic.clinical_reference import ClinicalReference, PersonSession
     from gaitdisc.clinic.laboratory import PageWords
     from gaitdisc.ingest.study import Study
+    from gaitdisc.saved.provenance import Refusal
     from gaitdisc.saved.study_run import StudyRun
 
 LABORATORY = "laboratory"  # folder of a run: what the pages were drawn with
@@ -135,6 +136,7 @@ def write_people(
     from gaitdisc.clinic.read_people import cycles_of_people, read_session
     from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
     from gaitdisc.report.figure import file_names
+    from gaitdisc.saved.provenance import Refusal
 
     pages, people = _Pages(run, run_folder, pdf), cycles_of_people(run)
     report, say = pages.report, pages.say
@@ -143,7 +145,7 @@ def write_people(
     files = sorted(path for path in (run_folder / REFERENCE).glob("*") if path.is_file())
     rests_on = (" ".join(map(file_sha256, files)), shared, run.nominal, str(pdf))
     rows: list[dict[str, str]] = []
-    failed: list[tuple[str, str]] = []
+    failed: list[Refusal] = []
     for title, own in people.items():
         name = names[title]
         said = (repr(words.get(own[0].subject)) for words in (house.affected, house.comments))
@@ -155,7 +157,7 @@ def write_people(
         try:
             person = read_session(title, own, run.nominal, pages.reference)
         except GaitdiscError as error:
-            failed.append((title, str(error)))
+            failed.append(Refusal(title, "", str(error)))
             continue
         try:
             written = pages.write(person, name)
@@ -168,7 +170,7 @@ def write_people(
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
             raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
-            failed.append((title, f"the page could not be written: {error}"))
+            failed.append(Refusal(title, "", f"the page could not be written: {error}"))
     return write_index(_with_failed(run, failed, run_folder), rows, pages.reference, report, say)
 
 
@@ -214,14 +216,9 @@ class _Pages:
         return [page, write_person_pdf(person, self._provenance, page.with_suffix(".pdf"), self.say)]
 
 
-def _with_failed(run: StudyRun, failed: list[tuple[str, str]], run_folder: Path) -> StudyRun:
+def _with_failed(run: StudyRun, failed: list[Refusal], run_folder: Path) -> StudyRun:
     """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
-    from gaitdisc.saved.provenance import Refusal
-
     places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
-    refusals = []
-    for title, reason in failed:
-        for place in places:
-            reason = reason.replace(place, "run")  # noqa: PLW2901
-        refusals.append(Refusal(title, "", reason))
-    return replace(run, refusals=(*run.refusals, *refusals))
+    for place in places:
+        failed = [replace(one, reason=one.reason.replace(place, "run")) for one in failed]
+    return replace(run, refusals=(*run.refusals, *failed))

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from gaitdisc.commands.options import SOME_REFUSED
-from gaitdisc.errors import LOG
-
-if TYPE_CHECKING:
-    from gaitdisc.comparison.mismatch import Mismatch, Smallest
+from gaitdisc.errors import LOG, SchemaError
 
 
 def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
@@ -43,22 +40,29 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""
     from rich.console import Console
 
-    from gaitdisc.comparison.compare_recordings import compare_files
+    from gaitdisc.comparison.compare_recordings import compare_files, compare_study
     from gaitdisc.comparison.mismatch import Smallest
     from gaitdisc.comparison.page import mismatch_text, write_mismatch_report
     from gaitdisc.comparison.sentences import mismatch_sentences
+    from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
 
     folder = out or (Path() if second else first.parent if first.is_file() else first) / "compare"
     claim_folder(folder, "mismatch.json", "regions.csv", "summary.csv", "arrays.npz", "report.html")
     channels = tuple(channel or ())
     smallest = Smallest(smallest_angle, smallest_moment, smallest_share, body_weight)
-    if second is None:
-        mismatch = _of_study(first, participant, channels, smallest)
-    elif participant:
+    if second is not None and participant:
         raise typer.BadParameter("--participant requires a study; two files are given")
-    else:
+    if second is not None:
         mismatch = compare_files(first, second, channels, cutoff, detector, smallest)
+    elif first.is_file() and first.suffix.lower() != ".toml":
+        raise SchemaError(
+            "a comparison needs two recordings, or a study",
+            f"{first.name} is one recording",
+            "Name the measured walk after it: gaitdisc compare SIM MEASURED.",
+        )
+    else:
+        mismatch = compare_study(load_study(first), participant, channels, smallest)
     mismatch.save(folder)
     page = write_mismatch_report(mismatch, folder)
     typer.echo(" ".join(mismatch_sentences(mismatch)))
@@ -69,17 +73,3 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     typer.echo(f"report: {page}")
     if any(finding.severity == "refused" for finding in mismatch.findings):
         raise typer.Exit(SOME_REFUSED)
-
-
-def _of_study(place: Path, participant: str, channels: tuple[str, ...], smallest: Smallest) -> Mismatch:
-    from gaitdisc.comparison.compare_recordings import compare_study
-    from gaitdisc.errors import SchemaError
-    from gaitdisc.ingest.study_file import load_study
-
-    if place.is_file() and place.suffix.lower() != ".toml":
-        raise SchemaError(
-            "a comparison needs two recordings, or a study",
-            f"{place.name} is one recording",
-            "Name the measured walk after it: gaitdisc compare SIM MEASURED.",
-        )
-    return compare_study(load_study(place), participant, channels, smallest)

@@ -93,7 +93,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         from gaitdisc.discovery.discover_files import discover_files
         from gaitdisc.discovery.folder import save_discovery
         from gaitdisc.discovery.kept_work import kept_work
-        from gaitdisc.engines.mapping import names_engine
+        from gaitdisc.simulation.simulation_file import names_engine
         from gaitdisc.simulation.writing import write_simulation
         from gaitdisc.whole_file import written_together
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.errors import LOG
+from gaitdisc.errors import LOG, SchemaError
 
 
 def export(
@@ -42,7 +42,15 @@ def export(
         return
     claim_file(out)
     if out.suffix.lower() == ".onnx":
-        _model(files, out)
+        from gaitdisc.reconstruction.model_folder import load_model
+        from gaitdisc.reconstruction.onnx_file import write_onnx
+
+        if len(files) != 1:
+            raise SchemaError("an .onnx file can contain one model", f"{len(files)} are named", "Name one folder.")
+        model = load_model(files[0])
+        write_onnx(model, out)
+        what = model.reconstructor.sensing
+        typer.echo(f"{out}: {model.reconstructor.kind}, {', '.join(what.sensors)} to {len(what.states)} states")
         return
     from gaitdisc.ingest.public_words import with_public_labels
     from gaitdisc.ingest.reading import read_trial, write_recording
@@ -58,21 +66,7 @@ def export(
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")
 
 
-def _model(folders: list[Path], out: Path) -> None:
-    from gaitdisc.errors import SchemaError
-    from gaitdisc.reconstruction.model_folder import load_model
-    from gaitdisc.reconstruction.onnx_file import write_onnx
-
-    if len(folders) != 1:
-        raise SchemaError("an .onnx file can contain one model", f"{len(folders)} are named", "Name one folder.")
-    model = load_model(folders[0])
-    write_onnx(model, out)
-    what = model.reconstructor.sensing
-    typer.echo(f"{out}: {model.reconstructor.kind}, {', '.join(what.sensors)} to {len(what.states)} states")
-
-
 def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
-    from gaitdisc.errors import SchemaError
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.own_files import claim_folder
     from gaitdisc.processing.tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings

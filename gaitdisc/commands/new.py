@@ -29,7 +29,7 @@ def new(
     ] = None,
 ) -> None:
     """Write a study file from the recordings found in a folder, or a model's mapping file."""
-    from gaitdisc.engines.engine import is_model
+    from gaitdisc.simulation.simulation_file import is_model
 
     if external_loads or forces or actuators:
         _write_tracked(out, recordings, external_loads, forces, actuators)

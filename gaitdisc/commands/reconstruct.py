@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from gaitdisc.commands.options import SOME_REFUSED, Quiet
 from gaitdisc.errors import LOG
-
-if TYPE_CHECKING:
-    from gaitdisc.reconstruction.reconstruction import Reconstruction
 
 
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
@@ -50,10 +47,16 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     Each participant's recommended model is saved; `gaitdisc apply` reconstructs a recording with it.
     """
+    from rich.console import Console
+
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
     from gaitdisc.reconstruction.model_folder import save_model
-    from gaitdisc.reconstruction.page import write_reconstruction_report
+    from gaitdisc.reconstruction.page import (
+        reconstruction_sentences,
+        reconstruction_text,
+        write_reconstruction_report,
+    )
     from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study, search_study
     from gaitdisc.reconstruction.reconstruction import enough_sensors
     from gaitdisc.reconstruction.window_model import KINDS
@@ -85,20 +88,12 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     places = file_names([person.participant for person in people])
     for person in people:
         save_model(person.model(done.recommended), folder / "models" / places[person.participant])
-    _print_sentences(done)
-    typer.echo(f"models: {folder / 'models'}, {done.recommended} for each participant")
-    typer.echo(f"report: {page}")
-    if done.refusals:
-        raise typer.Exit(SOME_REFUSED)
-
-
-def _print_sentences(done: Reconstruction) -> None:
-    from rich.console import Console
-
-    from gaitdisc.reconstruction.page import reconstruction_sentences, reconstruction_text
-
     typer.echo(" ".join(reconstruction_sentences(done)))
     Console().print(reconstruction_text(done))
     for refusal in done.refusals:
         who = " ".join(filter(None, (refusal.participant, refusal.condition)))
         LOG.info(f"left out: {who}: {refusal.reason}")
+    typer.echo(f"models: {folder / 'models'}, {done.recommended} for each participant")
+    typer.echo(f"report: {page}")
+    if done.refusals:
+        raise typer.Exit(SOME_REFUSED)

@@ -146,7 +146,13 @@ def _moving(
         size = max(float(np.abs(part).max()) for part in parts)
         if max(float(np.ptp(part)) for part in parts) <= STILL * max(size, 1.0):
             still.append(channel.name)
-        elif any(_repeats(parts, by_channel[other.name]) for other in kept):
+        elif any(
+            all(
+                a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6)
+                for a, b in zip(parts, by_channel[other.name], strict=True)
+            )
+            for other in kept
+        ):
             twins.append(channel.name)
         else:
             kept.append(channel)
@@ -155,11 +161,6 @@ def _moving(
             text = f"{', '.join(names)} {what} and are excluded"
             findings.append(Finding("note", "not compared", _both(walks), text, "nothing"))
     return kept
-
-
-def _repeats(parts: list[NDArray[np.float64]], others: list[NDArray[np.float64]]) -> bool:
-    pairs = zip(parts, others, strict=True)
-    return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6) for a, b in pairs)
 
 
 def walk_name(walk: WalkSummary) -> str:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -36,14 +35,25 @@ SECTION = "Find: mismatch of two walks over the stride"
 
 
 @dataclass(frozen=True, eq=False)
+class _Side:
+    """One of the two that are compared: a walk, or a condition of all people; curves (phase, channel)."""
+
+    name: str
+    mean: NDArray[np.float64]
+    sd: NDArray[np.float64]
+    units: int  # that are exchanged
+    strides: int  # that these hold
+
+
+@dataclass(frozen=True, eq=False)
 class _Compared:
     """A test, what it exchanged, and the curves it was about."""
 
+    first: _Side
+    second: _Side
+    unit: str
     test: ClusterTest
-    exchange: Exchange
     gap: NDArray[np.float64]
-    means: tuple[NDArray[np.float64], NDArray[np.float64]]
-    sds: tuple[NDArray[np.float64], NDArray[np.float64]]
     alignment: Alignment
     limits: NDArray[np.float64]
 
@@ -103,51 +113,55 @@ def compare_walks(
         own = block_means(one, length)
         mean, count = own.mean(axis=0), len(own)
         test = two_sample_test(own, blocks, plan, worth)
-    means = (mean, blocks.mean(axis=0))
     unit = "stride" if length == 1 else f"block of {length} strides"
-    exchange = _exchange(unit, (count, len(blocks)), (len(one), len(other)), test)
+    before = _Side(names[0], mean, _sd(one), count, len(one))
+    after = _Side(names[1], blocks.mean(axis=0), _sd(other), len(blocks), len(other))
     limits = _limits(common.channels, other.mean(axis=0), smallest)
-    compared = _Compared(test, exchange, means[1] - means[0], means, (_sd(one), _sd(other)), alignment, limits=limits)
-    return _mismatch(names, common, compared, (first, second), _settings(plan, smallest))
+    compared = _Compared(before, after, unit, test, after.mean - before.mean, alignment=alignment, limits=limits)
+    return _mismatch(common, compared, (first, second), plan, smallest)
 
 
 def compare_people(
-    pairs: Sequence[tuple[WalkSummary, WalkSummary]],
+    first: Sequence[WalkSummary],
+    second: Sequence[WalkSummary],
     wanted: Sequence[str] = (),
     plan: PermutationPlan = USUAL,
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
 
-    pairs: both walks of each person; second minus first
+    first, second: the two walks of each person, in the same order of people; second minus first
     wanted: only these channels; by default all that every walk has
     smallest: difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves
     returns: its standard deviations are those from stride to stride, root mean square over people
     """
-    if len(pairs) < FEWEST_IN_ONE:
+    if len(first) < FEWEST_IN_ONE:
         raise ComparisonError(
             f"two conditions can be compared across at least {FEWEST_IN_ONE} participants",
-            f"{len(pairs)} have both",
+            f"{len(first)} have both",
             "Compare the strides of one participant with --participant.",
         )
-    walks = [walk for pair in pairs for walk in pair]
+    walks = [walk for pair in zip(first, second, strict=True) for walk in pair]
     common = common_curves(walks, wanted)
-    alignment = common_shift(*(np.mean([c.mean(axis=0) for c in common.curves[k::2]], axis=0) for k in (0, 1)))
-    curves_of = [list(common.curves[k::2]) for k in (0, 1)]
+    curves = [list(common.curves[k::2]) for k in (0, 1)]
+    alignment = common_shift(*(np.mean([own.mean(axis=0) for own in part], axis=0) for part in curves))
     if alignment.applied:
-        curves_of[0] = aligned(curves_of[0], alignment.percent)
-    means = [np.array([curves.mean(axis=0) for curves in part]) for part in curves_of]
-    spreads = [[_sd(curves) for curves in part] for part in curves_of]
+        curves[0] = aligned(curves[0], alignment.percent)
+    means = [np.array([own.mean(axis=0) for own in part]) for part in curves]
     test = one_sample_test(means[1] - means[0], plan)
-    strides = [sum(map(len, common.curves[k::2])) for k in (0, 1)]
-    exchange = _exchange("participant", (len(pairs), len(pairs)), (strides[0], strides[1]), test)
-    gap = (means[1] - means[0]).mean(axis=0)
-    sds = tuple(np.sqrt(np.mean(np.square(one), axis=0)) for one in spreads)
-    middles = (means[0].mean(axis=0), means[1].mean(axis=0))
-    limits = _limits(common.channels, middles[1], smallest)
-    compared = _Compared(test, exchange, gap, means=middles, sds=(sds[0], sds[1]), alignment=alignment, limits=limits)
-    conditions = (pairs[0][0].condition, pairs[0][1].condition)
-    return _mismatch(conditions, common, compared, walks, _settings(plan, smallest))
+    before, after = (
+        _Side(
+            name=walk.condition,
+            mean=mean.mean(axis=0),
+            sd=np.sqrt(np.mean(np.square([_sd(own) for own in part]), axis=0)),
+            units=len(part),
+            strides=sum(map(len, part)),
+        )
+        for walk, mean, part in zip(walks[:2], means, curves, strict=True)
+    )
+    gap, limits = (means[1] - means[0]).mean(axis=0), _limits(common.channels, after.mean, smallest)
+    compared = _Compared(before, after, "participant", test, gap, alignment=alignment, limits=limits)
+    return _mismatch(common, compared, walks, plan, smallest)
 
 
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
@@ -168,61 +182,59 @@ def _limits(channels: Sequence[Channel], curves: NDArray[np.float64], smallest: 
     return np.array([smallest.of(c.unit, float(reach)) for c, reach in zip(channels, reaches, strict=True)])
 
 
-def _exchange(unit: str, counts: tuple[int, int], strides: tuple[int, int], test: ClusterTest) -> Exchange:
-    return Exchange(unit, *counts, *strides, test.permutations, test.exact, test.threshold, test.alpha)
-
-
 def _mismatch(
-    names: tuple[str, str],
-    common: CommonCurves,
-    compared: _Compared,
-    walks: Sequence[WalkSummary],
-    settings: Mapping[str, Any],
+    common: CommonCurves, compared: _Compared, walks: Sequence[WalkSummary], plan: PermutationPlan, smallest: Smallest
 ) -> Mismatch:
     """Mismatch with the findings about what was compared, each once, the severest first."""
     about = {channel.name for channel in common.channels} | {""}
     findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
     kept = dict.fromkeys(finding for finding in findings if finding.channel in about or finding.kind == "unit")
+    limits = {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
     files = {name: sha256 for walk in walks for name, sha256 in walk.files.items()}
-    half = compared.test.threshold * compared.test.standard_error
+    first, second, test = compared.first, compared.second, compared.test
+    half = test.threshold * test.standard_error
     curves = {
-        "first": compared.means[0],
-        "second": compared.means[1],
-        "sd_first": compared.sds[0],
-        "sd_second": compared.sds[1],
+        "first": first.mean,
+        "second": second.mean,
+        "sd_first": first.sd,
+        "sd_second": second.sd,
         "gap": compared.gap,
         "low": compared.gap - half,
         "high": compared.gap + half,
-        "t": compared.test.t,
+        "t": test.t,
     }
+    regions = []
+    for cluster in compared.named():
+        column, inside = cluster.channel, slice(cluster.first, cluster.last + 1)
+        at = cluster.first + int(np.argmax(np.abs(compared.gap[inside, column])))
+        channel, largest = common.channels[column], float(compared.gap[at, column])
+        regions.append((
+            channel.name, channel.unit, PERCENT[cluster.first], PERCENT[cluster.last], largest, PERCENT[at],
+            _in_sd(largest, float(second.sd[at, column])), float(compared.gap[inside, column].mean()), cluster.p,
+        ))  # fmt: skip
+    exchange = Exchange(
+        unit=compared.unit,
+        first=first.units,
+        second=second.units,
+        strides_first=first.strides,
+        strides_second=second.strides,
+        permutations=test.permutations,
+        exact=test.exact,
+        threshold=test.threshold,
+        alpha=test.alpha,
+    )
     return Mismatch(
-        first=names[0],
-        second=names[1],
+        first=first.name,
+        second=second.name,
         channels=common.channels,
         curves=curves,
-        regions=_regions(common.channels, compared),
+        regions=pd.DataFrame(regions, columns=pd.Index(REGION_COLUMNS)),
         summary=_summary(common.channels, compared),
-        exchange=compared.exchange,
+        exchange=exchange,
         findings=tuple(sorted(kept, key=lambda finding: finding.rank)),
-        provenance=made_now(settings, settings["seed"], files, SECTION),
+        provenance=made_now(asdict(plan) | limits, plan.seed, files, SECTION),
         alignment=compared.alignment,
     )
-
-
-def _regions(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
-    rows = []
-    for cluster in compared.named():
-        inside = slice(cluster.first, cluster.last + 1)
-        gap = compared.gap[inside, cluster.channel]
-        at = cluster.first + int(np.argmax(np.abs(gap)))
-        channel = channels[cluster.channel]
-        largest = float(compared.gap[at, cluster.channel])
-        sd = float(compared.sds[1][at, cluster.channel])
-        rows.append((
-            channel.name, channel.unit, PERCENT[cluster.first], PERCENT[cluster.last], largest, PERCENT[at],
-            _in_sd(largest, sd), float(gap.mean()), cluster.p,
-        ))  # fmt: skip
-    return pd.DataFrame(rows, columns=pd.Index(REGION_COLUMNS))
 
 
 def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
@@ -234,19 +246,15 @@ def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
     rows = []
     for column, channel in enumerate(channels):
         at = int(np.argmax(np.abs(gap[:, column])))
-        largest, sd = float(gap[at, column]), compared.sds[1][:, column]
+        largest, sd = float(gap[at, column]), compared.second.sd[:, column]
         rows.append((
             channel.name, channel.unit, column in differing, largest, PERCENT[at], _in_sd(largest, float(sd[at])),
             _rms(gap[:, column]), _rms(sd), float(test.p[column]), float(within[column]), float(visible[column]),
-            *best_shift(compared.means[0][:, column], compared.means[1][:, column]),
+            *best_shift(compared.first.mean[:, column], compared.second.mean[:, column]),
             float(compared.limits[column]), (offset := float(gap[:, column].mean())),
             float(np.abs(gap[:, column] - offset).max()), column in beyond_chance - differing,
         ))  # fmt: skip
     return pd.DataFrame(rows, columns=pd.Index(CHANNEL_COLUMNS))
-
-
-def _settings(plan: PermutationPlan, smallest: Smallest) -> dict[str, Any]:
-    return asdict(plan) | {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
 
 
 def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:

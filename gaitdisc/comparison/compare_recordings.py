@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.comparison.compare import CLINICAL, compare_people, compare_walks
 from gaitdisc.comparison.mismatch import Mismatch, Smallest
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.public_words import PublicWords, package_words, public_settings
+from gaitdisc.ingest.public_words import PublicWords, package_words
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
@@ -30,10 +29,15 @@ def compare_files(
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two recordings, second minus first; `cutoff_hz` [Hz]: -3 dB of one pass, angles and moments."""
-    one, other = _apart(
+    words = [
         [word for word in re.split(r"[\W_]+", path.stem) if word.isalpha() and word.lower() in package_words()]
         for path in (first, second)
-    )
+    ]
+    for end in (0, -1):  # without the words that both begin or end with
+        while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
+            for own in words:
+                del own[end]
+    one, other = map("_".join, words)
     names = (one, other) if one and other and one != other else ("first walk", "second walk")
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
     trials = []
@@ -60,7 +64,7 @@ def compare_study(
     study: with both conditions; its filters and its detector are used
     returns: device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings
     """
-    settings = public_settings(study, {"filters", "strides", "conditions"})
+    settings = study.public_settings({"filters", "strides", "conditions"})
     if participant:
         walks = _walks_of(study, participant)
         if isinstance(walks, str):
@@ -77,7 +81,8 @@ def compare_study(
             left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
         else:
             pairs.append(walks)
-    mismatch = compare_people(pairs, channels, smallest=smallest)
+    nominal, device = ([pair[k] for pair in pairs] for k in (0, 1))
+    mismatch = compare_people(nominal, device, channels, smallest=smallest)
     return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
 
 
@@ -92,16 +97,6 @@ def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary]
     if refusals:
         return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
     return walks[nominal].summary(), walks[device].summary()
-
-
-def _apart(names: Iterable[list[str]]) -> tuple[str, str]:
-    """Names without the words that both begin or end with."""
-    words = list(names)
-    for end in (0, -1):
-        while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
-            for one in words:
-                del one[end]
-    return "_".join(words[0]), "_".join(words[1])
 
 
 def _with_settings(mismatch: Mismatch, settings: dict[str, object]) -> Mismatch:

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
-from gaitdisc.notebook import html_of
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.saved.kind import CSV, Kind, Saved, check_columns
 from gaitdisc.saved.provenance import Provenance
+from gaitdisc.words import html_of
 
 AGAIN = "Compare the walks again: `gaitdisc compare`."
 CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
@@ -137,8 +137,8 @@ class Mismatch(Saved, file="mismatch.json"):
             found = np.shape(self.curves[name]) if name in self.curves else "none"
             if found != wanted:
                 raise ShapeError(f"{name!r} of a mismatch must have shape {wanted}", f"found {found}", AGAIN)
-        tables = {"regions": (self.regions, REGION_COLUMNS), "summary": (self.summary, CHANNEL_COLUMNS)}
-        check_columns(tables, "a mismatch needs", AGAIN)
+        columns = {"regions": REGION_COLUMNS, "summary": CHANNEL_COLUMNS}
+        check_columns(self, columns, "a mismatch needs", AGAIN)
         curves = {name: np.asarray(self.curves[name], float) for name in CURVES}
         if np.nansum(curves["gap"] * (curves["second"] - curves["first"])) < 0:  # saved as first minus second
             curves |= {"gap": -curves["gap"], "t": -curves["t"], "low": -curves["high"], "high": -curves["low"]}

@@ -20,8 +20,14 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     moved = alignment_sentences(mismatch)
     small = [name for name in mismatch.names if mismatch.summary_of(name)["too_small"]]
     unseen = [name for name in mismatch.names if name not in ordered and name not in small]
-    agreeing = [_agreeing(mismatch, unseen)] if unseen else []
     walks, done = f"{mismatch.first} and {mismatch.second}", mismatch.exchange
+    agreeing = []
+    if unseen:
+        bounds, sure = _by_unit(mismatch, unseen, "within"), f"{100 * (1 - done.alpha):g} %"
+        agreeing.append(
+            f"No significant gap in {_shortened(unseen)}: with {sure} confidence they agree to within {bounds} at "
+            f"every point."
+        )
     if not ordered and not small:
         strides = f"{done.strides_first} and {done.strides_second} strides"
         n = counted(done.first, "participant") if done.unit == "participant" else strides
@@ -116,7 +122,20 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
             "p refers to these two recordings only, not to other days, marker placements or people. Two walks of one "
             "person often differ by more than their strides do."
         )
-        units = _units(mismatch)
+        if done.first == 1:
+            units = (
+                f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was treated as a curve without "
+                f"spread; {counted(done.strides_second, 'stride')} of {mismatch.second}"
+                f"{_blocks(done, str(done.second))} were tested against it. Under the null hypothesis the sign of each "
+                "difference is random."
+            )
+        else:
+            units = (
+                f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of "
+                f"{mismatch.second}{_blocks(done, f'{done.first} and {done.second}')} are the units. Under the null "
+                "hypothesis the sign of each deviation from its walk's mean is random, so that the two walks may "
+                "differ in spread."
+            )
     return [
         f"The gap is the mean curve of {mismatch.second} minus that of {mismatch.first}, each channel over the "
         "strides of its own foot, on 101 points of the stride.",
@@ -131,22 +150,6 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
         "strides are correlated.",
         f"Standard deviations are those of {mismatch.second} over strides at the same point. {about}",
     ]
-
-
-def _units(mismatch: Mismatch) -> str:
-    done = mismatch.exchange
-    if done.first == 1:
-        return (
-            f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was treated as a curve without spread; "
-            f"{counted(done.strides_second, 'stride')} of {mismatch.second}{_blocks(done, str(done.second))} were "
-            "tested against it. Under the null hypothesis the sign of each difference is random."
-        )
-    return (
-        f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of "
-        f"{mismatch.second}{_blocks(done, f'{done.first} and {done.second}')} are the units. Under the null "
-        "hypothesis the sign of each deviation from its walk's mean is random, so that the two walks may differ in "
-        "spread."
-    )
 
 
 def _blocks(done: Exchange, counts: str) -> str:
@@ -183,13 +186,6 @@ def _timing(mismatch: Mismatch, name: str) -> str:
         f"Much of the largest gap is timing: after a shift {way}, the curve of {mismatch.first} differs by "
         f"{number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
     )
-
-
-def _agreeing(mismatch: Mismatch, names: list[str]) -> str:
-    words = _shortened(names)
-    bounds = _by_unit(mismatch, names, "within")
-    sure = f"{100 * (1 - mismatch.exchange.alpha):g} %"
-    return f"No significant gap in {words}: with {sure} confidence they agree to within {bounds} at every point."
 
 
 def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool = False) -> str:

@@ -32,9 +32,9 @@ from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.effect_units import places_unit, unit_of_channel
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_check import places_unit, unit_of_channel
 
 MOST_EXPLANATIONS = 5
 MOST_RIVALS = 6

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from gaitdisc.discovery.catalogue import Shape, with_names
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
-from gaitdisc.simulation.effect_units import unit_of_state
 from gaitdisc.simulation.expression import Tree, parsed, substituted, written
 from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_check import unit_of_state
 
 # How an error of a signal reads, {s} being the signal: (slot, value when nothing is wrong, expression)
 SIGNAL_ERRORS = {

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.errors import ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.toml_text import parsed_toml
 
 if TYPE_CHECKING:

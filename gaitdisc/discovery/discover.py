@@ -24,10 +24,9 @@ from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.uncertain_inputs import weigh_input_errors, weigh_unstated_errors
 from gaitdisc.errors import SchemaError
-from gaitdisc.simulation.divergence import refuse_divergence
-from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.compiled_simulation import Rows
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.running import compile_simulation, refuse_divergence
 from gaitdisc.simulation.simulation import Simulation
 
 MOST_LOST = 0.2  # of the shortest runs; a few may begin at a bad guess of what is not measured

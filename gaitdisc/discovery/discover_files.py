@@ -17,9 +17,9 @@ from gaitdisc.discovery.kept_work import recall
 from gaitdisc.discovery.result import DEVICE, SIMULATION, ConditionAnswer, Discovery, GapSize
 from gaitdisc.errors import GaitdiscError, SamplingError
 from gaitdisc.ingest.public_words import PublicWords
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
+from gaitdisc.regular_file import file_sha256
 from gaitdisc.saved.provenance import made_now
 from gaitdisc.simulation.even_time import MILLISECONDS
 from gaitdisc.simulation.measured import Measured

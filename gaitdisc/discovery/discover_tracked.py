@@ -34,8 +34,8 @@ from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import SamplingError, SchemaError
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
+from gaitdisc.regular_file import file_sha256
 from gaitdisc.saved.provenance import made_now
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Input, Parameter, Sensor, Term

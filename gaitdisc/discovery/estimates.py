@@ -12,8 +12,8 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_check import divided, places_unit, unit_of, unit_of_channel, unit_of_state
 
 NORMAL_95 = 1.959964
 RESISTING = ("stiffness", "damping", "drag", "friction")  # positive where they oppose what they see

@@ -12,12 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.noise import savgol_filter
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.derivatives import savgol_filter
-from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled, Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.program import at_points, leaf_columns

@@ -10,9 +10,9 @@ from gaitdisc.discovery.linearised import pushable
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.result import FoundEffect
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.errors import SimulationError
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 0.1  # of a state's or a parameter's size

@@ -7,11 +7,10 @@ from numpy.typing import ArrayLike
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.discovery.catalogue import SIGNALS, Shape
-from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError, SimulationError
 from gaitdisc.simulation.delays import refuse_delays, refuse_delays_of
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 FEWEST = 16  # samples of a trial

@@ -25,7 +25,7 @@ from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 

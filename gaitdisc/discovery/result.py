@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.kind import Saved
 from gaitdisc.saved.provenance import Provenance
+from gaitdisc.words import html_of
 
 if TYPE_CHECKING:
     import pandas as pd

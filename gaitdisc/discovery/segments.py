@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 
 
 @dataclass(frozen=True)

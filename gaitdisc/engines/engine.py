@@ -1,4 +1,4 @@
-"""Which files are models, and their models of MuJoCo or OpenSim: what an engine offers, its classes say."""
+"""Models of MuJoCo or OpenSim from their files: what an engine offers, its classes say."""
 
 from __future__ import annotations
 
@@ -7,14 +7,9 @@ from pathlib import Path
 from gaitdisc.engines.mujoco_model import MujocoModel
 from gaitdisc.engines.opensim_model import OpensimModel
 from gaitdisc.errors import ReadError
+from gaitdisc.simulation.simulation_file import is_model
 
 Engine = MujocoModel | OpensimModel
-ENGINES = {".xml": MujocoModel, ".mjcf": MujocoModel, ".osim": OpensimModel}
-
-
-def is_model(path: Path) -> bool:
-    """Whether a file is one that an engine reads."""
-    return path.suffix.lower() in ENGINES
 
 
 def read_model(path: Path | str) -> Engine:
@@ -26,4 +21,4 @@ def read_model(path: Path | str) -> Engine:
         raise ReadError(
             "a model must be a MuJoCo (.xml) or OpenSim (.osim) file", f"found {path.name}", "Name such a file."
         )
-    return ENGINES[path.suffix.lower()](path)
+    return OpensimModel(path) if path.suffix.lower() == ".osim" else MujocoModel(path)

@@ -18,7 +18,7 @@ from scipy.ndimage import median_filter
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import REPLACED
 from gaitdisc.engines.motion import Motion, Values
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.simulation import Simulation

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.engines.engine import Engine, is_model, read_model
+from gaitdisc.engines.engine import Engine, read_model
 from gaitdisc.engines.motion import Motion, Values
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
@@ -19,7 +18,7 @@ from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Port, Sensor, State
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import LARGEST, read_simulation
+from gaitdisc.simulation.simulation_file import is_model, read_simulation
 from gaitdisc.simulation.writing import write_simulation
 
 REPLACED = "replaced_"  # begins the definition that a control is replaced by
@@ -90,14 +89,6 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
     engine = read_model(path.parent / mapping.model)
     check_mapping(mapping, engine)
     return mapping, engine
-
-
-def names_engine(path: Path | str) -> bool:
-    """Whether a file is a model of an engine, or the mapping of one."""
-    path = Path(path)
-    if is_model(path) or not path.is_file() or path.suffix.lower() != ".toml" or path.stat().st_size > LARGEST:
-        return is_model(path)
-    return re.search(rb"^(model\s*=|\[tracked\])", path.read_bytes(), re.MULTILINE) is not None
 
 
 def check_mapping(mapping: Simulation, engine: Engine) -> None:

@@ -17,10 +17,10 @@ from gaitdisc.ingest.c3d_labels import LabelMap, file_events
 from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 from gaitdisc.recording.arrays import Values
+from gaitdisc.regular_file import file_sha256
 
 ANALOG_STREAMS = ("emg", "forces", "signals")
 _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"

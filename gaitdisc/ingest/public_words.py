@@ -16,13 +16,14 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.ingest.columns import split_unit
-from gaitdisc.ingest.study import MEASURES, Participant, PlannedTrial, Study
 from gaitdisc.recording import Finding, Recording, Trial
+
+if TYPE_CHECKING:
+    from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 
 Result = TypeVar("Result")
 HIDDEN = "…"
@@ -123,7 +124,7 @@ def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) 
     said += [each.id for each in study.participants]
     said += [trial.condition for each in study.participants for trial in each.trials]
     said += [*study.models.angles, *study.models.emg, *study.models.outputs]
-    said += [split_unit(name)[0] for name in study.channels.values()]
+    said += study.channel_names
     words = frozenset(word for text in said for word in _WORD.findall(text))
     files = {name: said for trial in participant.trials for name, said in _files(participant, trial).items()}
     return PublicWords(words, files)
@@ -148,31 +149,6 @@ def with_public_labels(recording: Recording) -> tuple[Recording, int]:
         names.append(f"{name}{dot}{axis}")
     renamed = tuple(replace(channel, name=name) for channel, name in zip(recording.channels, names, strict=True))
     return replace(recording, channels=renamed), len(called)
-
-
-def public_settings(study: Study, include: set[str] | None = None) -> dict[str, Any]:
-    """Settings of a study as they may be written: files are counted, labels of the recordings numbered."""
-    settings = study.model_dump(mode="json", include=include)
-    if settings.get("kinematics", "") is None:
-        del settings["kinematics"]
-    elif settings.get("kinematics", {}).get("marker_set", "").endswith(".toml"):
-        settings["kinematics"]["marker_set"] = "a file of the laboratory"
-    for participant in settings.get("participants", ()):
-        for measured in MEASURES:  # of the person, and no setting
-            del participant[measured]
-        for trial in participant["trials"]:
-            trial["files"] = len(trial["files"])
-    if "channels" in settings:
-        settings["channels"] = {f"label {k}": name for k, name in enumerate(settings["channels"].values(), 1)}
-    return settings
-
-
-def public_title(study: Study) -> str:
-    """Title of a study's pages; without one its conditions, never the name of its folder."""
-    conditions = study.conditions
-    if study.title:
-        return study.title
-    return " against ".join(conditions.both) if conditions.device else ", ".join(conditions.words)
 
 
 @cache

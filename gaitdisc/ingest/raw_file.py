@@ -1,20 +1,15 @@
-"""A file as it lies on the disk: its name, its bytes, its hash."""
+"""A file as it lies on the disk: its name and its bytes."""
 
 from __future__ import annotations
 
 import hashlib
-import os
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
 from gaitdisc.channel import hint_nearest
 from gaitdisc.errors import MissingFileError, ReadError
 from gaitdisc.recording import Source
-from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
-
-SETTLED_S = 2.0  # a file younger than this may be written again within the clock of its folder
-_known: dict[tuple[int, ...], str] = {}
+from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular, known_sha256
 
 
 @dataclass(frozen=True)
@@ -85,32 +80,3 @@ def _near(path: Path) -> str:
     except OSError:
         return ", and no such folder"
     return hint_nearest(path.name, names)
-
-
-def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's bytes; a file that did not change since it was last hashed is not read again.
-
-    Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
-    """
-    known = known_sha256(path)
-    if known:
-        return known
-    check_regular(path)
-    with path.open("rb") as file:
-        before = os.fstat(file.fileno())
-        found = hashlib.file_digest(file, "sha256").hexdigest()
-        if time.time() - before.st_mtime > SETTLED_S and _state(os.fstat(file.fileno())) == _state(before):
-            _known[_state(before)] = found
-    return found
-
-
-def known_sha256(path: Path) -> str:
-    """Hash of a file if it was computed and the file is as it was; empty otherwise."""
-    try:
-        return _known.get(_state(path.stat()), "")
-    except OSError:
-        return ""
-
-
-def _state(found: os.stat_result) -> tuple[int, ...]:
-    return (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)

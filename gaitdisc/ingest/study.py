@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
 from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.study_settings import (
     Filters,
     HeldOut,
@@ -184,9 +185,38 @@ class Study(StudyPart):
         study._folder = Path(folder)
         return study
 
+    @property
+    def channel_names(self) -> tuple[str, ...]:
+        """Names that labels of files stand for, without their units."""
+        return tuple(split_unit(name)[0] for name in self.channels.values())
+
     def path_of(self, file: str) -> Path:
         """Return where a file of the study lies."""
         return self._folder / file
+
+    @property
+    def public_title(self) -> str:
+        """Title of pages; without one the conditions, never the name of the folder."""
+        conditions = self.conditions
+        if self.title:
+            return self.title
+        return " against ".join(conditions.both) if conditions.device else ", ".join(conditions.words)
+
+    def public_settings(self, include: set[str] | None = None) -> dict[str, Any]:
+        """Settings as they may be written: files are counted, labels of the recordings numbered."""
+        settings = self.model_dump(mode="json", include=include)
+        if settings.get("kinematics", "") is None:
+            del settings["kinematics"]
+        elif settings.get("kinematics", {}).get("marker_set", "").endswith(".toml"):
+            settings["kinematics"]["marker_set"] = "a file of the laboratory"
+        for participant in settings.get("participants", ()):
+            for measured in MEASURES:  # of the person, and no setting
+                del participant[measured]
+            for trial in participant["trials"]:
+                trial["files"] = len(trial["files"])
+        if "channels" in settings:
+            settings["channels"] = {f"label {k}": name for k, name in enumerate(settings["channels"].values(), 1)}
+        return settings
 
     def with_unnamed(self) -> Study:
         """Return the same study in which trials of condition 'unknown' have the one that `unnamed` says."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d_kinetics import body_measures_in
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Participant, PlannedTrial, Study
+from gaitdisc.regular_file import file_sha256
 
 MOST_KG, MOST_M = 2.0, 0.03  # within a session: clothes and shoes; a shoe's sole, and a tape held twice
 ALWAYS = (float("-inf"), float("inf"))  # [s]

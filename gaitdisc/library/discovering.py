@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover_files import discovered
-from gaitdisc.engines.mapping import names_engine
-from gaitdisc.errors import LOG, SchemaError
+from gaitdisc.errors import LOG, SchemaError, SimulationError
 from gaitdisc.library.simulating import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured
 from gaitdisc.simulation.python_simulation import PythonSimulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import names_engine
 
 if TYPE_CHECKING:
     import pandas as pd

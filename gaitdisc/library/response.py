@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
 from gaitdisc.errors import ChannelError, SamplingError
-from gaitdisc.ingest.public_words import public_settings
 from gaitdisc.ingest.study import Conditions, Participant, Study
 from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, HeldOut, Models
 from gaitdisc.library.walks import Walk, trial_of
@@ -90,7 +89,7 @@ def fit_response(
     response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null, banded=True)
     summaries = tuple(replace(walk.summary(), subject=person) for walk in walks.values())
     files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}
-    made = {**public_settings(study), "fits": asdict(settings)}
+    made = {**study.public_settings(), "fits": asdict(settings)}
     origin = made_now(made, seed, files, "chapter 4: response to a device")
     fits = (replace(response, participant=person),)
     return ResponseRun(f"Response of {person}", WITHOUT, WITH, (), origin, {WALK.file: summaries, RESPONSE.file: fits})

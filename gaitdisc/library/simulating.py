@@ -13,23 +13,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel, side_of
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.mapping import names_engine, replaced_inputs
+from gaitdisc.engines.mapping import replaced_inputs
 from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
-from gaitdisc.errors import ShapeError, UnitError
+from gaitdisc.errors import ShapeError, SimulationError, UnitError
 from gaitdisc.ingest.table import has_times
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolated
-from gaitdisc.simulation.divergence import refuse_divergence
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.functions import simulation_from_function
 from gaitdisc.simulation.python_simulation import PythonSimulation
-from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.running import compile_simulation, refuse_divergence
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.simulation_file import names_engine, read_simulation
 
 if TYPE_CHECKING:
     import pandas as pd

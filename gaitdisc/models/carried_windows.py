@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,13 @@ from gaitdisc.models.shred import Shred
 from gaitdisc.models.trained_network import TrainedNetwork
 
 Array = NDArray[np.float64]
+
+
+class Linear(NamedTuple):
+    """A linear layer: what is read times `weights` (input, output), and `offsets` (output,)."""
+
+    weights: Array
+    offsets: Array
 
 
 class CarriedWindows:
@@ -30,17 +39,14 @@ class CarriedWindows:
         assert isinstance(shred, Shred)  # nothing else is given
         self._cell, self._masked = shred.cell, shred.masked
         named = {name: np.ascontiguousarray(values.T, float) for name, values in network.weights().items()}
-        # of each recurrent layer: weights (input, gate * node) and (node, gate * node), and their offsets
+        # of each recurrent layer: what it makes of what is read (input, gate * node), and of its state (node, ...)
         self._layers = [
-            tuple(
-                (named[f"recurrent.{what}_ih_l{k}"], named[f"recurrent.{what}_hh_l{k}"]) for what in ("weight", "bias")
-            )
+            [Linear(named[f"recurrent.weight_{of}_l{k}"], named[f"recurrent.bias_{of}_l{k}"]) for of in ("ih", "hh")]
             for k in range(shred.recurrent.num_layers)
         ]
-        # weights, each (input, output), and offsets of the decoder
         self._decoder = [
-            (named[f"decoder.first.{what}"], named[f"decoder.second.{what}"], named[f"decoder.readout.{what}"])
-            for what in ("weight", "bias")
+            Linear(named[f"decoder.{name}.weight"], named[f"decoder.{name}.bias"])
+            for name in ("first", "second", "readout")
         ]
         self._mean = network.x_scale.mean.reshape(count, -1)
         self._sd = network.x_scale.sd.reshape(count, -1)
@@ -59,12 +65,12 @@ class CarriedWindows:
             missing = np.isnan(read)
             self._silent[self._phase] = self._silent[self._phase] + 1 if np.isnan(reading).all() else 0
             read = np.hstack([np.where(missing, 0.0, read), missing])
-        for layer, (weights, offsets) in enumerate(self._layers):
+        for layer, (of_input, of_state) in enumerate(self._layers):
             states, cells = self._states[self._phase, layer], self._cells[self._phase, layer]
             if self._cell == "gru":
-                read = gru_step(read, states, weights, offsets)
+                read = gru_step(read, states, of_input, of_state)
             else:
-                read, kept = lstm_step(read, (states, cells), weights, offsets)
+                read, kept = lstm_step(read, states, cells, of_input, of_state)
                 cells[1:] = kept[:-1]
             states[1:] = read[:-1]
         if self._silent[self._phase] >= len(self._mean):
@@ -74,79 +80,71 @@ class CarriedWindows:
 
 
 @compiled(error_model="numpy")
-def gru_step(read: Array, states: Array, weights: tuple[Array, Array], offsets: tuple[Array, Array]) -> Array:
+def gru_step(read: Array, states: Array, of_input: Linear, of_state: Linear) -> Array:
     """States of a layer of gated recurrent units after one more reading, (window, node).
 
     read (window, input): what each window reads now
     states (window, node): before
-    weights ((input, 3 node), (node, 3 node)): of what is read, and of the state: reset gate, update gate, candidate
-    offsets pair of (3 node,): of the two
+    of_input, of_state (input, 3 node), (node, 3 node): to the reset gate, the update gate and the candidate
     Source: Cho et al. 2014; the reset gate acts after the product, as in torch.
 
-    >>> one, two, none = np.ones((1, 3)), np.zeros((1, 3)), np.zeros(3)
-    >>> gru_step(np.zeros((1, 1)), np.ones((1, 1)), (one, two), (none, none))  # gates half open, candidate 0
+    >>> one, none = Linear(np.ones((1, 3)), np.zeros(3)), Linear(np.zeros((1, 3)), np.zeros(3))
+    >>> gru_step(np.zeros((1, 1)), np.ones((1, 1)), one, none)  # gates half open, candidate 0
     array([[0.5]])
     """
     nodes = states.shape[1]
-    a = np.dot(read, weights[0])
-    b = np.dot(states, weights[1])
+    a = np.dot(read, of_input.weights)
+    b = np.dot(states, of_state.weights)
     after = np.empty_like(states)
     for window in range(len(states)):
         for k in range(nodes):
             i, j = nodes + k, 2 * nodes + k
-            reset = 1 / (1 + np.exp(-(a[window, k] + offsets[0][k] + b[window, k] + offsets[1][k])))
-            update = 1 / (1 + np.exp(-(a[window, i] + offsets[0][i] + b[window, i] + offsets[1][i])))
-            candidate = np.tanh(a[window, j] + offsets[0][j] + reset * (b[window, j] + offsets[1][j]))
+            reset = 1 / (1 + np.exp(-(a[window, k] + of_input.offsets[k] + b[window, k] + of_state.offsets[k])))
+            update = 1 / (1 + np.exp(-(a[window, i] + of_input.offsets[i] + b[window, i] + of_state.offsets[i])))
+            candidate = np.tanh(a[window, j] + of_input.offsets[j] + reset * (b[window, j] + of_state.offsets[j]))
             after[window, k] = candidate + update * (states[window, k] - candidate)
     return after
 
 
 @compiled(error_model="numpy")
-def lstm_step(
-    read: Array, states: tuple[Array, Array], weights: tuple[Array, Array], offsets: tuple[Array, Array]
-) -> tuple[Array, Array]:
+def lstm_step(read: Array, states: Array, cells: Array, of_input: Linear, of_state: Linear) -> tuple[Array, Array]:
     """States and cells of a layer of long short-term memory after one more reading, each (window, node).
 
     read (window, input): what each window reads now
-    states ((window, node), (window, node)): states and cells before
-    weights ((input, 4 node), (node, 4 node)): of what is read, and of the state: input gate, forget gate, candidate,
-        output gate
-    offsets pair of (4 node,): of the two
+    states, cells (window, node): before
+    of_input, of_state (input, 4 node), (node, 4 node): to input gate, forget gate, candidate, output gate
     Source: Hochreiter and Schmidhuber 1997, with the forget gate of Gers et al. 2000, as in torch.
 
-    >>> one, two, none = np.ones((1, 4)), np.zeros((1, 4)), np.zeros(4)
-    >>> lstm_step(np.zeros((1, 1)), (np.ones((1, 1)), np.ones((1, 1))), (one, two), (none, none))[1]
+    >>> one, none = Linear(np.ones((1, 4)), np.zeros(4)), Linear(np.zeros((1, 4)), np.zeros(4))
+    >>> lstm_step(np.zeros((1, 1)), np.ones((1, 1)), np.ones((1, 1)), one, none)[1]
     array([[0.5]])
     """
-    before, cells = states
-    nodes = before.shape[1]
-    sums = np.dot(read, weights[0]) + np.dot(before, weights[1])
-    after, kept = np.empty_like(before), np.empty_like(cells)
-    for window in range(len(before)):
+    nodes = states.shape[1]
+    sums = np.dot(read, of_input.weights) + np.dot(states, of_state.weights)
+    after, kept = np.empty_like(states), np.empty_like(cells)
+    for window in range(len(states)):
         for k in range(nodes):
             gates = sums[window]
-            take = 1 / (1 + np.exp(-(gates[k] + offsets[0][k] + offsets[1][k])))
+            take = 1 / (1 + np.exp(-(gates[k] + of_input.offsets[k] + of_state.offsets[k])))
             i, j, o = nodes + k, 2 * nodes + k, 3 * nodes + k
-            keep = 1 / (1 + np.exp(-(gates[i] + offsets[0][i] + offsets[1][i])))
-            candidate = np.tanh(gates[j] + offsets[0][j] + offsets[1][j])
-            give = 1 / (1 + np.exp(-(gates[o] + offsets[0][o] + offsets[1][o])))
+            keep = 1 / (1 + np.exp(-(gates[i] + of_input.offsets[i] + of_state.offsets[i])))
+            candidate = np.tanh(gates[j] + of_input.offsets[j] + of_state.offsets[j])
+            give = 1 / (1 + np.exp(-(gates[o] + of_input.offsets[o] + of_state.offsets[o])))
             kept[window, k] = keep * cells[window, k] + take * candidate
             after[window, k] = give * np.tanh(kept[window, k])
     return after, kept
 
 
 @compiled(error_model="numpy")
-def decoded(features: Array, weights: tuple[Array, Array, Array], offsets: tuple[Array, Array, Array]) -> Array:
+def decoded(features: Array, first: Linear, second: Linear, readout: Linear) -> Array:
     """Scaled outputs of a shallow decoder for one sample, (output,).
 
-    features (node,): what the first layer reads
-    weights three of (input, output): of the two rectified layers, and of the linear one
-    offsets three of (output,): of these
+    features (node,): what the first of the two rectified layers reads
 
-    >>> one = np.ones((1, 1))
-    >>> decoded(np.array([-3.0]), (one, -one, one), (np.zeros(1), np.ones(1), np.zeros(1)))
+    >>> one, none = np.ones((1, 1)), np.zeros(1)
+    >>> decoded(np.array([-3.0]), Linear(one, none), Linear(-one, none + 1), Linear(one, none))
     array([1.])
     """
-    first = np.maximum(np.dot(features, weights[0]) + offsets[0], 0.0)
-    second = np.maximum(np.dot(first, weights[1]) + offsets[1], 0.0)
-    return np.dot(second, weights[2]) + offsets[2]
+    below = np.maximum(np.dot(features, first.weights) + first.offsets, 0.0)
+    above = np.maximum(np.dot(below, second.weights) + second.offsets, 0.0)
+    return np.dot(above, readout.weights) + readout.offsets

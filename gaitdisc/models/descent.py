@@ -103,7 +103,13 @@ def descend(
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it
         trained.
     """
-    steps = _steps(network, part, check, schedule, settings)
+    steps: TorchSteps | FusedSteps | None = None
+    if settings.arithmetic == "auto" and settings.precision == "float32":
+        from gaitdisc.models.fused_steps import FusedSteps, can_be_fused
+
+        if can_be_fused(network):
+            steps = FusedSteps(cast(FeedForward, network), part, check, schedule)
+    steps = steps or TorchSteps(network, part, check, schedule, settings.precision)
     order = torch.Generator().manual_seed(settings.seed)
     losses: list[float] = []
     best: Any = steps.weights()
@@ -125,15 +131,3 @@ def descend(
     steps.restore(best)
     network.eval()
     return Descent(tuple(losses), losses.index(min(losses)) + 1, steps.arithmetic)
-
-
-def _steps(
-    network: nn.Module, part: ScaledSamples, check: ScaledSamples, schedule: Schedule, settings: TrainingSettings
-) -> TorchSteps | FusedSteps:
-    """What computes a descent: compiled code where it can, torch elsewhere."""
-    if settings.arithmetic == "auto" and settings.precision == "float32":
-        from gaitdisc.models.fused_steps import FusedSteps, can_be_fused
-
-        if can_be_fused(network):
-            return FusedSteps(cast(FeedForward, network), part, check, schedule)
-    return TorchSteps(network, part, check, schedule, settings.precision)

@@ -69,7 +69,13 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
     rng = np.random.default_rng(seed)
     directions = rng.normal(size=(training.x.shape[1], features))
     phases = rng.uniform(0, 2 * np.pi, features)
-    frequencies = directions / _chosen_width(part, checked, directions, phases)
+    width = 1.0
+    if directions.shape[1]:
+        few, some = slice(0, TRIAL_FEATURES), part[0][:: max(1, len(part[0]) // 500)]
+        typical = float(np.sqrt(np.median(((some - some[::-1]) ** 2).sum(axis=1)))) or 1.0
+        losses = [_solved(part, checked, directions[:, few] / (w * typical), phases[few])[1] for w in WIDTHS]
+        width = WIDTHS[int(np.argmin(losses))] * typical
+    frequencies = directions / width
     penalty, _, weights, offset = _solved(part, checked, frequencies, phases)
     return FourierRidge(
         training.inputs, training.outputs, x_scale, y_scale, frequencies, phases, weights, offset, penalty
@@ -77,16 +83,6 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
 
 
 Part = tuple[NDArray[np.float32], NDArray[np.float32]]
-
-
-def _chosen_width(part: Part, checked: Part, directions: NDArray[np.float64], phases: NDArray[np.float64]) -> float:
-    few = slice(0, min(TRIAL_FEATURES, directions.shape[1]))
-    if not directions.shape[1]:
-        return 1.0
-    some = part[0][:: max(1, len(part[0]) // 500)]
-    typical = float(np.sqrt(np.median(((some - some[::-1]) ** 2).sum(axis=1)))) or 1.0
-    losses = [_solved(part, checked, directions[:, few] / (w * typical), phases[few])[1] for w in WIDTHS]
-    return WIDTHS[int(np.argmin(losses))] * typical
 
 
 def _solved(

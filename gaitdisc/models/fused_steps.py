@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -212,32 +213,41 @@ def _gathered(values, rows, into):
             into[k, column] = row[column]
 
 
+class Batches(NamedTuple):
+    """The steps of one pass over the samples.
+
+    order (sample,): in which the samples are seen
+    size: samples of a batch
+    paces (step, 3): of each step: factor on the weight matrices (decoupled decay), step size over the bias correction
+        of the mean, factor on the root of the mean square (its bias correction)
+    """
+
+    order: NDArray[np.int64]
+    size: int
+    paces: NDArray[np.float32]
+
+
 @fast
 def descend_epoch(
     weights: NDArray[np.float32],
     moments: NDArray[np.float32],
     x: NDArray[np.float32],
     y: NDArray[np.float32],
-    order: NDArray[np.int64],
-    sizes: tuple[int, int],
-    paces: NDArray[np.float32],
+    batches: Batches,
+    nodes: int,
 ) -> None:
     """One pass over the samples, a step of Adam for each batch; weights and moments are changed in place.
 
     weights (weight,): of the network
     moments (2, weight): running means of the gradient and of its square
     x, y (sample, input), (sample, output): scaled samples, contiguous
-    order (sample,): in which the samples are seen
-    paces (step, 3): of each step: factor on the weight matrices (decoupled decay), step size over the bias correction
-        of the mean, factor on the root of the mean square (its bias correction)
     """
-    nodes, batch = sizes
     hidden = np.empty((5, BLOCK, nodes), np.float32)
     x_block, y_block = np.empty((BLOCK, x.shape[1]), np.float32), np.empty((BLOCK, y.shape[1]), np.float32)
     g, added = np.empty_like(weights), np.empty_like(weights)
     matrices = nodes * (x.shape[1] + nodes + y.shape[1])
-    for step in range(len(paces)):
-        rows = order[step * batch : (step + 1) * batch]
+    for step in range(len(batches.paces)):
+        rows = batches.order[step * batches.size : (step + 1) * batches.size]
         g[:] = F32(0)
         for start in range(0, rows.size, BLOCK):
             block = rows[start : start + BLOCK]
@@ -246,7 +256,7 @@ def descend_epoch(
             gradient(weights, added, x_block[: block.size], y_block[: block.size], hidden, rows.size)
             for k in range(g.size):
                 g[k] += added[k]
-        _adam(weights, g, moments, matrices, paces[step])
+        _adam(weights, g, moments, matrices, batches.paces[step])
 
 
 class FusedSteps:
@@ -277,8 +287,8 @@ class FusedSteps:
         paces[:, 1] = rates / (1 - 0.9**number)
         paces[:, 2] = 1 / np.sqrt(1 - 0.999**number)
         x, y = self._part
-        sizes = (self._nodes, self._schedule.batch)
-        descend_epoch(self._weights, moments=self._moments, x=x, y=y, order=order.numpy(), sizes=sizes, paces=paces)
+        batches = Batches(order.numpy(), self._schedule.batch, paces)
+        descend_epoch(self._weights, self._moments, x, y, batches, self._nodes)
 
     def loss(self) -> float:
         """Mean squared error of the scaled outputs on the check part."""

@@ -19,7 +19,7 @@ class Shred(nn.Module):
     inputs, outputs: numbers of a window (readings times sensors, oldest first), and states
     sensors: sensors; `inputs` is a multiple of it
     layers: recurrent layers; the dissertation's code has two of 64
-    decoder (int, int): nodes of the decoder's hidden layers
+    first, second: nodes of the decoder's hidden layers
     masked: whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
         reading whether it is missing
     Source: Williams, Zahn and Kutz 2024, Sensing with shallow recurrent decoder networks. Its code has two LSTM layers
@@ -38,7 +38,8 @@ class Shred(nn.Module):
         layers: int = 1,
         cell: str = "gru",
         masked: bool = False,
-        decoder: tuple[int, int] = (128, 128),
+        first: int = 128,
+        second: int = 128,
     ) -> None:
         super().__init__()
         if inputs % sensors:
@@ -49,7 +50,7 @@ class Shred(nn.Module):
             )
         self.sensors, self.cell, self.masked = sensors, cell, masked
         self.recurrent = CELLS[cell](2 * sensors if masked else sensors, nodes, layers, batch_first=True)
-        self.decoder = ShallowDecoder(nodes, outputs, *decoder)
+        self.decoder = ShallowDecoder(nodes, outputs, first, second)
 
     @property
     def readout(self) -> nn.Linear:

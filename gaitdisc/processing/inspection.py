@@ -12,7 +12,6 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
-from gaitdisc.notebook import html_of
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
@@ -22,6 +21,7 @@ from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.strides import cut_strides, verify_walking
+from gaitdisc.words import html_of
 
 SHOWN = 4  # channels of one line
 SAID = ("contact offset",)  # kinds of notes that are always printed: percent stride was moved, or is known to be early

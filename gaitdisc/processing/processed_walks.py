@@ -12,7 +12,6 @@ from pathlib import Path
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, not_compared, static_trial, trial_sets
@@ -20,6 +19,7 @@ from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles, cycles_name
 from gaitdisc.processing.process import StudyWalks, Walk
 from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Trial
+from gaitdisc.regular_file import file_sha256
 from gaitdisc.saved.provenance import Refusal, code_sha256
 
 

@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.errors import GaitdiscError, SamplingError, SchemaError
-from gaitdisc.ingest.public_words import public_settings, public_title
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Study
@@ -143,13 +142,13 @@ def _result(
         }
     if what.lags.ahead:
         models |= BASELINES
-    used = {**public_settings(study, {"filters", "strides", "conditions"}), "reconstruct": asdict(settings)}
+    used = {**study.public_settings({"filters", "strides", "conditions"}), "reconstruct": asdict(settings)}
     when = f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at"
     errors, summary, curves = (
         pd.concat([getattr(each, name) for each in done], ignore_index=True) for name in ("errors", "summary", "curves")
     )
     return Reconstruction(
-        title=public_title(study),
+        title=study.public_title,
         sensors=walks.named(what.sensors),
         states=walks.named(what.states),
         split=f"{settings.split}: {rule}",

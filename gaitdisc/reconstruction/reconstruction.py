@@ -11,10 +11,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
 from gaitdisc.saved.kind import CSV, Kind, Saved
 from gaitdisc.saved.provenance import Provenance, Refusal
+from gaitdisc.words import html_of
 
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off

@@ -237,7 +237,7 @@ def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     if kind == "shallow decoder":
         return ShallowDecoder
     if kind == OF_TEXT:
-        return partial(Shred, sensors=sensors, layers=2, cell="lstm", decoder=(350, 400))
+        return partial(Shred, sensors=sensors, layers=2, cell="lstm", first=350, second=400)
     return partial(Shred, sensors=sensors, masked=kind == MASKED)
 
 

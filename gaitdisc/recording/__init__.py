@@ -3,7 +3,6 @@
 This room imports the ground (errors, units, channel names, files) alone.
 """
 
-from gaitdisc.recording.field import Axis, Field
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
 from gaitdisc.recording.samples import Samples, Scale, Trajectory, scale_of
@@ -12,11 +11,9 @@ from gaitdisc.recording.trial import Event, Surface, Trial
 
 __all__ = [
     "PERCENT",
-    "Axis",
     "Cycle",
     "DroppedStride",
     "Event",
-    "Field",
     "Finding",
     "Recording",
     "Samples",

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.words import html_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ShapeError, StrideError
-from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped
+from gaitdisc.words import html_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
-from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import Values, frozen, read_only
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.recording.wrapping import unwrapped, wrapped
+from gaitdisc.words import html_of
 
 
 class Limits(NamedTuple):

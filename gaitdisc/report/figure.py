@@ -101,12 +101,11 @@ def _svg(drawn: matplotlib.figure.Figure) -> bytes:
     nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     drawn.savefig(stream, format="svg", metadata=nothing, dpi=PNG_DOTS_PER_INCH)
     text = re.sub(r"<!DOCTYPE[^>]*>\s*", "", stream.getvalue())
-    return re.sub(r'(?<= d=")[^"]+(?=")', _rounded, text).encode("utf-8")
-
-
-def _rounded(path: re.Match[str]) -> str:
     # a hundredth of a point cannot be seen, and the digits beyond it are half of the page
-    return re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n.group()):.2f}", path.group())
+    paths = re.compile(r'(?<= d=")[^"]+(?=")')
+    longer = re.compile(r"-?\d+\.\d{3,}")
+    text = paths.sub(lambda path: longer.sub(lambda n: f"{float(n.group()):.2f}", path.group()), text)
+    return text.encode("utf-8")
 
 
 @in_style

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,7 +77,11 @@ def p_text(p: float) -> str:
 def _pair_table(tests: PairTests, first: str, second: str) -> Table:
     numbers = tests.of_pair(first, second)
     columns = _columns(first, second)
-    rows = tuple(_cells(row, columns) for _, row in numbers.iterrows())
+    rows = []
+    for _, row in numbers.iterrows():
+        tested = math.isfinite(row["p"])
+        untested = ("–", "–", str(int(row["n"])), *("not tested",) * (len(columns) - 3))
+        rows.append((label(row["variable"]), *([write(row) for write in columns.values()] if tested else untested)))
     count = int(numbers["p"].notna().sum())
     missing = [f"{label(str(row.variable))}: {row.left_out}" for row in numbers.itertuples() if row.left_out]
     explained = (
@@ -93,7 +97,7 @@ def _pair_table(tests: PairTests, first: str, second: str) -> Table:
         f"n = {counted(tests.participants, 'participant')}, Holm-Sidak over {counted(count, 'test')}, alpha = "
         f"{tests.alpha:g}; {explained}.{one_sign}{' Left out: ' + '; '.join(missing) + '.' if missing else ''}"
     )
-    return Table(f"tests-{first}-{second}", caption, ("variable", *columns), rows, numbers, _GROUPS)
+    return Table(f"tests-{first}-{second}", caption, ("variable", *columns), tuple(rows), numbers, _GROUPS)
 
 
 def _columns(first: str, second: str) -> dict[str, Callable[[pd.Series], str]]:
@@ -112,13 +116,6 @@ def _columns(first: str, second: str) -> dict[str, Callable[[pd.Series], str]]:
         "shift [95 %]": lambda row: f"{number(row['shift'], 4)}\n[{_bound(row['low'])}, {_bound(row['high'])}]",
         "rank-biserial": lambda row: "–" if math.isnan(row["rank_biserial"]) else number(row["rank_biserial"]),
     }
-
-
-def _cells(row: pd.Series, columns: Mapping[str, Callable[[pd.Series], str]]) -> tuple[str, ...]:
-    name = label(row["variable"])
-    if not math.isfinite(row["p"]):
-        return (name, "–", "–", str(int(row["n"])), *("not tested",) * (len(columns) - 3))
-    return (name, *(write(row) for write in columns.values()))
 
 
 def direction_found(row: pd.Series) -> str:

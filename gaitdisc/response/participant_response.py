@@ -12,15 +12,15 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError, ShapeError
-from gaitdisc.notebook import html_of
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.recording import PERCENT
 from gaitdisc.response.participants_result import OVER, TESTS, OverParticipants, PairTests, table_of_people
-from gaitdisc.response.variants import QUESTIONS
 from gaitdisc.saved.kind import CSV, Kind, keyed_arrays
 from gaitdisc.saved.study_run import StudyRun, load_run_as, save_whole_run
 from gaitdisc.saved.unit_folder import Arrays, lies_on_disk, may_lie_on_disk
+from gaitdisc.words import html_of
 
+QUESTIONS = ("modalities", "sensitivity")  # answered in folders beside a run
 MODELS = ("nominal", "augmented", "exo")
 BASELINES = ("ridge", "linear", "null")
 KINDS = ("network", *BASELINES)

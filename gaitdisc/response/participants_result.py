@@ -54,8 +54,8 @@ class PairTests:
 
     def __post_init__(self) -> None:
         """Check columns once."""
-        tables = {"tests": (self.tests, TEST_COLUMNS), "families": (self.families, FAMILY_COLUMNS)}
-        check_columns(tables, "paired tests need", "Compare the models again: `gaitdisc run` on the study.")
+        columns = {"tests": TEST_COLUMNS, "families": FAMILY_COLUMNS}
+        check_columns(self, columns, "paired tests need", "Compare the models again: `gaitdisc run` on the study.")
 
     def of_pair(self, first: str, second: str) -> pd.DataFrame:
         """Tests of one pair of models, one row a variable."""
@@ -83,9 +83,8 @@ class OverParticipants:
 
     def __post_init__(self) -> None:
         """Check columns once."""
-        tables = {name: (getattr(self, name), columns) for name, columns in TABLES.items()}
         again = "Compare the participants again: `gaitdisc run` on the study."
-        check_columns(tables, "comparisons over participants need", again)
+        check_columns(self, TABLES, "comparisons over participants need", again)
 
     def enough_length(self, second: str = WHOLE) -> float | None:
         """Shortest length [s] from which no variable is shown to differ (no proof of equality); None without."""

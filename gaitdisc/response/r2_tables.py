@@ -172,16 +172,11 @@ def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None
         small = 2.2 if len(network) >= FEWEST_FOR_BOXES else 4.6
         shown = np.maximum(network, low)
         axes.plot(shown, np.full(len(shown), y), look.mark, color=look.colour, ms=small, mew=0, clip_on=False, zorder=3)
-        if below := _below(network, low):
+        left = np.sort(network[network < low])
+        if len(left):  # one label for all of them
+            several = f"{len(left)} values, {number(left[0])} to {number(left[-1])}"
+            below = several if len(left) > MOST_VALUES else ", ".join(map(number, left))
             axes.annotate(f"◂ {below}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6)
-
-
-def _below(values: np.ndarray, low: float) -> str:
-    """One label for all values of a row that lie left of the axis."""
-    left = np.sort(values[values < low])
-    if len(left) > MOST_VALUES:
-        return f"{len(left)} values, {number(left[0])} to {number(left[-1])}"
-    return ", ".join(number(value) for value in left)
 
 
 def models_key(models: Sequence[str] = tuple(MODELS), **style: Any) -> list[Line2D]:

@@ -9,12 +9,12 @@ from pathlib import Path
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.response.participant_response import QUESTIONS
 from gaitdisc.response.participants_result import TEST_COLUMNS, table_of_people
 from gaitdisc.saved.kind import CSV, Kind, Saved, plain
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import load_unit, save_unit, with_words
 
-QUESTIONS = ("modalities", "sensitivity")
 VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
 VARIANT_TEST_COLUMNS = ("variant", "model", *TEST_COLUMNS)
 

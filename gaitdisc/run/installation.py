@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -42,54 +42,31 @@ def checks() -> Iterator[Check]:
     for name, words in EXTRAS.items():
         if find_spec(name) is None:
             yield Check(name, "absent", f"needed for {words}")
-    for what, written in (("C3D", _c3d), (".mot", _storage), ("CSV", _table)):
-        yield _read_back(what, written)
+    muscle, knee = _wave("emg_sol_r", rate_hz=1000), _wave("knee_angle_r", rate_hz=100)
+    for what, made, file in (("C3D", muscle, "walk.c3d"), (".mot", knee, "walk.mot"), ("CSV", knee, "walk.csv")):
+        yield _read_back(what, made, file)
 
 
-def _knee() -> Recording:
-    time = np.arange(200) / 100
-    channel = vocabulary().named("knee_angle_r")
+def _wave(name: str, rate_hz: int) -> Recording:
+    """Two seconds of a channel that rises and falls."""
+    time = np.arange(2 * rate_hz) / rate_hz
+    channel = vocabulary().named(name)
     assert channel is not None
     return Recording(time, np.asarray(np.round(30 + 30 * np.sin(6 * time)), float)[:, None], (channel,))
 
 
-def _read_back(what: str, written: Callable[[Path], tuple[Recording, str]]) -> Check:
+def _read_back(what: str, made: Recording, file: str) -> Check:
     """A recording written into a folder of its own, read, and compared number by number."""
-    from gaitdisc.ingest.reading import read_trial
-
     try:
+        from gaitdisc.ingest.c3d_writing import write_c3d
+        from gaitdisc.ingest.reading import read_trial, write_recording
+
         with tempfile.TemporaryDirectory() as folder:
-            made, file = written(Path(folder))
-            found = read_trial(Path(folder) / file)
+            path = Path(folder) / file
+            write_c3d([made], path) if path.suffix == ".c3d" else write_recording(made, path)
+            found = read_trial(path)
             stream = next(one for one in found.streams.values() if made.names[0] in one.names)
             same = np.allclose(stream[made.names[0]], made.values[:, 0], atol=1e-6)
     except Exception as error:  # whatever it is, the installation does not read this kind of file
         return Check(f"reads {what}", "wrong", f"{type(error).__name__}: {error}")
     return Check(f"reads {what}", "ok" if same else "wrong", "as written" if same else "other than written")
-
-
-def _c3d(folder: Path) -> tuple[Recording, str]:
-    from gaitdisc.ingest.c3d_writing import write_c3d
-
-    time = np.arange(2000) / 1000
-    channel = vocabulary().named("emg_sol_r")
-    assert channel is not None
-    made = Recording(time, np.round(np.sin(time) * 1024)[:, None] / 1024, (channel,))
-    write_c3d([made], folder / "walk.c3d")
-    return made, "walk.c3d"
-
-
-def _storage(folder: Path) -> tuple[Recording, str]:
-    from gaitdisc.ingest.storage import write_storage
-
-    made = _knee()
-    write_storage(made, folder / "walk.mot")
-    return made, "walk.mot"
-
-
-def _table(folder: Path) -> tuple[Recording, str]:
-    from gaitdisc.ingest.table import write_table
-
-    made = _knee()
-    write_table(made, folder / "walk.csv")
-    return made, "walk.csv"

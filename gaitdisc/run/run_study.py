@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.ingest.public_words import public_settings, public_title
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.models.training_settings import TrainingSettings
@@ -185,7 +184,7 @@ def run_study(
         fitted = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
         stored = (QUANTITY.kept(folder / "quantities" / name, key) for name, key in fitted)
         quantities = tuple(quantity for quantity in stored if quantity is not None)
-        settings, tests, over = public_settings(study), (), ()
+        settings, tests, over = study.public_settings(), (), ()
         if study.conditions.device is not None:
             from gaitdisc.response.over_participants import compare_models, compare_participants
 
@@ -194,7 +193,7 @@ def run_study(
             over = (compare_participants(responses, quantities, study.models.seed),)
         files = {name: sha for one in units for walk in (*one.walks, *one.cycles) for name, sha in walk.files.items()}
         run = ResponseRun(
-            title=public_title(study),
+            title=study.public_title,
             nominal=study.conditions.nominal,
             exo=study.conditions.device or "",
             refusals=tuple(refusal for unit in units for refusal in unit.refusals),

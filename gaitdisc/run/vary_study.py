@@ -23,9 +23,9 @@ from gaitdisc.processing.processed_walks import processed_walks, response_key, u
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import fit_response, report_share
 from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.response.participant_response import QUANTITY, RESPONSE, DataQuantity, ResponseRun
+from gaitdisc.response.participant_response import QUANTITY, QUESTIONS, RESPONSE, DataQuantity, ResponseRun
 from gaitdisc.response.participants_result import OVER
-from gaitdisc.response.variants import QUESTIONS, VARIANT_COLUMNS, VARIANTS, VariantRun, Variants, save_variant_run
+from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANTS, VariantRun, Variants, save_variant_run
 from gaitdisc.response.vary import (
     LENGTHS_S,
     Setting,

@@ -166,13 +166,13 @@ def load_word(word: str) -> Any:
     return getattr(import_module(module), name)
 
 
-def check_columns(tables: Mapping[str, tuple[pd.DataFrame, Sequence[str]]], needing: str, do: str) -> None:
-    """Refuse a result of which a table lacks columns; tables: name -> the table, and the columns it must have."""
-    for name, (table, columns) in tables.items():
-        missing = [column for column in columns if column not in table]
+def check_columns(noun: object, columns: Mapping[str, Sequence[str]], needing: str, do: str) -> None:
+    """Refuse a result of which a table lacks columns; columns: name of the table -> those that it must have."""
+    for name, needed in columns.items():
+        missing = [column for column in needed if column not in getattr(noun, name)]
         if missing:
             raise SchemaError(
-                f"{needing} the columns {', '.join(columns)} in {name}", f"{name} lacks {', '.join(missing)}", do
+                f"{needing} the columns {', '.join(needed)} in {name}", f"{name} lacks {', '.join(missing)}", do
             )
 
 

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 from gaitdisc.channel import nearest_word
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parsed, unknown_name
 from gaitdisc.simulation.parts import Input, Parts, Sensor, Term
-from gaitdisc.simulation.refusal import SimulationError
 
 MOST_PARTS = 500  # states, inputs, parameters, ports, definitions and effects together
 MOST_CHARACTERS = 200_000  # of all expressions

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.expression import Name, Tree, delays, names, parsed, written
 from gaitdisc.simulation.program import at_points, compiled_program
 from gaitdisc.simulation.python_simulation import PythonSimulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 LONGEST_S = 86_400.0  # of a delay, where no trial says how long: no trial lasts a day

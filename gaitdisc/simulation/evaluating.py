@@ -9,11 +9,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.checking import check_expression
 from gaitdisc.simulation.delays import delayed_in_series
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.program import Program, at_points, compiled_program, leaf_columns
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation, simulation_scope
 from gaitdisc.simulation.simulation import Simulation
 

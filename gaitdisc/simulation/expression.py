@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.errors import SimulationError
 
 LONGEST, DEEPEST, LARGEST = 20_000, 250, 4_000  # characters, nesting, nodes
 FUNCTIONS = {  # name: fewest and most arguments

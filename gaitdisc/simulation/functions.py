@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.recording.recording import several
 from gaitdisc.simulation.expression import LONGEST, written
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation, python_simulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.traced import NotTraced, flat, traced_equations
@@ -115,7 +115,7 @@ def simulation_from_function(
     except NotTraced as reason:
         rates = _Called(taken, count, by_points=False)
         rates = rates if rates.agrees else _Called(taken, count, by_points=True)
-        model = python_simulation(taken.title, rates, *parts, seen)
+        model = python_simulation(taken.title, rates, *parts, observations)
         return replace(model, manner=f"{rates.manner}, because its equations could not be derived: {reason}")
 
 

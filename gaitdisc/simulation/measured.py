@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ReadError, SamplingError, ShapeError
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import read_only
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.even_time import SHORTEST, TrialColumns, clock_findings, on_even_time
 from gaitdisc.words import counted
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.expression import Name, Number, Operation, Tree, written
-from gaitdisc.simulation.refusal import SimulationError
 
 CODES = {
     "store": 0, "+": 1, "-": 2, "*": 3, "/": 4, "**": 5, "neg": 6, "sin": 7, "cos": 8, "tan": 9, "tanh": 10, "exp": 11,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.parts import Input, Lines, Parameter, Port, State
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 RightHandSide = Callable[..., NDArray[np.float64]]
@@ -76,16 +76,14 @@ def python_simulation(
     inputs: Sequence[Input] = (),
     parameters: Sequence[Parameter] = (),
     ports: Sequence[Port] = (),
-    observations: Sequence[tuple[str, str]] = (),
+    observations: Mapping[str, str] | None = None,
 ) -> PythonSimulation:
     """Simulation of a Python function.
 
-    observations sequence of (str, str): measured column and expression; by default each state under its own name
+    observations: expression by measured column; by default each state under its own name
     """
-    equations = any_equations(states, (*inputs, *parameters, *ports))
-    parts = Simulation(
-        title, tuple(states), tuple(inputs), tuple(parameters), tuple(ports), (), equations, tuple(observations)
-    )
+    equations, seen = any_equations(states, (*inputs, *parameters, *ports)), tuple((observations or {}).items())
+    parts = Simulation(title, tuple(states), tuple(inputs), tuple(parameters), tuple(ports), (), equations, seen)
     return PythonSimulation(rates, parts)
 
 

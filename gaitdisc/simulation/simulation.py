@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from gaitdisc.notebook import html_of
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parsed, substituted, written
 from gaitdisc.simulation.parts import Parameter, Parts, Sensor, State, Term
-from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.words import html_of
 
 
 @dataclass(frozen=True)

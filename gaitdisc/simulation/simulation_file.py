@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import MissingFileError, ReadError, SchemaError
+from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.delays import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import refuse_units
 from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
+MODELS = (".xml", ".mjcf", ".osim")  # endings of what an engine reads
 MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
 ERRORS = ("gain", "sd", "wander")  # of an input
 TABLES = {
@@ -105,6 +105,19 @@ def simulation_of(text: str, file: str = "the simulation", source: Path | None =
         where = f"{file}, line {line}" if line else file
         part = f", [{error.place[0]}] {' '.join(error.place[1:])}".rstrip() if error.place else ""
         raise SchemaError(f"{where}{part}: {error.needed}", error.found, error.remedy) from None
+
+
+def is_model(path: Path) -> bool:
+    """Whether a file is one that an engine reads."""
+    return path.suffix.lower() in MODELS
+
+
+def names_engine(path: Path | str) -> bool:
+    """Whether a file is a model of an engine, or the mapping of one."""
+    path = Path(path)
+    if is_model(path) or not path.is_file() or path.suffix.lower() != ".toml" or path.stat().st_size > LARGEST:
+        return is_model(path)
+    return re.search(rb"^(model\s*=|\[tracked\])", path.read_bytes(), re.MULTILINE) is not None
 
 
 def _not_toml(file: str, found: str) -> ReadError:

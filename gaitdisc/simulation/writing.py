@@ -11,11 +11,10 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError, SimulationError
 from gaitdisc.own_files import guarded
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.python_simulation import PythonSimulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import SENSOR, TABLES, simulation_of
 from gaitdisc.toml_text import parsed_toml, quoted

@@ -115,11 +115,9 @@ def simulate_null(filtered: Filtered, samples: int, walks: int = 40, seed: int =
     x, xdot, xddot = filtered(noise)
     edge = int(EDGE * len(x))
     middle = slice(edge, len(x) - edge)
-    reached = [_linear_r2(x[middle, k], xdot[middle, k], xddot[middle, k]) for k in range(walks)]
+    reached = []
+    for k in range(walks):
+        columns = np.column_stack([x[middle, k], xdot[middle, k], np.ones(len(x[middle]))])
+        solution = np.linalg.lstsq(columns, xddot[middle, k], rcond=None)[0]
+        reached.append(float(r2(xddot[middle, k][:, None], (columns @ solution)[:, None])[0]))
     return BandLimitNull(float(np.mean(reached)), float(np.std(reached, ddof=1) / np.sqrt(walks)))
-
-
-def _linear_r2(x: NDArray[np.float64], xdot: NDArray[np.float64], xddot: NDArray[np.float64]) -> float:
-    columns = np.column_stack([x, xdot, np.ones(len(x))])
-    solution = np.linalg.lstsq(columns, xddot, rcond=None)[0]
-    return float(r2(xddot[:, None], (columns @ solution)[:, None])[0])

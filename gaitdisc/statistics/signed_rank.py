@@ -79,13 +79,18 @@ def signed_rank(
     ranked = differences[differences != 0]
     ranks = rankdata(np.abs(ranked))
     shift, low, high = shift_interval(differences, level)
+    rank_biserial = float("nan")
+    if len(ranked):
+        import pingouin
+
+        rank_biserial = float(pingouin.wilcoxon(ranked, alternative="two-sided")["RBC"].iloc[0])
     return SignedRank(
         n=len(ranked),
         zeros=len(differences) - len(ranked),
         ties=len(np.unique(ranks)) < len(ranks),
         w=float(min(ranks[ranked > 0].sum(), ranks[ranked < 0].sum())),
         p=exact_p(differences),
-        rank_biserial=_rank_biserial(ranked),
+        rank_biserial=rank_biserial,
         median=float(np.median(differences)),
         shift=shift,
         low=low,
@@ -189,11 +194,3 @@ def sums_of_ranks(ranks: NDArray[np.intp]) -> NDArray[np.float64]:
         raised[rank:] = shares[: len(shares) - rank]
         shares = (shares + raised) / 2
     return shares
-
-
-def _rank_biserial(ranked: NDArray[np.float64]) -> float:
-    if not len(ranked):
-        return float("nan")
-    import pingouin
-
-    return float(pingouin.wilcoxon(ranked, alternative="two-sided")["RBC"].iloc[0])

@@ -14,7 +14,7 @@ from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.result import Discovery
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.model import Model
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation

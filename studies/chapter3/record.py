@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter, sosfiltfilt, welch
 
-from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.errors import SamplingError, ShapeError, SimulationError
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples
-from gaitdisc.simulation.compiled_simulation import Compiled
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Compiled, Drive, Rows
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, ShapeError, UnitError
 from gaitdisc.ingest.hdf5 import attributes, data_set, hdf5_file, is_hdf5, member_names
-from gaitdisc.ingest.raw_file import file_sha256
-from gaitdisc.recording import Axis, Field, Source
-from gaitdisc.regular_file import check_regular
+from gaitdisc.recording import Source
+from gaitdisc.recording.field import Axis, Field
+from gaitdisc.regular_file import check_regular, file_sha256
 
 ATTRIBUTES = ("units", "scale_factor", "add_offset", "missing_value", "_FillValue")
 WEEK_DAYS, DAYS = 7.0, {"days": 1.0, "day": 1.0, "hours": 1 / 24, "hour": 1 / 24}

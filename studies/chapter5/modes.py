@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.recording import Field
+from gaitdisc.recording.field import Field
 
 ENERGY = 0.99
 COLUMNS_AT_ONCE = 20_000

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.recording import Field
+from gaitdisc.recording.field import Field
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, Look, Room, in_style, legend, lines_of, panels
 from gaitdisc.report.table import Table

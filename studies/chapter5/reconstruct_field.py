@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.reconstruction.window_model import KINDS, Sensing, fit_reconstructor
 from gaitdisc.reconstruction.windows import Lags, Parts, split_within, stacked
-from gaitdisc.recording import Field, Samples
+from gaitdisc.recording import Samples
+from gaitdisc.recording.field import Field
 from gaitdisc.saved.unit_folder import DamagedError, read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ChannelError
-from gaitdisc.recording import Field
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.field import Field
 
 STEP_EVERY = 3  # snapshots from one step of a random walk to the next (section 5.3.1)
 REACH = 0.5 + 1e-6  # of a step along each axis: a place belongs to the node whose cell it lies in

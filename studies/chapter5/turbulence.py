@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfftn, rfftn
 
 from gaitdisc.errors import ReadError, SamplingError, SchemaError, ShapeError
-from gaitdisc.recording import Axis, Field, Source
+from gaitdisc.recording import Source
+from gaitdisc.recording.field import Axis, Field
 from gaitdisc.whole_file import whole_file, write_whole
 
 LEAST_NODES = 8

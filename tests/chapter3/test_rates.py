@@ -20,9 +20,8 @@ from chapter3.record import Conditions, KnownRates, StochasticRates, error_sampl
 from chapter3.sindy import Sindy, library
 from solving import solve
 
-from gaitdisc.errors import SamplingError, TrainingError
+from gaitdisc.errors import SamplingError, SimulationError, TrainingError
 from gaitdisc.simulation.parts import State
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import bundled
 

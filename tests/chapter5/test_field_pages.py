@@ -18,7 +18,7 @@ from chapter5.reconstruct_field import FieldCell, error_counts
 from manufactured_field import travelling_wave
 from texts import says
 
-from gaitdisc.recording import Axis, Field
+from gaitdisc.recording.field import Axis, Field
 from gaitdisc.report.figure import save_figure
 
 WAVE = travelling_wave(20)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from manufactured_field import travelling_wave
 
 from gaitdisc.errors import ChannelError
-from gaitdisc.recording import Axis, Field
+from gaitdisc.recording.field import Axis, Field
 
 WAVE = travelling_wave(60)
 

@@ -82,18 +82,19 @@ def test_too_few_strides_are_refused_in_words():
 
 
 def test_people_are_units_and_paired():
-    pairs = []
+    first, second = [], []
     for person in range(8):
         own = np.random.default_rng(person).normal(0, 8)  # people differ by more than conditions
         nominal, device = walk("nominal", 10, [person, 1]), bent(walk("exo", 12, [person, 2]))
-        pairs.append((replace(device, curves=device.curves + own), replace(nominal, curves=nominal.curves + own)))
-    found = compare_people(pairs)
+        first.append(replace(device, curves=device.curves + own))
+        second.append(replace(nominal, curves=nominal.curves + own))
+    found = compare_people(first, second)
     assert found.exchange.unit == "participant"
     assert (found.exchange.first, found.exchange.permutations, found.exchange.exact) == (8, 128, True)
     assert found.ordered() == ["ankle_angle_r"]
     assert found.curves["sd_second"].mean() == pytest.approx(1.5, abs=0.3)
     with pytest.raises(ComparisonError, match=r"6 participants.*both"):
-        compare_people(pairs[:5])
+        compare_people(first[:5], second[:5])
 
 
 def test_a_shifted_curve_is_told():

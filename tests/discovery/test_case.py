@@ -13,7 +13,7 @@ from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import scored
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation

@@ -12,12 +12,11 @@ from texts import says
 from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.paired_test import PairedTest
-from gaitdisc.errors import SchemaError
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.errors import SchemaError, SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.simulation.writing import simulation_text

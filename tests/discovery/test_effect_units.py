@@ -2,9 +2,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.simulation.effect_units import channel_unit, divided, places_unit, unit_of, unit_of_channel
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.simulation_file import bundled
+from gaitdisc.simulation.unit_check import channel_unit, divided, places_unit, unit_of, unit_of_channel
 from gaitdisc.units import unit_factor
 
 UNITS = ("N m", "N", "rad", "rad/s", "m/s", "kg m^2", "1", "N m s/rad", "1/s")

@@ -11,7 +11,7 @@ from texts import says
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.estimated_filter import _as_the_surer
 from gaitdisc.signals.recorded_filter import RecordedFilter
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 

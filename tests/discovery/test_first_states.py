@@ -7,7 +7,7 @@ from hidden_in_a_mass import MASS, Experiment, mass, record
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.first_states import ObservationMap, followed, guess_states, with_own_states
 from gaitdisc.discovery.segments import Segments
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.running import compile_simulation

@@ -11,7 +11,7 @@ from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.places import places_of
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.result import Estimate, FoundEffect
-from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 

@@ -10,10 +10,9 @@ from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.matched import matched
-from gaitdisc.errors import GaitdiscError, SamplingError
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.errors import GaitdiscError, SamplingError, SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.parts import Sensor
-from gaitdisc.simulation.refusal import SimulationError
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
+from scipy.signal import savgol_filter as of_scipy
 
-from gaitdisc.discovery.noise import LEAST, MOST_LAGS, Noise, noise_of, sensor_noise, white_noise, whiten
+from gaitdisc.discovery.noise import (
+    LEAST,
+    MOST_LAGS,
+    Noise,
+    noise_of,
+    savgol_filter,
+    sensor_noise,
+    white_noise,
+    whiten,
+)
 from gaitdisc.discovery.record_filter import RecordFilter
 
 FIRST, SECOND = 1.2, -0.5  # x[k] = 1.2 x[k-1] - 0.5 x[k-2] + e[k], e of variance 1
@@ -183,3 +193,22 @@ def test_other_channels_are_left_alone():
     whiten(np.ones((1, 4, 2, 1)), 1, np.ones((1, 4, 2), bool), np.zeros((1, 1)), np.array([2.0]), out)
     np.testing.assert_array_equal(out[..., 0, 0], 7.0)
     np.testing.assert_array_equal(out[..., 1, 0], 0.5)
+
+
+@given(half=st.integers(2, 12), extra=st.integers(0, 30), derivative=st.integers(0, 2), seed=st.integers(0, 99))
+def test_numbers_are_those_of_scipy(half, extra, derivative, seed):
+    width = 2 * half + 1
+    values = np.random.default_rng(seed).normal(0, 10, width + extra)
+    found = savgol_filter(values, width, 3, derivative, 0.01)
+    np.testing.assert_allclose(
+        found, of_scipy(values, width, 3, derivative, 0.01), rtol=0, atol=1e-9 * 0.01**-derivative
+    )
+
+
+@pytest.mark.parametrize("derivative", [0, 1, 2, 3])
+def test_a_cubic_and_its_derivatives_come_out_exactly_up_to_both_ends(derivative):
+    time = np.linspace(-1, 1, 41)
+    cubic = np.polynomial.Polynomial([0.3, -1.0, 2.0, 0.7])
+    found = savgol_filter(cubic(time), 11, 3, derivative, time[1] - time[0])
+    expected = cubic.deriv(derivative)(time) if derivative else cubic(time)
+    np.testing.assert_allclose(found, expected, atol=1e-9)

@@ -15,7 +15,7 @@ from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted, without_trial_apart
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.search import Search
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 

@@ -13,7 +13,7 @@ from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.held_out import free_run_error, grows_along_runs
 from gaitdisc.discovery.scored_model import scored
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_relatives, without_small
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation_file import simulation_of
 

@@ -5,12 +5,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from gaitdisc.engines.engine import is_model, read_model
+from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import check_mapping, drafted
 from gaitdisc.engines.motion import Coordinate, part_name
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.parts import Input
+from gaitdisc.simulation.simulation_file import is_model
 
 
 def test_a_slide_has_a_force_and_a_hinge_a_moment():

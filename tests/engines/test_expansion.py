@@ -11,7 +11,7 @@ from gaitdisc.engines.mapping import drafted, with_input_changed
 from gaitdisc.engines.motion import Motion
 from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, left_by, root_mean_square, stretches_of
 from gaitdisc.engines.written import written_model
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation

@@ -11,23 +11,16 @@ from texts import says
 
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import (
-    drafted,
-    names_engine,
-    other_values,
-    read_mapping,
-    with_input_changed,
-    write_mapping,
-)
+from gaitdisc.engines.mapping import drafted, other_values, read_mapping, with_input_changed, write_mapping
 from gaitdisc.engines.motion import Coordinate, Motion
 from gaitdisc.engines.tracked_files import drafted_tracked
 from gaitdisc.engines.tracked_mapping import Tracked, read_tracked, write_tracked_mapping
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.parts import Input, Sensor, State
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.simulation_file import names_engine, read_simulation
 
 
 def test_a_mapping_goes_to_its_file_and_back(pendulum, tmp_path):

@@ -9,7 +9,8 @@ import pytest
 
 import gaitdisc as gd
 from gaitdisc.errors import ReadError, WriteError
-from gaitdisc.ingest.raw_file import RawFile, file_sha256, known_sha256, read_raw
+from gaitdisc.ingest.raw_file import RawFile, read_raw
+from gaitdisc.regular_file import file_sha256, known_sha256
 
 
 def test_hash_is_that_of_the_bytes(tmp_path):

@@ -10,9 +10,8 @@ import pytest
 import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.discovery.catalogue import ALL
-from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.errors import ChannelError, SchemaError, SimulationError
 from gaitdisc.library import discovering
-from gaitdisc.simulation.refusal import SimulationError
 
 TIME = np.arange(0.0, 6.0, 0.1)
 

@@ -10,11 +10,11 @@ import pytest
 from texts import says
 
 from gaitdisc.discovery import search
+from gaitdisc.errors import SimulationError
 from gaitdisc.library.discovering import discover
 from gaitdisc.library.simulating import simulate
 from gaitdisc.simulation.functions import simulation_from_function
 from gaitdisc.simulation.python_simulation import PythonSimulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 

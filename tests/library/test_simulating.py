@@ -11,10 +11,9 @@ import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import with_input_changed, write_mapping
-from gaitdisc.errors import SamplingError, SchemaError, ShapeError
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError, SimulationError
 from gaitdisc.library.simulating import model_of
 from gaitdisc.simulation.python_simulation import PythonSimulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation_file import bundled
 from gaitdisc.simulation.writing import write_simulation
 

@@ -6,7 +6,7 @@ from hypothesis.extra.numpy import arrays
 from texts import says
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.recording import Axis, Field
+from gaitdisc.recording.field import Axis, Field
 
 AXES = (Axis("lat", np.array([10.0, 0.0, -10.0]), "deg"), Axis("lon", np.array([5.0, 7.0]), "deg"))
 MASK = np.array([[True, False], [True, True], [False, True]])

@@ -15,6 +15,7 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.comparison.mismatch import CHANNEL_COLUMNS, CURVES, REGION_COLUMNS, Exchange, Mismatch
 from gaitdisc.errors import SchemaError, TrainingError, WriteError
+from gaitdisc.ingest.reading import write_recording
 from gaitdisc.reconstruction.reconstruction import Reconstruction
 from gaitdisc.reconstruction.window_model import KINDS, ON_REQUEST
 from gaitdisc.recording import PERCENT, Finding
@@ -236,15 +237,16 @@ def test_what_is_written_is_read_back_here():
 
 
 def test_a_reader_that_fails_or_reads_other_numbers_is_wrong():
-    other = installation._knee()
-
-    def shifted(folder):
-        made, file = installation._storage(folder)
-        return made.with_values(made.values + 1.0), file
-
-    assert installation._read_back(".mot", shifted).words == "other than written"
-    failed = installation._read_back("CSV", lambda folder: (other, "none.csv"))
+    knee = installation._wave("knee_angle_r", rate_hz=100)
+    with patch("gaitdisc.ingest.reading.read_trial", side_effect=OSError("none.csv")):
+        failed = installation._read_back("CSV", knee, "walk.csv")
     assert failed.state == "wrong" and "none.csv" in failed.words
+
+    def shifted(made, path):
+        return write_recording(made.with_values(made.values + 1.0), path)
+
+    with patch("gaitdisc.ingest.reading.write_recording", shifted):
+        assert installation._read_back(".mot", knee, "walk.mot").words == "other than written"
 
 
 def test_a_library_that_is_absent_is_said_with_what_it_is_for():

@@ -16,8 +16,8 @@ from gaitdisc.discovery.discover_files import discover_files, sealed
 from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.errors import SamplingError, SchemaError
-from gaitdisc.ingest.raw_file import file_sha256
 from gaitdisc.recording import Finding
+from gaitdisc.regular_file import file_sha256
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.writing import read_into, write_simulation
 

@@ -8,7 +8,7 @@ from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.discover_engine import _NOTHING
 from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, base_runs
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 
 PENDULUM = """<mujoco><option timestep="0.002"/><worldbody><body name="rod">

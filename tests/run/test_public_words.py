@@ -4,7 +4,7 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.public_words import PublicWords, package_words, public_settings, public_title, words_of
+from gaitdisc.ingest.public_words import PublicWords, package_words, words_of
 from gaitdisc.ingest.study import Kinematics
 
 
@@ -33,17 +33,17 @@ def test_an_error_stays_of_its_kind_and_says_where_the_words_are():
 
 def test_settings_and_title_name_no_file_no_label_and_no_folder(study):
     labelled = study.model_copy(update={"title": "", "channels": {"Erika knee": "knee_angle_r"}})
-    settings = public_settings(labelled.placed(Path("Mustermann")))
+    settings = labelled.placed(Path("Mustermann")).public_settings()
     assert settings["channels"] == {"label 1": "knee_angle_r"}
     assert settings["participants"][0]["trials"][0]["files"] == 1
-    assert public_title(labelled.placed(Path("Mustermann"))) == "nominal against exo"
+    assert labelled.placed(Path("Mustermann")).public_title == "nominal against exo"
     assert "kinematics" not in settings and "mass_kg" not in settings["participants"][0]
 
 
 def test_the_file_of_a_marker_set_and_the_measures_of_a_person_stand_in_no_settings(study):
     person = study.participants[0].model_copy(update={"mass_kg": 61.3, "height_m": 1.787, "sex": "f", "age_years": 57})
     own = Kinematics(angles="markers", marker_set="Mustermann.toml")
-    settings = public_settings(study.model_copy(update={"kinematics": own, "participants": (person,)}))
+    settings = study.model_copy(update={"kinematics": own, "participants": (person,)}).public_settings()
     assert settings["kinematics"]["marker_set"] == "a file of the laboratory"
     assert not [said for said in ("61.3", "1.787", "57") if said in str(settings)]
     assert "Mustermann" not in str(settings)

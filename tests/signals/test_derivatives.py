@@ -5,14 +5,12 @@ import pytest
 from changed_trials import with_column
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.signal import savgol_filter as of_scipy
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated, differentiated_recording, savgol_filter, trajectory
-from gaitdisc.signals.series import autocorrelation_time
+from gaitdisc.signals.derivatives import differentiated, differentiated_recording, trajectory
 
 
 @settings(deadline=None, max_examples=30)
@@ -83,42 +81,3 @@ def test_the_velocity_of_a_heading_that_passes_180_deg():
     path = trajectory(walk, Strides(np.array([0.0]), np.array([2.9]), "r", "events"))
     np.testing.assert_allclose(path.xdot[2:-2], 10.0, atol=1e-6)
     np.testing.assert_allclose(path.xddot[2:-2], 0.0, atol=1e-3)
-
-
-@given(half=st.integers(2, 12), extra=st.integers(0, 30), derivative=st.integers(0, 2), seed=st.integers(0, 99))
-def test_numbers_are_those_of_scipy(half, extra, derivative, seed):
-    width = 2 * half + 1
-    values = np.random.default_rng(seed).normal(0, 10, width + extra)
-    found = savgol_filter(values, width, 3, derivative, 0.01)
-    np.testing.assert_allclose(
-        found, of_scipy(values, width, 3, derivative, 0.01), rtol=0, atol=1e-9 * 0.01**-derivative
-    )
-
-
-@pytest.mark.parametrize("derivative", [0, 1, 2, 3])
-def test_a_cubic_and_its_derivatives_come_out_exactly_up_to_both_ends(derivative):
-    time = np.linspace(-1, 1, 41)
-    cubic = np.polynomial.Polynomial([0.3, -1.0, 2.0, 0.7])
-    found = savgol_filter(cubic(time), 11, 3, derivative, time[1] - time[0])
-    expected = cubic.deriv(derivative)(time) if derivative else cubic(time)
-    np.testing.assert_allclose(found, expected, atol=1e-9)
-
-
-def test_of_an_autoregressive_series_it_is_the_sum_of_a_geometric_one():
-    rng, kept = np.random.default_rng(0), 0.8
-    series = np.zeros(200_000)
-    for k, push in enumerate(rng.standard_normal(len(series) - 1)):
-        series[k + 1] = kept * series[k] + push
-    assert autocorrelation_time(series[:, None], 0.01)[0] == pytest.approx((1 + kept) / (1 - kept), rel=0.05)
-
-
-def test_every_column_has_its_own_and_one_that_stands_still_none():
-    rng = np.random.default_rng(1)
-    noise = rng.standard_normal(50_000)
-    found = autocorrelation_time(np.column_stack([noise, np.repeat(noise[::10], 10), np.zeros(50_000)]), 0.05)
-    assert found == pytest.approx([1.0, 10.0, 1.0], rel=0.05)
-
-
-def test_a_shift_and_a_scale_change_nothing():
-    values = np.random.default_rng(2).standard_normal((500, 2)).cumsum(axis=0)
-    assert autocorrelation_time(3 - 7 * values) == pytest.approx(autocorrelation_time(values))

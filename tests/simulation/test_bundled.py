@@ -6,7 +6,7 @@ from scipy.special import ellipk
 from solving import solve
 
 from gaitdisc.errors import ReadError
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import bundled, bundled_names
 

@@ -2,8 +2,8 @@
 
 import pytest
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 X, V = State("x", "m"), State("v", "m/s")

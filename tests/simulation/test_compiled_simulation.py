@@ -5,9 +5,8 @@ import pytest
 from made_simulation import system
 from scipy.special import ellipk
 
-from gaitdisc.errors import ShapeError
-from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.errors import ShapeError, SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
 
 

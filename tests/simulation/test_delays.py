@@ -6,12 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_simulation import system
 
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import SchemaError, SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.delays import delayed_in_series, refuse_delays
-from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.parts import Input, Parameter, State
 from gaitdisc.simulation.python_simulation import python_simulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 

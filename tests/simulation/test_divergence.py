@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.divergence import divergences, refuse_divergence
-from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.errors import SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
+from gaitdisc.simulation.running import compile_simulation, divergences, refuse_divergence
 from gaitdisc.simulation.simulation_file import simulation_of
 
 TEXT = """title = "growth"

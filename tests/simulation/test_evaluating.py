@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.evaluating import Points, evaluate, evaluate_many
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.refusal import SimulationError
 
 RNG = np.random.default_rng(3)
 T = np.arange(500) / 100

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.expression import (
     DEEPEST,
     LARGEST,
@@ -19,7 +20,6 @@ from gaitdisc.simulation.expression import (
     substituted,
     written,
 )
-from gaitdisc.simulation.refusal import SimulationError
 
 
 def test_precedence_is_that_of_python():

@@ -5,7 +5,7 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ReadError, SamplingError, ShapeError
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
 

@@ -13,7 +13,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
-from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.compiled_simulation import Rows
 from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.program import CODES, at_points, compiled_program, leaf_columns
-from gaitdisc.simulation.refusal import SimulationError
 
 
 def _value(text, **values):

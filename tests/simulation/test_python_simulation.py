@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.errors import SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import PythonCompiled, compile_simulation
 
 
@@ -18,7 +18,7 @@ def _ball():
         return -values[:, :1] + ports + u
 
     return python_simulation(
-        "ball", falling, [State("v")], [Input("wind")], [Parameter("g", 9.81)], [Port("drag")], [("speed", "abs(v)")]
+        "ball", falling, [State("v")], [Input("wind")], [Parameter("g", 9.81)], [Port("drag")], {"speed": "abs(v)"}
     )
 
 

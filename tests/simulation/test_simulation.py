@@ -5,8 +5,8 @@ from dataclasses import FrozenInstanceError
 import pytest
 from texts import says
 
+from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.parts import Input, Parameter, Sensor, State, Term
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 

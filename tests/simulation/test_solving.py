@@ -5,9 +5,8 @@ import pytest
 from made_simulation import system
 from solving import solve
 
-from gaitdisc.errors import SamplingError
-from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.errors import SamplingError, SimulationError
+from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
 
 LORENZ = system({"x": "10*(y - x)", "y": "x*(28 - z) - y", "z": "x*y - 8/3*z"})

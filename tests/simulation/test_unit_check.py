@@ -5,9 +5,8 @@ from dataclasses import replace
 import pytest
 from texts import says
 
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import SchemaError, SimulationError
 from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import bundled, bundled_names, simulation_of
 from gaitdisc.simulation.unit_check import refuse_units, unit_findings

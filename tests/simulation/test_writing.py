@@ -8,10 +8,9 @@ from hypothesis import strategies as st
 from made_simulation import effect_text
 from texts import says
 
-from gaitdisc.errors import ReadError, SchemaError, WriteError
+from gaitdisc.errors import ReadError, SchemaError, SimulationError, WriteError
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
-from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
 from gaitdisc.simulation.writing import read_into, simulation_text, write_simulation
