@@ -128,7 +128,8 @@ class Candidate:
             return simulation.with_input(self.place, form.format(s=self.place, **numbers))
         seen = dict(simulation.observations)[self.place]
         if self.name == "sensor_lag":
-            seen = _late(simulation, seen, numbers["seconds"])
+            whole = {"seen": _written_out(simulation, seen, {})}
+            seen = written(substituted(parsed(f"delay(seen, {numbers['seconds']})"), whole, simulation.signals))
         return simulation.with_observation(self.place, form.format(s=seen, **numbers))
 
     @property
@@ -198,12 +199,6 @@ def _written_out(simulation: Simulation, expression: str, known: Mapping[str, Tr
     for name, text in simulation.definitions:
         by[name] = substituted(parsed(text), by, simulation.signals)
     return substituted(parsed(expression), by, simulation.signals)
-
-
-def _late(simulation: Simulation, seen: str, seconds: str) -> str:
-    """An observation as it was some seconds ago."""
-    whole = {"seen": _written_out(simulation, seen, {})}
-    return written(substituted(parsed(f"delay(seen, {seconds})"), whole, simulation.signals))
 
 
 def candidates_of(

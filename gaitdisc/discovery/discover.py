@@ -88,10 +88,10 @@ def weigh_explanations(
         progress("what is held out never goes where it would act: other data are held out")
         case, as_read = noted(case, first), first.as_read()
         verdict = decide(case, as_read)
-    elif unproven and alone and grows_along_runs(case, as_read):  # a fall, after a rise that was learned
+    elif unproven and alone and grows_along_runs(case, as_read):  # a fall, after a rise that was learned; two tries
         progress("what is held out shows a gap that the rest does not show: other data are held out")
         first = begun(split_in_time(measured, last=False))
-        first = replace(noted(case, first, "shows a gap that the rest does not show"), alpha=case.alpha / 2)  # two tries
+        first = replace(noted(case, first, "shows a gap that the rest does not show"), alpha=case.alpha / 2)
         as_read_first = first.as_read()
         tried = decide(first, as_read_first)
         if tried.found.model.parts:

@@ -60,11 +60,10 @@ def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
         named = [state.name for state in simulation.states if state.name not in rate_of]
         return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
     found = []
-    for port in simulation.ports:
-        own = driven_state(simulation, machine, port.name)
-        moved = moved_by(simulation, machine, port.name)[:, machine.states.index(rate_of.get(own, own))]
-        place = _place(simulation, "port", port.name, own, rate_of)
-        found.append(replace(place, power=float(np.sign(moved.sum()))))
+    for port in (one.name for one in simulation.ports):
+        own = driven_state(simulation, machine, port)
+        moved = moved_by(simulation, machine, port)[:, machine.states.index(rate_of.get(own, own))]
+        found.append(replace(_place(simulation, "port", port, own, rate_of), power=float(np.sign(moved.sum()))))
     return tuple(found)
 
 

@@ -125,7 +125,7 @@ class Search:
                 if kind == "quantiles of x":
                     yield part.values[slot], self._visited(model, part.candidate.role)
                 elif kind == "half widths of x":
-                    along = self._along(model, part.candidate.role).reshape(model.fit.states.shape[:2])
+                    along = self.along(model, part.candidate.role).reshape(model.fit.states.shape[:2])
                     step = float(np.sqrt(np.nanmean(np.diff(along, axis=1) ** 2)))  # yielding within is dry friction
                     least = step if part.candidate.states else 0.0
                     yield part.values[slot], (least, self._widest(model, part.candidate.role))
@@ -145,10 +145,10 @@ class Search:
 
     def _visited(self, model: CandidateModel, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
-        low, high = np.quantile(self._along(model, role), VISITED)
+        low, high = np.quantile(self.along(model, role), VISITED)
         return float(low), float(high)
 
-    def _along(self, model: CandidateModel, role: str) -> NDArray[np.float64]:
+    def along(self, model: CandidateModel, role: str) -> NDArray[np.float64]:
         """Return what stands for x in an explanation, along the runs."""
         known = len(self.base.states)
         states = model.fit.states[..., :known].reshape(-1, known)
