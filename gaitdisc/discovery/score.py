@@ -207,19 +207,16 @@ class Scorer:
         tried = delays(self.rhythm, either_way) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
         over = np.ones(len(tried)) if late else tried - none
         machine, values, states = self._extended(candidate, [{slot: float(one)} for one in tried])
-        columns = self.shooting.whitened(np.moveaxis(self._seen_over(machine, states, values, over), 0, -1))
+        seen = self.shooting.observed(machine, states, values)
+        base = self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
+        seen_over = (seen - base) / over[:, None, None, None]  # what is seen to change though no state does
+        columns = self.shooting.whitened(np.moveaxis(seen_over, 0, -1))
         if candidate.verdict != "sensor_error":
             landed = (
                 self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
             )
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
-
-    def _seen_over(self, machine: Compiled, states: Values, values: Values, over: Values) -> Values:
-        """What is seen to change though no state does (version, segment, sample, channel)."""
-        seen = self.shooting.observed(machine, states, values)
-        base = self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
-        return (seen - base) / over[:, None, None, None]
 
 
 @dataclass(frozen=True)

@@ -57,6 +57,12 @@ def test_a_port_with_a_name_of_its_own_drives_what_it_moves_most():
     assert driven_state(renamed, compile_simulation(renamed), "brace") == "upper_rate"
 
 
+def test_a_port_says_whether_a_push_drives_what_it_acts_on_or_holds_it_back():
+    held = simulation_of(MASS.replace("push + load", "push - load"), "held.toml")
+    assert [_places(one)["load"].power for one in (mass(), held)] == [1.0, -1.0]
+    assert [one.power for one in _places(two_rods()).values()] == [1.0, 1.0]
+
+
 def test_a_model_without_ports_takes_effects_in_every_equation():
     places = _places(simulation_of(LORENZ, "lorenz.toml"))
     assert list(places) == ["x", "y", "z"]
