@@ -16,7 +16,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
-from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -252,32 +252,17 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
     assert says(instead.what, "trial 1", "quarter is held")
 
 
-HEART = """
-title = "Heart rate on an ergometer"
-[states.rate]
-[inputs.power]
-[parameters]
-rest = { value = 78, low = 65, high = 90 }
-gain = { value = 0.25, low = 0.1, high = 0.5 }
-tau = { value = 60 }
-[equations]
-rate = "(rest + gain*power - rate)/tau"
-[observations]
-rate = "rate"
-"""
-
-
 def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held_out():
-    base, time = simulation_of(HEART, "heart.toml"), np.arange(240) * 5.0
-    power = np.where(time < 1000, 25 * np.floor(time / 120) + 50, 25.0)  # it rises while three quarters are learned
-    drive = Drive.of([power[:, None]], 0.2)
+    numbers = (Parameter("rest", 78, low=65, high=90), Parameter("gain", 0.25, low=0.1, high=0.5), Parameter("tau", 60))
+    heart = system({"rate": "(rest + gain*power - rate)/tau"}, ["power"], observations={"rate": "rate"})
+    base, time = replace(heart, parameters=numbers), np.arange(240) * 5.0
+    drive = Drive.of([np.where(time < 1000, 25 * np.floor(time / 120) + 50, 25.0)[:, None]], 0.2)  # it rises, and falls
     truth = compile_simulation(base.with_values({"rest": 85, "gain": 0.235, "tau": 400}))
     states, _ = truth.run(drive, Rows(np.zeros(1, int), np.zeros(1, int), np.array([[84.0]])), 239)
     seen = states[:, :, :1] + np.random.default_rng(0).normal(size=(1, 240, 1))
     found, _ = discover(base, Measured(drive, seen, ("1",), ("rate",)))
     assert _named(found) == ("wrong_parameter", [("wrong_parameter", "tau")])
-    tau = found.effects[0].estimates["value"]
-    assert tau.low < 400 < tau.high
+    assert found.effects[0].estimates["value"].low < 400 < found.effects[0].estimates["value"].high
     note = next(finding for finding in found.findings if finding.kind == "held out")
     assert says(note.what, "last quarter shows a gap that the rest does not show", "first quarter is held out")
     assert found.held_out.alpha == 0.025  # two splits share the rate of false finds
