@@ -254,7 +254,8 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
 
 def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held_out():
     numbers = (Parameter("rest", 78, low=65, high=90), Parameter("gain", 0.25, low=0.1, high=0.5), Parameter("tau", 60))
-    heart = system({"rate": "(rest + gain*power - rate)/tau"}, ["power"], observations={"rate": "rate"})
+    given = {one.name: one.value for one in numbers}
+    heart = system({"rate": "(rest + gain*power - rate)/tau"}, ["power"], given, {"rate": "rate"})
     base, time = replace(heart, parameters=numbers), np.arange(240) * 5.0
     drive = Drive.of([np.where(time < 1000, 25 * np.floor(time / 120) + 50, 25.0)[:, None]], 0.2)  # it rises, and falls
     truth = compile_simulation(base.with_values({"rest": 85, "gain": 0.235, "tau": 400}))
