@@ -48,7 +48,8 @@ FLEXIBLE = (
     "delayed_feedback",
     "product_coupling",
 )
-LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
+# What only takes energy from a motion: with the sign that drives, it is another thing
+PASSIVE = ("coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
 
 UNNAMED = "unnamed"
 UNNAMED_MEANS = "an effect that is not in the catalogue"
@@ -75,6 +76,7 @@ class Candidate:
     bounds: tuple[float, ...] = ()  # for a wrong parameter, `low` and `high` of the file; empty where it has not both
     # states that it brings along, and the time derivative of each; its constants in them as in `pieces`
     states: Mapping[str, str] = field(default_factory=dict)
+    power: float = 1.0  # sign of what a positive factor gives the motion; 0 where this is another body's
 
     @property
     def slots(self) -> tuple[str, ...]:
@@ -127,8 +129,7 @@ class Candidate:
         seen = dict(simulation.observations)[self.place]
         if self.name == "sensor_lag":
             whole = {"seen": _written_out(simulation, seen, {})}
-            late = substituted(parsed(f"delay(seen, {numbers['seconds']})"), whole, simulation.signals)
-            seen = written(late)
+            seen = written(substituted(parsed(f"delay(seen, {numbers['seconds']})"), whole, simulation.signals))
         return simulation.with_observation(self.place, form.format(s=seen, **numbers))
 
     @property
@@ -150,7 +151,7 @@ class Candidate:
 
         values: its numbers: a friction that drives costs the least that is named more than one that resists
         """
-        drives = self.name in LOSSES and values.get("factor", 0.0) > 0
+        drives = self.name in ("viscous_damping", *PASSIVE) and self.power * values.get("factor", 0.0) > 0
         flexible, bent = self.name in FLEXIBLE, self.name in BENT
         price = CRITERIA.bent if bent else CRITERIA.plain
         return price + CRITERIA.bent * flexible + CRITERIA.matters * drives
@@ -254,6 +255,7 @@ def candidates_of(
                         means=shape.means,
                         names=shape.names,
                         states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
+                        power=place.power * (role.partition(" - ")[0] == place.motions[0][0]),
                     )
                 )
     return tuple(found)

@@ -11,6 +11,7 @@ from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import wrong_starts
+from gaitdisc.discovery.fitted import Prior
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import cross_validated
@@ -136,7 +137,10 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     if plain.bic - likelier.bic < CRITERIA.margin:
         return None
     now = needed(case, found.as_read, found.now)
-    if not is_certain(now.model):  # two that cancel each other
+    fit, names = now.model.fit, now.model.size
+    known = fit.starts.shape[1] + names  # names that cancel each other do so whatever the file's numbers are
+    alone = replace(fit, free=fit.free[:names], slopes=fit.slopes[..., :known], prior=Prior())
+    if not is_certain(replace(now.model, fit=alone)):
         return None
     proof = held_out_proof(case, found.as_read, now)
     if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out

@@ -14,7 +14,7 @@ from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
-from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
+from gaitdisc.discovery.held_out import grows_along_runs, holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.result import Discovery
 from gaitdisc.discovery.scored_model import ScoredModel, scored
@@ -81,15 +81,20 @@ def weigh_explanations(
             measured, case = kept, begun(kept)
             as_read = case.as_read()
             verdict = decide(case, as_read)
-    unproven = verdict.rivals[:1] if verdict.word == "no_gap" else ()
+    unproven, alone = verdict.rivals[:1] if verdict.word == "no_gap" else (), len(measured.trials) == 1
     if unproven and is_uninformative(case, as_read, *unproven):
-        if len(measured.trials) == 1:
-            other = begun(split_in_time(measured, last=False))
-        else:
-            other = holding_out_others(case, as_read, *unproven)
+        first = begun(split_in_time(measured, last=False)) if alone else holding_out_others(case, as_read, *unproven)
         progress("the held-out data never reach the range in which the effect acts: other data are held out")
-        case, as_read = noted(case, other), other.as_read()
+        case, as_read = noted(case, first), first.as_read()
         verdict = decide(case, as_read)
+    elif unproven and alone and grows_along_runs(case, as_read):  # a fall, after a rise that was learned; two tries
+        progress("the held-out data show a gap that the rest does not show: other data are held out")
+        first = begun(split_in_time(measured, last=False))
+        first = replace(noted(case, first, "shows a gap that the rest does not show"), alpha=case.alpha / 2)
+        as_read_first = first.as_read()
+        tried = decide(first, as_read_first)
+        if tried.found.model.parts:
+            case, as_read, verdict = first, as_read_first, tried
     for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
         verdict = step(case, as_read, verdict)
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)

@@ -19,6 +19,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
 
+VISITED = (0.02, 0.98)  # quantiles of a state or difference between which its runs mostly lie
 BUMPS = 5
 FLAT_BUMPS, FINE_BUMPS = 7, 15
 STRIDE_BUMPS = 10
@@ -48,7 +49,7 @@ def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search)
     """Shapes over a position and its rate; where it has none, over it and another state."""
     v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
-    ranges = {axis: _visited(axis, now, search) for axis in axes}
+    ranges = {axis: np.quantile(search.along(now.model, axis), VISITED) for axis in axes}
     shapes = [_bumps(ranges, {one: count}) for one in axes for count in (FLAT_BUMPS, FINE_BUMPS)]
     name, across = _bracketed(v or x), _bumps(ranges, {x: FLAT_BUMPS})
     shapes.append([f"{piece}*tanh({name}/{SHARE_OF_SPEED * max(map(abs, ranges[v or x])):.4g})" for piece in across])
@@ -134,11 +135,6 @@ def _local(model: CandidateModel) -> Iterator[Part]:
 
 def _slot_of(part: Part, piece: str) -> str:
     return part.candidate.slots[part.candidate.pieces.index(piece)]
-
-
-def _visited(axis: str, now: ScoredModel, search: Search) -> Values:
-    """Return between which values a state or difference mostly lies (2,)."""
-    return np.quantile(search.along(now.model, axis), [0.02, 0.98])
 
 
 def _bumps(ranges: dict[str, Values], counts: dict[str, int]) -> list[str]:

@@ -136,10 +136,10 @@ def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Ca
     return replace(case, learned=learned, held_out=held)
 
 
-def noted(before: Case, now: Case) -> Case:
-    """Return a case with a finding that says what is held out in place of what."""
+def noted(before: Case, now: Case, why: str = "runs alike with and without the identified effect") -> Case:
+    """Return a case with a finding that says what is held out in place of what, and why."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
-    what = f"trial {blind} runs alike with and without the identified effect; trial {instead} is held out instead"
+    what = f"trial {blind} {why}; trial {instead} is held out instead"
     finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data should have been held out")
     return now.noting(finding)
 

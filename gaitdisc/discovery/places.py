@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -33,6 +33,7 @@ class Place:
     others: tuple[str, ...]  # states that would act here as a coupling
     products: tuple[tuple[str, str], ...]  # tuple of (str, str), pairs of states whose product may act here
     angle: bool  # whether the place's own position is an angle
+    power: float = 1.0  # of a positive push: 1 where it drives its own state, -1 where it holds it back
 
 
 def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]:
@@ -58,10 +59,12 @@ def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
     if not simulation.ports:
         named = [state.name for state in simulation.states if state.name not in rate_of]
         return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
-    return tuple(
-        _place(simulation, "port", port.name, driven_state(simulation, machine, port.name), rate_of)
-        for port in simulation.ports
-    )
+    found = []
+    for port in (one.name for one in simulation.ports):
+        own = driven_state(simulation, machine, port)
+        moved = moved_by(simulation, machine, port)[:, machine.states.index(rate_of.get(own, own))]
+        found.append(replace(_place(simulation, "port", port, own, rate_of), power=float(np.sign(moved.sum()))))
+    return tuple(found)
 
 
 def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
@@ -74,12 +77,16 @@ def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
     begins = max((name for name in names if port.startswith(f"{name}_")), key=len, default="")
     if begins or len(namesakes) == 1:
         return begins or namesakes[0]
+    return names[int(np.argmax(np.abs(moved_by(simulation, machine, port)).mean(axis=0)))]
+
+
+def moved_by(simulation: Simulation, machine: Compiled, port: str) -> Values:
+    """Return by how much a push of 1 at a port raises each state's derivative (point, state)."""
     pushed = compile_simulation(simulation.with_effect(Term(port, "port", "push", "1")))
     rng = np.random.default_rng(0)
     x = rng.uniform(-0.3, 0.3, (16, len(simulation.states)))
     u = rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
-    moved = _rates(pushed, x, u) - _rates(machine, x, u)
-    return simulation.states[int(np.argmax(np.abs(moved).mean(axis=0)))].name
+    return _rates(pushed, x, u) - _rates(machine, x, u)
 
 
 def _rates(machine: Compiled, x: Values, u: Values) -> Values:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate import PASSIVE, Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel, Explanations, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm
@@ -22,7 +22,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 REFITTED = 18
 MOST_COMPARED = 5
-LIMITS = {"frequencies": (0.0, np.inf), "phases": (-np.inf, np.inf), "phase widths": (0.0, 1.0)}
+LIMITS = {"phases": (-np.inf, np.inf), "phase widths": (0.0, 1.0)}
 VANISHING = ("half widths of x", "delays")  # constants at whose zero a shape is a simpler one
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 TURNS = 15
@@ -131,13 +131,14 @@ class Search:
                     yield part.values[slot], (least, self._widest(model, part.candidate.role))
                 elif kind == "delays":
                     yield part.values[slot], (1 / self.rhythm.rate, self.rhythm.period)
+                elif kind == "frequencies":  # what does not return within a trial is not seen to be periodic
+                    yield part.values[slot], (2 * np.pi / self.rhythm.duration, np.inf)
                 else:
                     yield part.values[slot], LIMITS[kind]
             if part.candidate.bounds:
                 yield part.candidate.beyond_bounds(part.values["value"]), (0.0, np.inf)
-            if part.candidate.name == "coulomb_friction":  # where v keeps its sign it is a constant, and cannot drive
-                low, high = self._visited(model, part.candidate.pieces[0])
-                yield part.values["factor"], (-np.inf, 0.0 if low * high > 0 else np.inf)
+            if part.candidate.name in PASSIVE and part.candidate.power:
+                yield part.candidate.power * part.values["factor"], (-np.inf, 0.0)
             if part.candidate.is_late:  # a signal that lags is not early as well: the two would cancel
                 early = part.candidate.name == "input_delay" and part.candidate.place not in lagging
                 yield part.values["seconds"], (-self.rhythm.period * early, self.rhythm.period)

@@ -3,10 +3,12 @@ from __future__ import annotations
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
+from gaitdisc.discovery.beam import Outcome
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
@@ -18,8 +20,11 @@ from gaitdisc.discovery.decision import (
     needed,
     prefer_on_held_out,
 )
+from gaitdisc.discovery.fitted import Prior
 from gaitdisc.discovery.forward_selection import pruned
+from gaitdisc.discovery.paired_test import PairedTest
 from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
 
@@ -136,6 +141,25 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, 
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
     monkeypatch.setattr(Case, "leaves_noise", lambda *_: False)
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None
+
+
+def test_a_name_stands_though_a_number_of_the_file_may_be_anything_beside_it(case, as_read, named, monkeypatch):
+    now, _ = named
+    fit, k = now.model.fit, now.model.machine.parameters.index("k")
+    alike = fit.slopes[..., -1:] * (1 + 1e-4 * np.random.default_rng(0).normal(size=(*fit.white.shape, 1)))
+    prior = Prior(("k",), np.array([k]), *(fit.values[[k]] + width for width in (0.0, -1e9, 1e9)))
+    loose = replace(fit, free=(*fit.free, "k"), slopes=np.concatenate([fit.slopes, alike], axis=2), prior=prior)
+    lost = replace(now, model=replace(now.model, fit=loose))
+    assert not is_certain(lost.model)
+    likelier = [SimpleNamespace(bic=bic) for bic in (100.0, 0.0)]
+    for name, value in (
+        ("closing_most", Outcome(as_read, lost, 0.9, PairedTest(0.01, 9, 5.0), (), (), ())),
+        ("needed", lost),
+        ("compared", likelier),
+        ("held_out_proof", SimpleNamespace(bears_out=True, closed=0.9)),
+    ):
+        monkeypatch.setattr(decision, name, lambda *_, value=value: value)
+    assert decision.plainest(case, now).found is lost
 
 
 def test_a_verdict_carries_the_account_and_what_else_was_weighed(case, as_read, named):

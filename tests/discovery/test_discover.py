@@ -16,7 +16,7 @@ from gaitdisc.errors import SchemaError, SimulationError
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
-from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.simulation.writing import simulation_text
@@ -249,6 +249,23 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
     assert [effect.name for effect in found.effects] == ["coulomb_friction"]
     (instead,) = (one for one in found.findings if one.kind == "held out")
     assert says(instead.what, "trial 1", "quarter is held")
+
+
+def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held_out():
+    numbers = (Parameter("rest", 78, low=65, high=90), Parameter("gain", 0.25, low=0.1, high=0.5), Parameter("tau", 60))
+    given = {one.name: one.value for one in numbers}
+    heart = system({"rate": "(rest + gain*power - rate)/tau"}, ["power"], given, {"rate": "rate"})
+    base, time = replace(heart, parameters=numbers), np.arange(240) * 5.0
+    drive = Drive.of([np.where(time < 1000, 25 * np.floor(time / 120) + 50, 25.0)[:, None]], 0.2)  # it rises, and falls
+    truth = compile_simulation(base.with_values({"rest": 85, "gain": 0.235, "tau": 400}))
+    states, _ = truth.run(drive, Rows(np.zeros(1, int), np.zeros(1, int), np.array([[84.0]])), 239)
+    seen = states[:, :, :1] + np.random.default_rng(0).normal(size=(1, 240, 1))
+    found, _ = discover(base, Measured(drive, seen, ("1",), ("rate",)))
+    assert _named(found) == ("wrong_parameter", [("wrong_parameter", "tau")])
+    assert found.effects[0].estimates["value"].low < 400 < found.effects[0].estimates["value"].high
+    note = next(finding for finding in found.findings if finding.kind == "held out")
+    assert says(note.what, "last quarter shows a gap that the rest does not show", "first quarter is held out")
+    assert found.held_out.alpha == 0.025  # two splits share the rate of false finds
 
 
 def test_every_step_is_told():

@@ -37,6 +37,8 @@ def test_a_port_sees_the_motion_that_it_drives():
     place = _places(mass())["load"]
     assert (place.kind, place.motions, place.others, place.angle) == ("port", (("x", "v"),), (), False)
     assert place.products == (("x", "v"),)
+    held = simulation_of(MASS.replace("push + load", "push - load"), "held.toml")  # a push holds it back
+    assert (place.power, _places(held)["load"].power) == (1.0, -1.0)
 
 
 @pytest.mark.parametrize(("port", "own"), [("upper_moment", "upper"), ("lower_moment", "lower")])

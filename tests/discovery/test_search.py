@@ -15,7 +15,9 @@ LATE = Candidate("missing_physics", "port", "load", "late", ("delay(x, _d)",), {
 DELAY = Candidate("input_error", "input", "push", "input_delay")
 LAG = Candidate("sensor_error", "observation", "x", "sensor_lag")
 FRICTION = Candidate("missing_physics", "port", "load", "coulomb_friction", ("sign(v)",), None, "x")
-ONE_WAY = replace(FRICTION, pieces=("sign(v + 99)",))  # faster than any v: it keeps its sign
+FORCING = Candidate(
+    "missing_physics", "port", "load", "periodic_forcing", ("sin(_w*t)", "cos(_w*t)"), {"w": "frequencies"}, "x"
+)
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
 
@@ -39,9 +41,12 @@ def _with(model, candidate, **values):
         (DELAY, {"seconds": -99.0}, False),
         (LAG, {"seconds": 0.1}, True),
         (LAG, {"seconds": -0.1}, False),
-        (FRICTION, {"factor": 9.0}, True),
-        (ONE_WAY, {"factor": -9.0}, True),
-        (ONE_WAY, {"factor": 9.0}, False),
+        (FRICTION, {"factor": -9.0}, True),
+        (FRICTION, {"factor": 9.0}, False),  # it would drive
+        (replace(FRICTION, power=-1.0), {"factor": 9.0}, True),  # at a port that holds its motion back
+        (replace(FRICTION, power=0.0), {"factor": 9.0}, True),  # of another body's motion
+        (FORCING, {"factor": 1.0, "factor_1": 1.0, "w": 3.0}, True),
+        (FORCING, {"factor": 1.0, "factor_1": 1.0, "w": 0.1}, False),  # of less than a cycle in a trial
     ],
 )
 def test_a_number_has_to_lie_where_it_means_what_its_name_says(case, as_read, candidate, values, sensible):
