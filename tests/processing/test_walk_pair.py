@@ -9,6 +9,7 @@ from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import StrideError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import TIMES, repeated_stride, walk_pair
 from gaitdisc.recording import Recording, Trial
 
@@ -98,13 +99,13 @@ def test_no_strides_in_common_is_refused_in_words():
     with pytest.raises(StrideError, match=r"detector finds.*both") as refused:
         walk_pair(forces, angles)
     assert "plates by" in str(refused.value)
+    with pytest.raises(StrideError, match=r"plates has contacts by force\. angles by force: "):
+        walk_pair(forces, angles, detector="force")
     assert says(str(refused.value), "no hip angle in common")
     assert says(refused.value.remedy, "both", "both forces")
 
 
 def test_standing_is_refused(gait_data):
-    from gaitdisc.ingest.reading import read_trial
-
     folder = gait_data / "treadmill_walk_ik"
     calibration, walked = (read_trial(folder / f"{name}_ik.mot") for name in ("S01DN603", "S01DE504"))
     with pytest.raises(StrideError):
