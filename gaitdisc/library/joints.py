@@ -11,7 +11,7 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.motion import moved_body
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.trial_kinetics import TrialKinetics, trial_kinetics
+from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.markers_to_moments import foot_paths_of
 from gaitdisc.processing.side_checks import check_weight, standing_weight_n
@@ -112,26 +112,14 @@ def moments(
     >>> import gaitdisc as gd
     >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_angle_r_moment"]  # doctest: +SKIP
     """
-    return walk_kinetics(trial_of(walk), static, mass_kg, sex, marker_set, force_cutoff_hz).moments
-
-
-def walk_kinetics(
-    walk: Trial,
-    static: Trial | Path | str,
-    mass_kg: float | None,
-    sex: str,
-    marker_set: Path | str | None,
-    force_hz: float,
-) -> TrialKinetics:
-    """Moments, powers and steps of a walk; whoever stands on plates in the static trial is weighed there."""
+    trial = trial_of(walk)
     standing, measures = _standing(static)
-    weighed_n = standing_weight_n(standing)
+    weighed_n = standing_weight_n(standing)  # whoever stands on plates is weighed there
     person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m, weighed_n)
-    weighed = check_weight(weighed_n, person.kg, standing.stream("markers").source.file or standing.name)
-    moved = moved_body(walk.stream("markers"), standing.stream("markers"), marker_set, measures)
-    settings = KineticsSettings(force_cutoff_hz=force_hz)
-    found = trial_kinetics(walk, moved.poses, foot_paths_of(moved), person, settings)
-    return replace(found, findings=(*standing.findings, *weighed, *walk.findings, *moved.findings, *found.findings))
+    check_weight(weighed_n, person.kg, standing.name)
+    moved = moved_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures)
+    settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
+    return trial_kinetics(trial, moved.poses, foot_paths_of(moved), person, settings).moments
 
 
 def _standing(static: Trial | Path | str) -> tuple[Trial, BodyMeasures]:

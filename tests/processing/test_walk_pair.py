@@ -113,12 +113,9 @@ def test_standing_is_refused(gait_data):
 
 
 def test_the_force_of_one_foot_is_enough_where_force_is_requested():
-    one_foot = []
-    for trial in (walk(1), walk(2)):
-        forces = trial.stream("forces").selected_by(lambda channel: channel.side == "r")
-        one_foot.append(
-            replace(only(trial, "kinematics"), streams={**only(trial, "kinematics").streams, "forces": forces})
-        )
+    both = [only(walk(seed), "kinematics", "forces") for seed in (1, 2)]
+    rights = [trial.stream("forces").selected_by(lambda channel: channel.side == "r") for trial in both]
+    one_foot = [replace(one, streams={**one.streams, "forces": right}) for one, right in zip(both, rights, strict=True)]
     walks = walk_pair(*one_foot, detector="force")
     assert [one.detector for one in walks] == ["force", "force"]
     by_both = walk_pair(walk(1), walk(2), detector="force")
