@@ -79,19 +79,10 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
         light = LIGHTS[inspection.light]
         rows = [f"{side} {n}" + (f" ({out} dropped)" if out else "") for side, (n, out) in inspection.strides.items()]
         warnings = sum(finding.severity != "note" for finding in inspection.findings)
-        table.add_row(
-            plain(inspection.light, light),
-            *map(
-                plain,
-                (
-                    inspection.participant,
-                    "\n".join(part for part in (inspection.condition, inspection.name) if part),
-                    "\n".join(f"{key} {words}" for key, words in inspection.streams.items()),
-                    "\n".join(rows),
-                    str(warnings or ""),
-                ),
-            ),
-        )
+        name = "\n".join(part for part in (inspection.condition, inspection.name) if part)
+        streams = "\n".join(f"{key} {words}" for key, words in inspection.streams.items())
+        cells = (inspection.participant, name, streams, "\n".join(rows), str(warnings or ""))
+        table.add_row(plain(inspection.light, light), *map(plain, cells))
     console.print(table)
     for inspection in seen:
         if inspection.refusal:

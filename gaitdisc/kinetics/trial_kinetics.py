@@ -98,12 +98,8 @@ def force_balance(
         return ForceBalance(0, np.nan, np.nan, np.nan)
     vertical = over @ up
     level = over - vertical[:, None] * up
-    return ForceBalance(
-        len(over),
-        float(np.sqrt(np.mean(vertical**2))),
-        float(np.sqrt(np.mean(np.sum(level**2, axis=1)))),
-        float(vertical.mean()),
-    )
+    up_rms, level_rms = (float(np.sqrt(np.mean(squares))) for squares in (vertical**2, np.sum(level**2, axis=1)))
+    return ForceBalance(len(over), up_rms, level_rms, float(vertical.mean()))
 
 
 @dataclass(frozen=True, eq=False)

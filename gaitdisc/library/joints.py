@@ -14,6 +14,7 @@ from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.markers_to_moments import foot_paths_of
+from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -60,7 +61,9 @@ def angles(
     """
     trial = trial_of(walk)
     standing, measures = _standing(static)
-    found = moved_body(trial.stream("markers"), standing, marker_set, measures, forward, joints).angles
+    found = moved_body(
+        trial.stream("markers"), standing.stream("markers"), marker_set, measures, forward, joints
+    ).angles
     return replace(found, subject=trial.subject, condition=trial.condition)
 
 
@@ -97,7 +100,8 @@ def moments(
     Raises
     ------
     GaitdiscError
-        If markers, forces or the mass are missing, or no foot is alone on a force plate.
+        If markers, forces or the mass are missing, no foot is alone on a force plate, or the plates show another mass
+        in the static trial.
 
     References
     ----------
@@ -110,14 +114,16 @@ def moments(
     """
     trial = trial_of(walk)
     standing, measures = _standing(static)
-    moved = moved_body(trial.stream("markers"), standing, marker_set, measures)
-    person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m)
+    weighed_n = standing_weight_n(standing)  # whoever stands on plates is weighed there
+    person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m, weighed_n)
+    check_weight(weighed_n, person.kg, standing.name)
+    moved = moved_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures)
     settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
     return trial_kinetics(trial, moved.poses, foot_paths_of(moved), person, settings).moments
 
 
-def _standing(static: Trial | Path | str) -> tuple[Recording, BodyMeasures]:
-    """Markers of the static trial, and the measures in its file."""
+def _standing(static: Trial | Path | str) -> tuple[Trial, BodyMeasures]:
+    """Return the static trial and the measures in its file."""
     if isinstance(static, Trial):
-        return static.stream("markers"), BodyMeasures()
-    return read_trial(static).stream("markers"), body_measures_in(Path(static))
+        return static, BodyMeasures()
+    return read_trial(static), body_measures_in(Path(static))

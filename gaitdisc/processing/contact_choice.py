@@ -65,13 +65,15 @@ def chosen_contacts(
             f"the detector is {str(detector)[:60]!r}",
             "Name one of these. To use known contacts, call cycles(..., contacts=times).",
         )
+    needed = "strides need initial contacts from force, events, markers or joint angles"
+    if any(len(recording.time) < 2 for recording in trial.streams.values()):
+        raise nothing_found(trial, needed, ["a single frame"])
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     seen, late = events_on_plates(seen, trial.name)
     strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
     why = refused if detector == "auto" else {detector: refused.get(detector)}
     if not strides or (detector != "auto" and detector not in strides):
         reasons = [f"{name}: {error.found if error else 'no stride of both feet'}" for name, error in why.items()]
-        needed = "strides need initial contacts from force, events, markers or joint angles"
         raise why.get(detector) or nothing_found(trial, needed, reasons)
     chosen = detector if detector != "auto" else best_detector(PREFERRED, strides, seen)
     reference, offset_s = _offset(chosen, seen)

@@ -212,8 +212,7 @@ def inspected_trial(trial: Trial, name: str) -> Inspection:
     try:
         choice = chosen_contacts(trial)
         findings += choice.findings
-        for side, contacts in sorted(choice.contacts.items()):
-            strides[side] = cut_strides(contacts)
+        strides = {side: cut_strides(contacts) for side, contacts in sorted(choice.contacts.items())}
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
         findings += side_findings(trial, strides)
         if "kinematics" in trial.streams:
@@ -229,7 +228,8 @@ def inspected_trial(trial: Trial, name: str) -> Inspection:
 
 
 def _streams(trial: Trial) -> dict[str, str]:
-    return {key: f"{len(r.channels)} at {r.rate_hz:g} Hz, {r.duration_s:.1f} s" for key, r in trial.streams.items()}
+    spans = {k: f" at {r.rate_hz:g} Hz, {r.duration_s:.1f} s" for k, r in trial.streams.items() if len(r.time) > 1}
+    return {key: f"{len(r.channels)}{spans.get(key, ', one frame')}" for key, r in trial.streams.items()}
 
 
 def _seen(

@@ -42,8 +42,7 @@ def side_findings(trial: Trial, strides: Mapping[str, Strides], weight_n: float 
 
 
 def _muscle_findings(emg: Recording, strides: Mapping[str, Strides]) -> list[Finding]:
-    raw = bool((emg.values < 0).any())
-    if not raw:
+    if not (emg.values < 0).any():  # an envelope
         return order_of_muscles(emg, strides)
     live = live_channels(emg)
     if not live or emg.rate_hz <= 2 * HIGHPASS_HZ:
@@ -75,7 +74,7 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
     markers, file = trial.stream("markers"), trial.stream("forces").source.file or trial.name
     try:
         feet, found, pelvis = _feet_on_plates(trial)
-        steps = plate_steps(found, feet)
+        steps = plate_steps(found, feet) if len(markers.time) > 1 else []  # a static trial may be a single frame
         if weight_n:
             height = np.mean([marker_position(markers, name) for name in pelvis], axis=0) @ found[0].up
             steps = weighed_steps(steps, found, swings(trial, feet), Weight(weight_n, markers.time, height))

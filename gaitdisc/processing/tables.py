@@ -56,14 +56,10 @@ def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
             duration_s = float(one.kept.loc[one.kept["side"] == side, "stride_s"].mean())
             if own.empty or not len(own.columns):
                 continue
-            words = (one.subject, one.session, one.condition, side)
-            found["_".join(word.replace(" ", "-") for word in words if word)] = Recording(
-                own.index.to_numpy(float) / 100.0 * duration_s,
-                own.to_numpy(float),
-                tuple(known[str(name)] for name in own.columns),
-                one.subject,
-                one.condition,
-            )
+            words = [word.replace(" ", "-") for word in (one.subject, one.session, one.condition, side) if word]
+            time, channels = own.index.to_numpy(float) / 100.0 * duration_s, [known[str(name)] for name in own.columns]
+            mean = Recording(time, own.to_numpy(float), tuple(channels), one.subject, one.condition)
+            found["_".join(words)] = mean
     return found
 
 
@@ -171,15 +167,13 @@ def offset_words(one: PooledCycles) -> str:
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
     """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition."""
     numbers = all_spatiotemporal(sets)
+    known = {key: rows.iloc[0] for key, rows in numbers.groupby(["value", "side", "session", "condition"])}
     rows = []
     for value, (words, unit, digits) in VALUES.items():
         cells = []
         for one in sets:
             for side in FEET:
-                own = numbers[
-                    (numbers["value"] == value) & (numbers["side"] == side)
-                    & (numbers["session"] == one.session) & (numbers["condition"] == one.condition)
-                ].iloc[0]  # fmt: skip
+                own = known[value, side, one.session, one.condition]
                 cells.append(mean_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
         if set(cells) != {NONE}:
             rows.append((f"{words} [{unit}]", *cells))
@@ -195,19 +189,13 @@ def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
     numbers = numbers[~numbers["kept"].astype(bool)].reset_index(drop=True) if len(numbers) else numbers
     if not len(numbers):
         return None
-    rows = tuple(
-        (
-            f"{row.session} {row.condition}".strip(),
-            str(row.trial),
-            SIDE_WORDS[str(row.side)],
-            f"{row.start_s:.2f} to {row.end_s:.2f}",
-            str(row.reason),
-        )
-        for row in numbers.itertuples(index=False)
-    )
+    rows = []
+    for row in numbers.itertuples(index=False):
+        where, span = f"{row.session} {row.condition}".strip(), f"{row.start_s:.2f} to {row.end_s:.2f}"
+        rows.append((where, str(row.trial), SIDE_WORDS[str(row.side)], span, str(row.reason)))
     headings = ("session, condition", "trial", "side", "from, to [s]", "why")
     caption = f"{sets[0].subject}: cycles left out, n = {len(rows)}."
-    return Table(f"left_out-{name}", caption, headings, rows, numbers)
+    return Table(f"left_out-{name}", caption, headings, tuple(rows), numbers)
 
 
 def mean_cell(mean: float, spread: float, count: int, digits: int) -> str:

@@ -269,15 +269,11 @@ def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | N
     recording = trial.stream(key)
     if key == "kinematics":
         recording = with_pelvis_and_foot(recording)
-    names = [
-        channel.name
-        for channel, column in zip(recording.channels, recording.values.T, strict=True)
-        if channel.name in words
-        and channel.quantity in quantities
-        and (key != "forces" or channel.side)
-        and np.isfinite(column).any()
-    ]
-    return recording.selected(names) if names else None
+    own = recording.selected_by(
+        lambda one: one.name in words and one.quantity in quantities and (key != "forces" or bool(one.side))
+    )
+    names = [name for name in own.names if np.isfinite(own[name]).any()]
+    return own.selected(names) if names else None
 
 
 def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) -> tuple[Recording | None, str]:

@@ -80,6 +80,7 @@ def line_angles(markers: Recording) -> dict[str, Values]:
         own, on = known.names(labels), itertools.product(NEEDED, "lr")
         named |= {place: [own[name] for name in names] for place in on if (names := known.landmark(*place, own))}
     seen = {place: marker_places(markers, names).mean(axis=1) for place, names in named.items()}
+    seen = {place: points for place, points in seen.items() if np.isfinite(points).any()}
     found, axes, spines = {}, (), [("asis", "l"), ("asis", "r"), ("sacrum", "l")]
     if set(spines) <= set(seen):
         left, right, back = (seen[place] for place in spines)
@@ -133,6 +134,8 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         return
     for name in sorted(set(lines) & set(angles.names)):
         line = interpolated(markers.time, lines[name][:, None], angles.time)[:, 0]
+        if not np.isfinite(line).any():
+            continue
         known = np.isfinite(angles[name]) & (np.abs(line - np.nanmedian(line)) < OTHER_PLACE_DEG)
         own, line = angles[name][known], line[known]
         moved, r = (_range(own), _range(line)), _correlation(own, line)

@@ -93,7 +93,7 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
             except GaitdiscError as error:
                 why.append(f"{name}: {error.found}")
         found.append(here)
-        reasons.append(f"{trial.name} by {'; by '.join(why)}")
+        reasons.append(f"{trial.name} {'by ' + '; by '.join(why) if why else 'has contacts by ' + ', '.join(here)}")
     most = [max(map(_stride_count, here.values()), default=0) for here in found]
     for name in names:
         serves = [

@@ -154,11 +154,8 @@ def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
         )
     slow = lowpassed(hip, CYCLE_CUTOFF / period).values[:, 0]
     slow_reach = float(np.subtract(*np.nanpercentile(slow, [95, 5])))
-    peaks, _ = find_peaks(
-        np.where(np.isfinite(slow), slow, np.nanmin(slow)),
-        prominence=slow_reach / 3,
-        distance=max(1, round(0.5 * period * hip.rate_hz)),
-    )
+    whole = np.where(np.isfinite(slow), slow, np.nanmin(slow))
+    peaks, _ = find_peaks(whole, prominence=slow_reach / 3, distance=max(1, round(0.5 * period * hip.rate_hz)))
     return hip.time[peaks], period
 
 

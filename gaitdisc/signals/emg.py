@@ -37,7 +37,7 @@ SILENT_SHARE = 5e-4  # robust standard deviation: 160 live channels of ten labor
 RAILS_SHARE = 1e-2  # at the rails
 FLAT_BURST = 1.5  # burst ratio of 400 made channels of clipped Gaussian noise: 1.45 at most
 USUAL_RANGES_V = (0.01, 1.25, 2.5, 5.0, 10.0)  # the least at the skin, where no EMG is larger; the others amplified
-STEPS = 2**15  # either side of zero, of a 16-bit converter
+STEPS = 2**15  # either side of zero, of a 16-bit converter; one of 12 bits has a sixteenth of the range at this step
 FEWEST_AT_RAIL = 3
 OVER_STANDING = Limits(0.1, 100.0, "1")  # who walks has more than a tenth of the EMG of standing
 OVER_WALKING = Limits(1 / 30, 30.0, "1")
@@ -88,6 +88,7 @@ class AmplifierRange:
     volts: float
     how: str  # `given`, or what it was inferred from
     shown: bool = True  # by the recording itself, in whatever unit it is
+    dead_share: float = DEAD_SHARE  # of the range: a smaller standard deviation is no muscle's, bursts or not
 
 
 def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRange:
@@ -118,7 +119,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
         return AmplifierRange(top, f"the largest value, reached {met} times")
     steps = [step for column in emg.values.T if (step := _quantisation_step(column)) is not None]
     if steps and STEPS * (step := float(np.median(steps))) >= top:
-        return AmplifierRange(STEPS * step, f"the quantisation step of {step:.3g} V")
+        return AmplifierRange(STEPS * step, f"the quantisation step of {step:.3g} V", dead_share=DEAD_SHARE / 16)
     usual = next((v for v in USUAL_RANGES_V if v >= top), top)
     return AmplifierRange(usual, f"the smallest usual range that contains the largest value, {top:.3g} V", False)
 
@@ -128,6 +129,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
 
     - dead: the standard deviation is below 0.1 % of the range, or below 0.4 % in a channel whose envelope has no bursts
       (its 99th percentile stays below 3.4 times its median): nothing but the amplifier's noise, or a muscle that rests.
+      Bursts count from a sixteenth of 0.1 % on where the range is that of 16 bits with the recording's step.
       Dead, too, is a channel that is clipped and below 0.05 % for most of the time: an electrode that lost contact.
     - unplugged: the standard deviation is above half of the range. Even a Gaussian signal cut off at its own standard
       deviation stays below that after clipping at two; an input without electrodes swings from rail to rail. So does
@@ -163,8 +165,9 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
             noise_mv = 1e3 * silent * limit.volts
             kind = "dead"
             what = f"{at_rails}; between them is only noise (robust standard deviation {noise_mv:.3g} mV)"
-        elif share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
-            least, bursts = (DEAD_SHARE, "") if share < DEAD_SHARE else (WEAK_SHARE, " or bursts")
+        elif share < WEAK_SHARE and (share < limit.dead_share or burst_ratio(x, emg.rate_hz) < BURST):
+            least = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
+            bursts = "" if share < limit.dead_share else " or bursts"
             kind = "dead"
             what = f"{size} {rail}; a connected channel has at least {100 * least:g} %{bursts}"
         elif share > UNPLUGGED_SHARE:

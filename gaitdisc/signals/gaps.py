@@ -143,11 +143,11 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
     """
     marks = np.zeros(recording.values.shape, bool)
     plain = unwrapped(recording)
-    half = max(2, round(HALF_S * recording.rate_hz))
     for column, channel in enumerate(recording.channels):
         x = np.where(np.isfinite(plain.values[:, column]), plain.values[:, column], np.nan)
         known = np.isfinite(x)
         if channel.quantity in QUANTITIES and known.sum() >= FEWEST_SAMPLES:
+            half = max(2, round(HALF_S * recording.rate_hz))
             steps = np.diff(x)
             size = np.abs(steps[np.isfinite(steps)])
             least = max(

@@ -106,11 +106,6 @@ def test_a_cycle_with_a_gap_in_what_is_cut_is_dropped(walk):
     assert len(cut) == len(strides) - 1 and cut.dropped[0].start == strides.start[1]
 
 
-def test_a_side_without_contacts_is_refused(walk):
-    with pytest.raises(StrideError, match=r"'right'.*contacts were found"):
-        gd.cycles(walk, "right")
-
-
 def test_contacts_that_are_known_are_used_as_they_are_given(walk):
     table = pd.DataFrame({"time": np.arange(0.0, 10.0, 0.01), "knee": 0.0})
     at = np.arange(0.5, 9.0)
@@ -122,7 +117,9 @@ def test_contacts_that_are_known_are_used_as_they_are_given(walk):
         np.testing.assert_array_equal(gd.cycles(walk, "l", contacts=given).start, gd.cycles(walk, "l").start)
 
 
-def test_contacts_in_frames_and_unknown_detectors_are_refused(walk):
+def test_contacts_in_frames_and_unknown_sides_and_detectors_are_refused(walk):
+    with pytest.raises(StrideError, match=r"'right'.*contacts were found"):
+        gd.cycles(walk, "right")
     with pytest.raises(StrideError, match=r"1000 s.*W01_nominal"):
         gd.cycles(walk, contacts=[100, 1000])
     for detector in ("heel", np.array([0.5, 1.5])):
@@ -153,12 +150,13 @@ def test_angles_are_those_of_the_room_below(files):
 def test_moments_come_with_a_mass_and_are_refused_without_forces(files):
     walk, static = files
     trial = gd.read(walk)
-    if "forces" in trial.streams:
-        found = gd.moments(trial, static, mass_kg=45.8)  # of HC030A; 70 kg contradict the plates
-        assert {"N m/kg", "W/kg"} <= {channel.unit for channel in found.channels}
+    found = gd.moments(trial, static, mass_kg=45.8)  # of HC030A
+    assert {"N m/kg", "W/kg"} <= {channel.unit for channel in found.channels}
+    with pytest.raises(GaitdiscError, match="plates that agree within 5 %"):
+        gd.moments(trial, static, mass_kg=70.0)
     bare = gd.Trial("bare", {"markers": trial.stream("markers")})
     with pytest.raises(GaitdiscError, match="forces"):
-        gd.moments(bare, static, mass_kg=70.0)
+        gd.moments(bare, static, mass_kg=45.8)
 
 
 def test_two_trials_and_their_files_say_the_same(walks, tmp_path):

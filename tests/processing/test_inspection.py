@@ -21,19 +21,15 @@ def folder(trial, tmp_path):
 
 
 def test_the_three_lights(folder):
-    assert inspected_file(folder / "good.mot").refusal == ""
-    assert inspected_file(folder / "good.mot").strides["r"][0] > 30
+    good = inspected_file(folder / "good.mot")
+    assert good.refusal == "" and good.strides["r"][0] > 30
+    assert sum(says(line, "contact offset: contacts", "no") for line in good.grouped()) == 1  # without asking for notes
     gappy = inspected_file(folder / "gappy.mot")
     assert gappy.light == "amber"
     assert any(line.startswith("warning: gappy.mot, knee_angle_r: gap") for line in gappy.grouped())
     empty = inspected_file(folder / "empty.mot")
     assert empty.light == "red"
     assert "empty.mot" in empty.refusal
-
-
-def test_moved_contacts_are_printed_without_asking_for_notes(folder):
-    lines = inspected_file(folder / "good.mot").grouped()
-    assert sum(says(line, "contact offset: contacts", "no") for line in lines) == 1
 
 
 def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
@@ -71,15 +67,9 @@ def test_check_refuses_what_run_refuses_of_several_trials_and_no_more(folder):
         write_storage(good.with_values(good.values + 0.01 * place), folder / f"good{place}.mot")
     files = [("a", "good0"), ("a", "good1"), ("b", "good2"), ("a", "good3"), ("a", "empty"), ("a", "good4")]
     trials = tuple(PlannedTrial(condition=word, files=(f"{name}.mot",)) for word, name in files)
-    twice, broken, lone = trials[:3], trials[3:5], trials[5:]
-    study = Study(
-        conditions=Conditions(nominal="a", device="b"),
-        participants=(
-            Participant(id="P01", trials=twice),
-            Participant(id="P02", group="control", trials=broken),
-            Participant(id="P03", trials=lone),
-        ),
-    ).placed(folder)
+    two, broken, lone = (("P01", "", trials[:3]), ("P02", "control", trials[3:5]), ("P03", "", trials[5:]))
+    people = tuple(Participant(id=name, group=group, trials=own) for name, group, own in (two, broken, lone))
+    study = Study(conditions=Conditions(nominal="a", device="b"), participants=people).placed(folder)
     seen = list(inspected_study(study))
     run = run_study(study, folder / "run")
     refused = [(one.participant, one.condition) for one in seen if one.refusal]

@@ -8,6 +8,7 @@ from texts import says
 
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.inspection import inspected_trial
 from gaitdisc.processing.side_checks import check_weight, side_findings, standing_weight_n
 from gaitdisc.recording import Trial
 
@@ -88,6 +89,15 @@ def test_two_plates_that_are_exchanged_have_no_foot_under_their_force(plates):
     assert standing_weight_n(replace(static, surfaces=swapped)) is None  # nobody stands on the plate that is loaded
 
 
+def test_a_static_trial_of_one_frame_is_looked_at_without_a_walk(plates, recwarn):
+    starts = {key: (one, float(one.time[0])) for key, one in plates[1].streams.items()}
+    static = replace(plates[1], streams={key: one.between(at, at + 0.009) for key, (one, at) in starts.items()})
+    assert side_findings(static, {}) == []
+    seen = inspected_trial(static, "static.c3d")
+    assert seen.streams["markers"].endswith(", one frame") and says(seen.refusal, "a single frame")
+    assert not recwarn.list
+
+
 def test_who_stands_on_the_plates_is_weighed(plates):
     walk, static = plates
     weighed = standing_weight_n(static)
@@ -97,7 +107,5 @@ def test_who_stands_on_the_plates_is_weighed(plates):
     assert says(said.line(), "s.c3d", "45.9 kg", "47.5 kg", "3 %")
     with pytest.raises(UnitError, match=r"45\.9 kg.*49\.5 kg"):
         check_weight(weighed, 49.5, "s.c3d")
-    aside = replace(
-        static, surfaces=tuple(replace(one, corners=np.add(one.corners, [0.25, 0, 0])) for one in static.surfaces)
-    )
-    assert standing_weight_n(aside) is None  # a foot beside the plate
+    moved = [replace(one, corners=np.add(one.corners, [0.25, 0, 0])) for one in static.surfaces]
+    assert standing_weight_n(replace(static, surfaces=tuple(moved))) is None  # a foot beside the plate

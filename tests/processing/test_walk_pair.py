@@ -9,6 +9,7 @@ from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import StrideError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import TIMES, repeated_stride, walk_pair
 from gaitdisc.recording import Recording, Trial
 
@@ -98,13 +99,13 @@ def test_no_strides_in_common_is_refused_in_words():
     with pytest.raises(StrideError, match=r"detector finds.*both") as refused:
         walk_pair(forces, angles)
     assert "plates by" in str(refused.value)
+    with pytest.raises(StrideError, match=r"plates has contacts by force\. angles by force: "):
+        walk_pair(forces, angles, detector="force")
     assert says(str(refused.value), "no hip angle in common")
     assert says(refused.value.remedy, "both", "both forces")
 
 
 def test_standing_is_refused(gait_data):
-    from gaitdisc.ingest.reading import read_trial
-
     folder = gait_data / "treadmill_walk_ik"
     calibration, walked = (read_trial(folder / f"{name}_ik.mot") for name in ("S01DN603", "S01DE504"))
     with pytest.raises(StrideError):
@@ -112,12 +113,9 @@ def test_standing_is_refused(gait_data):
 
 
 def test_the_force_of_one_foot_is_enough_where_force_is_requested():
-    one_foot = []
-    for trial in (walk(1), walk(2)):
-        forces = trial.stream("forces").selected_by(lambda channel: channel.side == "r")
-        one_foot.append(
-            replace(only(trial, "kinematics"), streams={**only(trial, "kinematics").streams, "forces": forces})
-        )
+    both = [only(walk(seed), "kinematics", "forces") for seed in (1, 2)]
+    rights = [trial.stream("forces").selected_by(lambda channel: channel.side == "r") for trial in both]
+    one_foot = [replace(one, streams={**one.streams, "forces": right}) for one, right in zip(both, rights, strict=True)]
     walks = walk_pair(*one_foot, detector="force")
     assert [one.detector for one in walks] == ["force", "force"]
     by_both = walk_pair(walk(1), walk(2), detector="force")

@@ -53,10 +53,17 @@ def test_each_fault_is_told_and_a_clean_channel_is_not():
     recording = emg(sol=live(), ta=noise(5e-4, 1), rf=rail, gas=np.clip(live(0.6, 4), -1.25, 1.25), weak=live(0.006, 5))
     assert kinds(recording) == {"ta": "dead", "rf": "unplugged", "gas": "clipped"}
     assert live_channels(recording) == ("sol", "gas", "weak")
-
-
-def test_weak_noise_without_bursts_is_dead():
+    assert live_channels(emg(sol=live(), ta=np.full(6000, np.nan))) == ("sol",)
     assert kinds(emg(sol=live(), ta=noise(3e-3, 1)), 1.25) == {"ta": "dead"}
+
+
+def test_bursts_of_a_converter_of_12_bits_are_a_muscle():
+    step = 0.01 / 2**11  # 5 uV: 16 bits would reach 0.16 V
+    muscle, amplifier = (np.round(x / step) * step for x in (live(1.2e-4), noise(2e-5, 1)))
+    recording = emg(ta=muscle, rf=amplifier)
+    assert amplifier_range(recording).volts == pytest.approx(0.16, rel=0.01)
+    (finding,) = emg_findings(recording)
+    assert finding.channel == "rf" and says(finding.what, "0.1 % or bursts")
 
 
 def test_the_words_say_how_much_of_what_range():
@@ -88,10 +95,6 @@ def test_without_a_hint_the_usual_range_is_taken():
 def test_bursts_need_a_second_and_80_hz():
     assert burst_ratio(noise(1.0)[:900], RATE) == 0.0
     assert burst_ratio(noise(1.0), 60.0) == float("inf")
-
-
-def test_an_empty_channel_is_not_live():
-    assert live_channels(emg(sol=live(), ta=np.full(6000, np.nan))) == ("sol",)
 
 
 def test_false_alarms_on_live_channels_are_none():
