@@ -10,7 +10,7 @@ from gaitdisc.simulation.parts import Term
 PAGE = Path(__file__).parents[2] / "docs" / "simulation.md"
 
 
-def test_the_code_on_the_page_runs_from_top_to_bottom(tmp_path, monkeypatch, unpainted):
+def test_the_code_on_the_page_runs_from_top_to_bottom(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_record(tmp_path / "tank.csv", lambda one: one.with_effect(Term("leak", "port", "hidden", "-0.4*level**2")), 1)
     names: dict = {}
