@@ -58,8 +58,8 @@ QUICK = {"cubic_stiffness", "coulomb_friction", "one_sided_spring", "periodic_fo
 
 
 @cache
-def _found(truth, how=None, shapes=(), nominal=None, seed=SEED):
-    return discover(nominal or mass(), record(truth, seed, how), Request(shapes))
+def _found(truth, how=None, nominal=None, seed=SEED):
+    return discover(nominal or mass(), record(truth, seed, how), Request())
 
 
 def _named(discovery):
@@ -208,7 +208,8 @@ def test_an_effect_outside_the_catalogue_is_answered_by_a_shape_that_closes_the_
 
 def test_an_effect_of_the_users_own_is_found_by_its_name(tmp_path):
     bump = Shape("bump", ("exp(-((x - c)/0.2)**2)",), constants={"c": "quantiles of x"})
-    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), shapes=(bump,))
+    hidden = record(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), SEED)
+    discovery, augmented = discover(mass(), hidden, Request((bump,)))
     assert _named(discovery) == ("missing_physics", [("bump", "load")])
     values = [one.value for one in discovery.effects[0].estimates.values()]
     assert min(abs(value - 0.3) for value in values) < 0.01
