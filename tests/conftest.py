@@ -1,16 +1,21 @@
 """A command line as a person calls it; where real recordings lie, and the skip where they do not."""
 
 import gc
+import hashlib
 import io
 import os
+import pickle
 import signal
 import sys
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from functools import cache, partial
 from pathlib import Path
 from subprocess import CompletedProcess
 from unittest.mock import patch
 
+import jinja2
 import pytest
+import typer.main
 from hypothesis import settings
 
 from gaitdisc.cli import main
@@ -51,6 +56,38 @@ def one_reader_for_all_files():
             patch.setattr(module, "ReaderProcess", given)
         yield
     started.close(lasting)
+
+
+def _remembered(compute):
+    """What a function of these very values gave before; a caller may change the lists and dicts of its own copy."""
+    known = {}
+
+    def once(*given):
+        key = hashlib.sha256(pickle.dumps(given)).digest()
+        if key not in known:
+            known[key] = pickle.dumps(compute(*given))
+        return pickle.loads(known[key])
+
+    return once
+
+
+@pytest.fixture(scope="session", autouse=True)
+def what_all_tests_share_is_made_once(tmp_path_factory):
+    """The tree of commands, templates, what a simulated leg has learnt, exchanged labels, the period of an angle."""
+    from gaitdisc.cohort import walk
+    from gaitdisc.kinematics import motion
+    from gaitdisc.signals import contact_movement, strides
+
+    period = _remembered(strides.stride_period)
+    compiled = jinja2.FileSystemBytecodeCache(str(tmp_path_factory.mktemp("templates")))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
+        patch.setattr(jinja2, "Environment", partial(jinja2.Environment, bytecode_cache=compiled))
+        patch.setattr(walk, "learnt_table", _remembered(walk.learnt_table))
+        patch.setattr(motion, "exchanged_pairs", _remembered(motion.exchanged_pairs))
+        patch.setattr(strides, "stride_period", period)
+        patch.setattr(contact_movement, "stride_period", period)
+        yield
 
 
 @pytest.fixture(scope="session")
@@ -100,13 +137,27 @@ def gait_data() -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def briefly():
+    """Return a context in which networks take two passes over their samples: for what several tests share."""
+
+    @contextmanager
+    def brief():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
+            yield
+
+    return brief
+
+
 @pytest.fixture
-def trained_briefly(monkeypatch):
+def trained_briefly(briefly):
     """Networks take two passes over their samples: for tests of what is made of a network, not of what it learns.
 
     In this process only: one that is started beside it trains whole.
     """
-    monkeypatch.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
+    with briefly():
+        yield
 
 
 @pytest.fixture

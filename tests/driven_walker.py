@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.compiled import compiled
 from gaitdisc.recording import Recording, Source, Trial
 
 STEP_S = 0.001
@@ -107,23 +108,16 @@ class DrivenWalker:
         return np.cumsum((1.0 + quick + slow) * STEP_S / self.stride_s)
 
     def _joints(self, rng: np.random.Generator, phase: NDArray[np.float64]) -> NDArray[np.float64]:
-        natural, damping = 2 * np.pi * 2.5, 0.7
+        natural, damping = 2 * np.pi * 2.5, 0.7  # [rad/s], [1]
         habits = np.column_stack([self.size * _habit(joint, phase) for joint in JOINTS])
         rate = np.gradient(habits, STEP_S, axis=0)
         drive = np.gradient(rate, STEP_S, axis=0) + natural**2 * habits + 2 * damping * natural * rate
         for column, joint in enumerate(JOINTS):
             spread = 60.0 if joint in ("knee_angle", "hip_flexion") else 25.0
             drive[:, column] += _wandering(rng, len(phase), 0.15, spread * 4)
-        angles = np.empty_like(habits)
-        for column, joint in enumerate(JOINTS):  # plain numbers are quicker than arrays of five
-            spring = self.spring_per_s2 if joint == "ankle_angle" else 0.0
-            theta, omega = float(habits[0, column]), float(rate[0, column])
-            for sample, push in enumerate(drive[:, column].tolist()):
-                angles[sample, column] = theta
-                acceleration = push - natural**2 * theta - 2 * damping * natural * omega
-                omega += (acceleration - spring * max(0.0, theta - self.engaged_deg)) * STEP_S
-                theta += omega * STEP_S
-        return angles
+        springs = np.array([self.spring_per_s2 if joint == "ankle_angle" else 0.0 for joint in JOINTS])
+        start = np.vstack([habits[0], rate[0]])
+        return _oscillated(drive, start, natural**2, 2 * damping * natural, springs, self.engaged_deg)
 
     def _emg(
         self,
@@ -146,6 +140,20 @@ class DrivenWalker:
                 columns.append((burst + 4e-6) * rng.normal(size=len(time)))
                 names.append(f"emg_{muscle}_{side}")
         return _recording(time, np.column_stack(columns), names)
+
+
+@compiled
+def _oscillated(drive, start, stiffness, damping, springs, engaged):
+    """Angles (sample, joint) [deg] of driven oscillators; springs (joint,) [1/s2] act above `engaged` [deg]."""
+    angles = np.empty_like(drive)
+    for joint in range(drive.shape[1]):
+        theta, omega = start[0, joint], start[1, joint]
+        for sample in range(drive.shape[0]):
+            angles[sample, joint] = theta
+            acceleration = drive[sample, joint] - stiffness * theta - damping * omega
+            omega += (acceleration - springs[joint] * max(0.0, theta - engaged)) * STEP_S
+            theta += omega * STEP_S
+    return angles
 
 
 def _habit(joint: str, phase: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ def unlike(made: dict[str, str], start: str) -> list[str]:
     return [f"{name}: {d}" for name in sorted(names) if (d := difference(APPROVED.get(name, ""), made.get(name, "")))]
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_pages_of_a_saved_folder_say_what_was_approved(kind):
     assert unlike(draw_pages(kind), f"pages/{kind}/") == []

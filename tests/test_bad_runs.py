@@ -48,14 +48,13 @@ def folder(recordings, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def ran(recordings, tmp_path_factory, said):
+def ran(recordings, tmp_path_factory, said, briefly):
     """A finished run of one participant, to be copied."""
     folder = tmp_path_factory.mktemp("ran")
     for word in ("nominal", "exo"):
         shutil.copy(recordings / f"{word}.mot", folder)
     written(folder, walker("P01"))
-    with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
+    with briefly():
         said("run", folder, "--quiet", ends=0)
     return folder
 

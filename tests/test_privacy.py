@@ -195,10 +195,9 @@ def test_the_study_is_the_key_and_its_title_names_nobody(study):
 
 
 @pytest.fixture(scope="module")
-def ran(study, said):
+def ran(study, said, briefly):
     """What a run of it prints; its report stands with every figure drawn."""
-    with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
+    with briefly():
         return said("run", study, "--quiet", ends=SOME_REFUSED)
 
 

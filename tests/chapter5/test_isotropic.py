@@ -65,9 +65,11 @@ def test_a_folder_of_another_flow_is_refused(tmp_path):
         record_turbulence(SMALL, tmp_path / "flow")
 
 
-def test_settings_that_keep_nothing_are_refused():
+def test_settings_that_keep_nothing_and_too_coarse_a_box_are_refused():
     with pytest.raises(ShapeError, match=r"2 to 16 nodes.*17 nodes"):
         FlowSettings(nodes=16, cut=17)
+    with pytest.raises(ShapeError, match=r"8 or more.*33"):
+        Box(33)
 
 
 def test_the_flow_is_resolved_and_its_power_is_dissipated_in_the_mean(tmp_path):
@@ -121,11 +123,6 @@ def test_a_gradient_is_taken_away_whole():
 def test_two_thirds_of_the_wavenumbers_are_kept():
     assert [Box(n).largest for n in (32, 48, 64)] == [10, 15, 21]
     assert 3 * BOX.largest < BOX.nodes  # a product of three kept modes cannot fold back onto a kept one
-
-
-def test_too_coarse_a_box_is_refused():
-    with pytest.raises(ShapeError, match=r"8 or more.*33"):
-        Box(33)
 
 
 def test_the_spectrum_adds_up_to_the_energy():

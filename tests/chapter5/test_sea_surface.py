@@ -126,21 +126,15 @@ def test_the_winds_as_their_source_tells_them(fields):
     assert trades.mean() < -3
 
 
-def test_a_grid_with_holes_is_refused(tmp_path):
+def test_a_grid_with_holes_winds_that_do_not_fit_and_another_file_are_refused(tmp_path):
     held = {"sst": np.zeros((2, 3)), "landmask": np.zeros(3), "lon": np.array([0, 2, 0]), "lat": np.array([0, 0, 2])}
     np.savez(tmp_path / "a.npz", **held)
     with pytest.raises(ReadError, match=r"a.npz.*3 cells, 2 latitudes.*2 longitudes"):
         read_sst_pacific(tmp_path / "a.npz")
-
-
-def test_winds_that_do_not_fit_are_refused(tmp_path):
     held = {"u": np.zeros((2, 3, 4)), "v": np.zeros((2, 3, 3)), "lon": np.arange(4.0), "lat": np.arange(3.0)}
     np.savez(tmp_path / "a.npz", **held)
     with pytest.raises(ReadError, match=r"a.npz.*3, 4\).*3, 3\)"):
         read_navy_winds(tmp_path / "a.npz")
-
-
-def test_another_file_is_refused(tmp_path):
     (tmp_path / "a.npz").write_bytes(b"x")
     with pytest.raises(ReadError, match="u, v, lon, lat"):
         read_navy_winds(tmp_path / "a.npz")

@@ -1,5 +1,3 @@
-import shutil
-
 import pytest
 from made_clinic import made_controls, made_person, made_run
 from manufactured_discovery import manufactured
@@ -9,8 +7,7 @@ from gaitdisc.clinic.clinical_reference import save_reference
 from gaitdisc.commands.options import REFUSED
 
 
-def test_the_report_of_a_run_is_drawn_again_without_fitting(study, called):
-    shutil.rmtree(study / "run" / "report", ignore_errors=True)  # other tests leave one whose figures are not painted
+def test_the_report_of_a_run_is_drawn_again_without_fitting(study, called, unpainted):
     called("run", study, "--quiet", ends=0)
     page = study / "run" / "report" / "report.html"
     first = page.read_bytes()

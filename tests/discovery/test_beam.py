@@ -14,12 +14,14 @@ from gaitdisc.discovery.gap_share import CrossValidated, errs_more
 from gaitdisc.discovery.score import Score
 from gaitdisc.simulation.simulation_file import simulation_of
 
+CLEAN = Experiment(seconds=8.0, noise=0.001)
+
 
 @pytest.fixture(scope="module")
 def beam():
     """Return a beam over what explains a stiffening spring and a loss between viscous and quadratic."""
     hidden = with_load("-16*x**3 - 0.6*v*abs(v)**0.5")
-    case = set_up_case(mass(), record(hidden, 5, Experiment(noise=0.001)))
+    case = set_up_case(mass(), record(hidden, 5, CLEAN))
     scale = case.scale
     return Beam(case.search, scale, near_runs(case))
 
@@ -93,9 +95,6 @@ def test_on_longer_runs_the_simulation_as_read_errs_by_the_spread_at_most():
     assert np.ptp(again.errors) == 0.0
     assert 0 < again.gap <= np.sqrt(2.0) * (scale.spread / scale.size).max()
     assert CRITERIA.near == 0.25
-
-
-CLEAN = Experiment(seconds=8.0, noise=0.001)
 
 
 def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(case, as_read, named):

@@ -79,7 +79,7 @@ def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
     truth = with_load("-60*max(0, x - 0.25)", "one_sided_spring")
     found = {}
     for lowpass in (0.0, 3.0):
-        case = set_up_case(mass(), record(truth, 5, Experiment(seconds=30.0, lowpass_hz=lowpass)))
+        case = set_up_case(mass(), record(truth, 5, Experiment(seconds=15.0, lowpass_hz=lowpass)))
         now = case.search.extended(case.as_read())[1]
         found[lowpass] = abs(next(iter(now.model.parts[0].values.values())))
     assert now.labels == ("one_sided_spring@load",)

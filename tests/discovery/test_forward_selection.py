@@ -57,7 +57,7 @@ def test_beside_what_was_explored_already_nothing_is_sought_again(case, as_read)
 @pytest.fixture(scope="module")
 def two():
     """Return a case into two springs, and the simulation as read."""
-    case = set_up_case(mass(), record(with_load("-14*x**3 - 9*x**2"), 3, Experiment(seconds=12.0)))
+    case = set_up_case(mass(), record(with_load("-14*x**3 - 9*x**2"), 3, Experiment(seconds=8.0)))
     return case, case.as_read()
 
 

@@ -159,7 +159,7 @@ def spoiled(measured, how):
     "how", ["gain", *(pytest.param(how, marks=pytest.mark.slow) for how in ("offset", "drift", "still"))]
 )
 def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the_name_is_right(how):
-    measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(seconds=10.0)), how)
+    measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(seconds=6.0)), how)
     found, _ = discover(mass(), measured)
     assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
     assert says(found.sentence, "rial '2'", "explanation", "left out")

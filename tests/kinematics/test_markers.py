@@ -82,12 +82,9 @@ def test_up_is_where_the_pelvis_is_above_the_feet(axis, sign):
     np.testing.assert_array_equal(up_axis(pelvis, np.full((2, 3), 0.1)), expected)
 
 
-def test_a_tilted_frame_is_refused():
+def test_a_tilted_frame_and_a_trial_that_never_shows_pelvis_and_feet_are_refused():
     with pytest.raises(ShapeError, match=r"lying\.c3d.*\(0, 0\.6, 0\.7\) m"):
         up_axis(np.array([[0, 0.6, 0.7]]), np.zeros((1, 3)), "lying.c3d")
-
-
-def test_a_trial_that_never_shows_pelvis_and_feet_is_refused():
     with pytest.raises(ShapeError, match=r"a\.c3d.*none"):
         up_axis(np.full((2, 3), np.nan), np.zeros((2, 3)), "a.c3d")
 

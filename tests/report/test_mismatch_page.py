@@ -30,11 +30,14 @@ from gaitdisc.report.figure import save_figure
 
 
 @pytest.fixture(scope="module")
-def mismatch():
-    walks = [
-        DrivenWalker("A", seed=1, spring_per_s2=k).walked(25.0, name) for k, name in ((250.0, "exo"), (0.0, "free"))
-    ]
-    return compare_walks(*walk_pair(*walks), ("ankle_angle_r", "knee_angle_r"))
+def walks():
+    springs = {"exo": 250.0, "free": 0.0}
+    return walk_pair(*(DrivenWalker("A", seed=1, spring_per_s2=k).walked(25.0, word) for word, k in springs.items()))
+
+
+@pytest.fixture(scope="module")
+def mismatch(walks):
+    return compare_walks(*walks, ("ankle_angle_r", "knee_angle_r"))
 
 
 def test_the_numbers_drawn_are_those_found(mismatch):
@@ -56,11 +59,8 @@ def test_curves_and_gap_are_drawn_alike_each_time(mismatch, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def mismatch_tables():
-    walks = [
-        DrivenWalker("A", seed=1, spring_per_s2=k).walked(25.0, name) for k, name in ((250.0, "exo"), (0.0, "free"))
-    ]
-    return compare_walks(*walk_pair(*walks))
+def mismatch_tables(walks):
+    return compare_walks(*walks)
 
 
 def test_every_region_and_every_channel_has_a_row(mismatch_tables):
@@ -81,12 +81,8 @@ def test_the_sign_is_printed_and_the_text_lists_all_channels(mismatch_tables):
     assert mismatch_text(mismatch_tables).row_count >= len(mismatch_tables.names)
 
 
-def test_the_page_answers_first_and_needs_nothing_but_itself(tmp_path):
-    walks = [
-        DrivenWalker("A", seed=1, spring_per_s2=k).walked(25.0, name) for k, name in ((250.0, "exo"), (0.0, "free"))
-    ]
-    found = compare_walks(*walk_pair(*walks), ("ankle_angle_r", "knee_angle_r"))
-    page = write_mismatch_report(found, tmp_path)
+def test_the_page_answers_first_and_needs_nothing_but_itself(mismatch, tmp_path):
+    page = write_mismatch_report(mismatch, tmp_path)
     text = page.read_text(encoding="utf-8")
     HTMLParser().feed(text)
     assert text.index("In A free the right") < text.index("<figure>") < text.index("How the numbers were made")
@@ -95,7 +91,7 @@ def test_the_page_answers_first_and_needs_nothing_but_itself(tmp_path):
     assert (tmp_path / "channels" / "ankle_angle_r.csv").read_text().startswith("percent,first,second,")
     assert {file.name for file in (tmp_path / "tables").iterdir()} >= {"regions.csv", "channels.csv", "findings.csv"}
     first = page.read_bytes()
-    assert write_mismatch_report(found, tmp_path).read_bytes() == first
+    assert write_mismatch_report(mismatch, tmp_path).read_bytes() == first
 
 
 NAMES = ("hip_flexion_r", "ankle_angle_r", "pelvis_tilt")

@@ -76,7 +76,7 @@ def _written(folder, number, breaks, here):
         os._exit(1)
 
 
-@pytest.mark.parametrize("breaks", [True, False])
+@pytest.mark.parametrize("breaks", [False, True])  # the first in the processes of the test above
 def test_what_other_processes_wrote_may_be_written_again(monkeypatch, tmp_path, breaks):
     monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
     each = [(tmp_path, number, breaks, os.getpid()) for number in range(8)]

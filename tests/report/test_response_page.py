@@ -111,7 +111,7 @@ def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
 @pytest.mark.usefixtures("unpainted")
 def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path, monkeypatch):
     monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
-    text = write_report(run_maker(3, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
+    text = write_report(run_maker(3, outputs=("hip_flexion_r",), seconds=20.0), tmp_path).read_text(encoding="utf-8")
     assert text.count("<summary>Tables and figures of P0") == 3
     assert "3 participants were analysed" in text
     assert all(f"In P0{i}, the Nominal model" in text for i in (1, 2, 3))
@@ -175,6 +175,7 @@ def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_pa
         assert path.read_bytes() == (tmp_path / "all" / "figures" / path.name).read_bytes()
 
 
+@pytest.mark.slow  # tests/report/test_page.py breaks a process that draws no page
 @pytest.mark.usefixtures("unpainted")
 def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker, tmp_path, monkeypatch):
     run = run_maker(3, outputs=("hip_flexion_r",))

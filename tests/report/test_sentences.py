@@ -217,7 +217,7 @@ def named(run, name):
 
 @pytest.fixture(scope="module")
 def plain(run_maker):
-    return run_maker(outputs=("hip_flexion_r",))
+    return run_maker(outputs=("hip_flexion_r",), seconds=20.0)
 
 
 @pytest.fixture(scope="module")

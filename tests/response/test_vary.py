@@ -65,9 +65,10 @@ def test_a_family_that_would_leave_nothing_is_none():
 
 
 @pytest.fixture(scope="module")
-def found(nominal, linear_exo, settings):
+def found(nominal, linear_exo, settings, briefly):
     told = []
-    table = fit_without(nominal, linear_exo, settings, told.append)
+    with briefly():
+        table = fit_without(nominal, linear_exo, settings, told.append)
     assert told == sorted(told)
     assert told[-1] == pytest.approx(1.0)
     return table.pivot_table(index=["variant", "kind", "model"], columns="variable", values="r2")["ankle_angle_r"]
@@ -155,8 +156,10 @@ def quantity(nominal, exo, settings):
 
 
 @pytest.fixture(scope="module")
-def ten(nominal, exo, settings):
-    return fit_data_quantity(nominal, exo, settings, (10.0,))
+def ten(nominal, exo, settings, briefly):
+    """Return what 10 s give where networks hardly learn."""
+    with briefly():
+        return fit_data_quantity(nominal, exo, settings, (10.0,))
 
 
 def r2_at(quantity, length_s, model, kind="network"):
@@ -186,6 +189,7 @@ def test_a_length_that_the_trial_does_not_have_is_told(quantity):
     assert quantity.left_away[500.0].startswith("the training part is")
 
 
+@pytest.mark.usefixtures("trained_briefly")
 def test_the_last_seconds_are_other_seconds(ten, nominal, exo, settings):
     last = fit_data_quantity(nominal, exo, settings, (10.0,), part="last")
     assert r2_at(last, 10.0, "exo", "ridge") != r2_at(ten, 10.0, "exo", "ridge")
@@ -193,6 +197,7 @@ def test_the_last_seconds_are_other_seconds(ten, nominal, exo, settings):
         fit_data_quantity(nominal, exo, settings, part="middle")
 
 
+@pytest.mark.usefixtures("trained_briefly")
 def test_held_out_seconds_are_never_seen(ten, nominal, exo, settings):
     spoiled = np.array(exo.xddot)
     spoiled[-200:] += 1e4

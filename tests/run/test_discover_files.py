@@ -115,9 +115,9 @@ def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
 def test_milliseconds_whose_slopes_overflow_are_refused_in_words(tmp_path):
     """A pendulum that swings three times in a sample of 10 s: numpy said "SVD did not converge"."""
     write_simulation(system({"x": "v", "v": "-k*sin(x)"}, parameters={"k": 9.8}), tmp_path / "pendulum.toml")
-    t, rng = np.arange(0, 20, 0.01), np.random.default_rng(0)
+    t, rng = np.arange(0, 8, 0.01), np.random.default_rng(0)
     x = 0.5 * np.sin(3 * t) * np.exp(-0.05 * t) + 1e-3 * rng.normal(size=len(t))
-    table = pd.DataFrame({"trial": (t >= 10).astype(int), "time": 1000 * t, "x": x, "v": np.gradient(x, t)})
+    table = pd.DataFrame({"trial": (t >= 4).astype(int), "time": 1000 * t, "x": x, "v": np.gradient(x, t)})
     table.to_csv(tmp_path / "walk.csv", index=False)
     with pytest.raises(SamplingError, match=r"10 s.*times in seconds, not"):
         discover_files(tmp_path / "pendulum.toml", tmp_path / "walk.csv")

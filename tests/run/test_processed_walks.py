@@ -131,22 +131,14 @@ def test_the_body_s_mass_and_the_bytes_of_a_laboratory_s_marker_set_are_in_the_k
     assert len(keys) == 4
 
 
-def test_a_trial_that_fails_costs_nobody_else(overground, tmp_path):
+def test_a_trial_that_fails_costs_nobody_else_no_name_of_a_file_is_kept_and_the_cycles_come_back(overground, tmp_path):
     run = run_study(overground, tmp_path)
     assert run.reported == ("P01", "P02") and run.exo == ""
     (refusal,) = run.refusals
     assert (refusal.participant, refusal.condition) == ("P01", "walk 4")
     assert [one.trials for one in run.cycles] == [3, 3]
-
-
-def test_no_name_of_a_file_reaches_the_run(overground, tmp_path):
-    run_study(overground, tmp_path)
     texts = [path.read_text() for path in tmp_path.rglob("*") if path.suffix in (".json", ".csv")]
     assert len(texts) >= 5 and not any("Erika" in text or "Otto" in text for text in texts)
-
-
-def test_a_run_of_cycles_comes_back(overground, tmp_path):
-    run = run_study(overground, tmp_path)
     loaded = load_run(tmp_path)
     assert [one.name for one in loaded.cycles] == [one.name for one in run.cycles] == ["P01 walk", "P02 walk"]
     assert loaded.reported == run.reported and loaded.refusals == run.refusals

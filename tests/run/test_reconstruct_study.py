@@ -121,12 +121,13 @@ def test_no_search_for_what_is_not_a_present_state(study, settings, found):
         search_study(study, 2, settings)
 
 
-@pytest.fixture
-def model(study, tmp_path):
+@pytest.fixture(scope="module")
+def model(study, tmp_path_factory):
     settings = ReconstructionSettings(kinds=("delay ridge",), condition="nominal")
     _, people = reconstruct_study(study, ("knee_angle_r", "hip_flexion_r"), settings)
-    save_model(people[0].fitted[0], tmp_path / "model")
-    return tmp_path / "model"
+    folder = tmp_path_factory.mktemp("models") / "model"
+    save_model(people[0].fitted[0], folder)
+    return folder
 
 
 def test_states_of_another_walk_are_reconstructed_written_and_compared(model, recordings, tmp_path):

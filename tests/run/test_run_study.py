@@ -24,8 +24,15 @@ def finished(tmp_path_factory):
 
 
 @pytest.fixture
-def run(study, finished):
+def run(study, finished, trained_briefly):
+    """Return the run that most tests load, in which networks hardly learn."""
     return run_study(study, finished)
+
+
+@pytest.fixture(scope="module")
+def whole(study, tmp_path_factory):
+    """Return the run as other processes compute it."""
+    return run_study(study, tmp_path_factory.mktemp("whole"))
 
 
 def files_of(folder):
@@ -112,13 +119,13 @@ def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
 
 
 @pytest.mark.slow
-def test_side_by_side_gives_the_same_tables(run, study, tmp_path):
+def test_side_by_side_gives_the_same_tables(whole, study, tmp_path):
     parallel = run_study(study, tmp_path / "parallel", Workers(jobs=2))
-    pd.testing.assert_frame_equal(parallel.r2_table(), run.r2_table(), check_dtype=False)
+    pd.testing.assert_frame_equal(parallel.r2_table(), whole.r2_table(), check_dtype=False)
 
 
 @pytest.mark.slow  # that what stands is kept and the rest computed, the damaged unit above shows without a process
-def test_a_run_that_was_killed_goes_on(run, study, finished, tmp_path):
+def test_a_run_that_was_killed_goes_on(whole, study, tmp_path):
     write_study(study, tmp_path / "study.toml")
     command = [sys.executable, "-m", "gaitdisc", "run", str(tmp_path), "--quiet"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -130,7 +137,7 @@ def test_a_run_that_was_killed_goes_on(run, study, finished, tmp_path):
     kept = first.stat().st_mtime_ns
     resumed = run_study(study, tmp_path / "run")
     assert first.stat().st_mtime_ns == kept
-    pd.testing.assert_frame_equal(resumed.r2_table(), run.r2_table(), check_dtype=False)
+    pd.testing.assert_frame_equal(resumed.r2_table(), whole.r2_table(), check_dtype=False)
 
 
 def alone(study, **changes):

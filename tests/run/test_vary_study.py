@@ -27,14 +27,6 @@ def test_every_participant_of_the_run_is_varied(small, tmp_path):
     assert beside.r2_table().equals(vary_study(small, tmp_path, "modalities").r2_table())
 
 
-def test_who_is_left_out_of_the_run_is_left_out_here_too(small, tmp_path):
-    excluded = small.participants[1].model_copy(update={"excluded": "ill"})
-    some = small.model_copy(update={"participants": (small.participants[0], excluded)})
-    run = vary_study(some, tmp_path, "sensitivity")
-    assert [each.participant for each in run.people] == ["P01"]
-    assert [refusal.participant for refusal in run.refusals] == ["P02"]
-
-
 def test_a_question_that_is_none(study, tmp_path):
     with pytest.raises(SchemaError, match="modalities, sensitivity; found 'why'"):
         vary_study(study, tmp_path, "why")
@@ -47,13 +39,11 @@ def computed(study, folder, question):
 
 
 @pytest.fixture(scope="module")
-def first_time(small, tmp_path_factory):
-    """Folder, variants and shares said, by question: computed once for all tests; what is learnt counts in one."""
+def first_time(small, tmp_path_factory, briefly):
+    """Folder, variants and shares said, by question: computed once for all tests."""
     folder = tmp_path_factory.mktemp("variants")
-    with pytest.MonkeyPatch.context() as brief:
-        brief.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
-        modalities = computed(small, folder, "modalities")
-    return {"modalities": (folder, *modalities), "sensitivity": (folder, *computed(small, folder, "sensitivity"))}
+    with briefly():
+        return {each: (folder, *computed(small, folder, each)) for each in ("modalities", "sensitivity")}
 
 
 @pytest.mark.parametrize(("question", "first"), [("modalities", ALL), ("sensitivity", AS_STUDIED)])
@@ -75,6 +65,14 @@ def test_a_cut_off_changes_what_is_tested(first_time):
     assert middle["angles 12 Hz", "exo"] < middle["angles 4 Hz", "exo"]  # faster noise is less predictable
     assert {"25% of the training part", "50% of the training part"} <= set(found.table["variant"])
     assert "null" in set(found.table["kind"])
+
+
+def test_who_is_left_out_of_the_run_is_left_out_here_too(small, first_time):
+    excluded = small.participants[1].model_copy(update={"excluded": "ill"})
+    some = small.model_copy(update={"participants": (small.participants[0], excluded)})
+    run = vary_study(some, first_time["sensitivity"][0], "sensitivity")
+    assert [each.participant for each in run.people] == ["P01"]
+    assert [refusal.participant for refusal in run.refusals] == ["P02"]
 
 
 def test_a_file_that_cannot_be_read_refuses_this_participant(study, tmp_path):

@@ -83,6 +83,14 @@ def test_a_participant_whose_process_is_killed_is_refused(study):
     assert says(second.reason, "(SIGKILL)", "2 times")
 
 
+def test_a_cluster_computes_every_unit():
+    distributed = pytest.importorskip("distributed", reason=WITHOUT_CLUSTER)
+    with distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None) as here:
+        found = list(computed_side_by_side(Workers(cluster=here.scheduler_address), squared, [3, 1, 2]))
+    assert found == [(3, 9), (1, 1), (2, 4)]
+
+
+@pytest.mark.slow
 def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):
     from functools import partial
 

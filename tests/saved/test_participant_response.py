@@ -57,17 +57,6 @@ def test_it_comes_back_as_it_was(quantity, tmp_path):
     pd.testing.assert_frame_equal(loaded.table, quantity.table, check_dtype=False)
 
 
-def test_a_table_without_its_columns(quantity):
-    with pytest.raises(SchemaError, match="of P01 lacks n_training"):
-        DataQuantity("P01", "first", quantity.table.drop(columns="n_training"), {})
-
-
-def test_a_table_without_a_column_is_refused():
-    whole = pd.DataFrame(columns=list(FAMILY_COLUMNS))
-    with pytest.raises(SchemaError, match=r"p_adjusted\. Compare the models"):
-        PairTests(8, 0.05, 0.95, "", pd.DataFrame(columns=[c for c in TEST_COLUMNS if c != "p_adjusted"]), whole)
-
-
 def test_one_pair_of_models(pair_tests):
     assert pair_tests.of_pair("augmented", "exo")["variable"].tolist() == ["hip_flexion_r"]
     assert not len(pair_tests.of_pair("exo", "perfect"))
@@ -98,15 +87,17 @@ def test_each_comparison_has_its_own_length():
     assert (over(both).enough_length(), over(both).enough_length("exo")) == (30.0, 1.0)
 
 
-def test_a_missing_column_is_named():
-    with pytest.raises(SchemaError, match="baselines lacks rank_biserial"):
-        over(baselines=no_rows("baselines").drop(columns="rank_biserial"))
-
-
 TABLE = pd.DataFrame([("EMG", "knee_angle_r", "exo", "network", 0.9, 99)], columns=pd.Index(VARIANT_COLUMNS))
 
 
-def test_a_table_of_variants_without_a_column_is_refused():
+def test_a_table_without_one_of_its_columns_is_refused_by_its_name(quantity):
+    with pytest.raises(SchemaError, match="of P01 lacks n_training"):
+        DataQuantity("P01", "first", quantity.table.drop(columns="n_training"), {})
+    whole = pd.DataFrame(columns=list(FAMILY_COLUMNS))
+    with pytest.raises(SchemaError, match=r"p_adjusted\. Compare the models"):
+        PairTests(8, 0.05, 0.95, "", pd.DataFrame(columns=[c for c in TEST_COLUMNS if c != "p_adjusted"]), whole)
+    with pytest.raises(SchemaError, match="baselines lacks rank_biserial"):
+        over(baselines=no_rows("baselines").drop(columns="rank_biserial"))
     with pytest.raises(SchemaError, match=r"P01.*variant"):
         Variants("P01", "modalities", TABLE.drop(columns="variant"), {})
 

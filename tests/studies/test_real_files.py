@@ -28,17 +28,8 @@ def test_dead_emg_is_named_exactly_as_the_manifest_has_it(rows):
     )  # HC033A22
 
 
-def test_every_dialect_is_read(rows):
+def test_every_dialect_is_read_encodings_are_one_trial_and_what_cannot_be_read_is_refused(rows):
     assert rows["every dialect read"] == ("opensim_walks, 12 files", "12 read")
-
-
-def test_streams_come_to_one_time_base(rows):
     assert says(rows["one time base"][1], "100 Hz", "0.01 to 4.61 s")
-
-
-def test_the_encodings_are_one_trial(rows):
     assert says(rows["encodings equal"][1], "6 encodings", "0.00 mm")
-
-
-def test_what_cannot_be_read_is_refused(rows):
     assert says(rows["read, or refused in words"][1], "25 read", "sgi_int.c3d, sgi_real.c3d")
