@@ -112,7 +112,11 @@ def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, SIMULATION)
-    public = PublicWords(_own_words(model), {path.name: called for path, called in files.items()})
+    # words of the simulation file, which is the user's model and names no person; and of the catalogue's effects
+    own = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
+    public = PublicWords(
+        frozenset(re.findall(r"\w+", simulation_text(own))), {path.name: called for path, called in files.items()}
+    )
     numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
     trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
     seen = {one: public.finding(replace(one, what=_without(one.what, trials))) for one in found.findings}
@@ -145,9 +149,3 @@ def _without(text: str, trials: Mapping[str, str]) -> str:
     for name, called in trials.items():
         text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", called, text)
     return text
-
-
-def _own_words(model: Simulation) -> frozenset[str]:
-    """Words of the simulation file, which is the user's model and names no person; and of the catalogue's effects."""
-    written = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
-    return frozenset(re.findall(r"\w+", simulation_text(written)))

@@ -152,7 +152,12 @@ def followed(shooting: Shooting, simulation: Simulation, values: Values) -> Valu
     """
     assert shooting.past is not None
     drive = shooting.measured.drive
-    inputs = np.concatenate([_bridged_trials(shooting.past, drive.samples), drive.inputs], axis=2)
+    bridged = np.zeros(shooting.past.shape)  # unknown samples by straight lines, zero beyond the end
+    for trial, samples in enumerate(drive.samples):
+        for state, along in enumerate(shooting.past[trial, :samples].T):
+            if np.isfinite(along).any():
+                bridged[trial, :samples, state] = _bridged(along, np.isfinite(along))
+    inputs = np.concatenate([bridged, drive.inputs], axis=2)
     along = Drive(drive.rate, drive.time0, inputs, drive.samples)
     machine = compile_simulation(
         driven_by_others(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
@@ -193,17 +198,6 @@ def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation
         sensors=(),
         effects=(),
     )
-
-
-def _bridged_trials(states: Values, samples: NDArray[np.int64]) -> Values:
-    """States of every trial, unknown samples bridged by straight lines, zero beyond the end (trial, sample, state)."""
-    out = np.zeros(states.shape)
-    for trial, length in enumerate(samples):
-        for state, values in enumerate(states[trial, :length].T):
-            known = np.isfinite(values)
-            if known.any():
-                out[trial, :length, state] = _bridged(values, known)
-    return out
 
 
 @dataclass(frozen=True)

@@ -125,10 +125,14 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Valu
 
     change (segment, sample, state, candidate): to first order
     """
-    if machine.observation.delays:
-        return _seen_late(shooting, machine, fit, change)
-    n = fit.starts.shape[1]
-    spans = NUDGE * np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
+    n, spans = fit.starts.shape[1], np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
+    if machine.observation.delays:  # what depends on states some time ago is observed for each candidate by itself
+        size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)
+        nudge = NUDGE / np.maximum(size, 1e-300)
+        versions = np.concatenate([fit.states[None], np.moveaxis(change * nudge, -1, 0) + fit.states])
+        seen = shooting.observed(machine, versions, np.repeat(fit.values[None], len(versions), axis=0))
+        return np.moveaxis(seen[1:] - seen[0], 0, -1) / nudge
+    spans = NUDGE * spans
     versions = np.repeat(fit.states[None], n + 1, axis=0)
     for state in range(n):
         versions[1 + state, ..., state] += spans[state]
@@ -146,13 +150,3 @@ def seen_push(shooting: Shooting, simulation: Simulation, places: tuple[Place, .
     many = np.concatenate([np.repeat(fit.values[None], len(pushed), axis=0), pushed], axis=1)
     seen = shooting.unfiltered(pushable(simulation, places), np.repeat(fit.states[None], len(pushed), axis=0), many)
     return np.moveaxis(seen[1:] - seen[0], 0, -1) / PUSH
-
-
-def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: Values) -> Values:
-    """As `seen_change`, where what is measured depends on states some time ago: each candidate observed by itself."""
-    spans = np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
-    size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)
-    nudge = NUDGE / np.maximum(size, 1e-300)
-    versions = np.concatenate([fit.states[None], np.moveaxis(change * nudge, -1, 0) + fit.states])
-    seen = shooting.observed(machine, versions, np.repeat(fit.values[None], len(versions), axis=0))
-    return np.moveaxis(seen[1:] - seen[0], 0, -1) / nudge

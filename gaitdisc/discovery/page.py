@@ -46,7 +46,8 @@ def estimates_table(discovery: Discovery) -> Table:
     for effect in discovery.effects:
         for name, one in effect.estimates.items():
             number = name.replace("_", " ")
-            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), _degrees(one)))
+            degrees = estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
             records.append(
                 (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
             )
@@ -76,8 +77,11 @@ def gap_table(discovery: Discovery) -> Table:
         "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
         "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
         f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
-        f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate.{_unproven(discovery)}"
+        f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate."
     )
+    if discovery.rivals and discovery.held_out.pieces and not discovery.effects:
+        first = discovery.rivals[0]
+        caption += f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
@@ -118,14 +122,6 @@ def trials_table(discovery: Discovery) -> Table:
 
 def _before(discovery: Discovery) -> str:
     return " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
-
-
-def _unproven(discovery: Discovery) -> str:
-    """Say whose p stands there, where nothing is named."""
-    if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
-        return ""
-    first = discovery.rivals[0]
-    return f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
 
 
 def where_table(discovery: Discovery) -> Table:
@@ -173,7 +169,8 @@ def explanations_table(discovery: Discovery) -> Table:
         closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
         numbers = "; ".join(_numbers(each) for each in one.effects)
-        rows.append((str(number), one.as_given, numbers, _percent(closed), _bic(first.bic), tied, apart))
+        evidence = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
+        rows.append((str(number), one.as_given, numbers, _percent(closed), evidence, tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
         f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
@@ -208,18 +205,10 @@ def _amounts(one: Estimate) -> list[str]:
     return [with_unit(amount(each, (one.high - one.low) / 2), unit) for each in (one.value, one.low, one.high)]
 
 
-def _degrees(one: Estimate) -> str:
-    return estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
-
-
 def _numbers(one: FoundEffect) -> str:
     numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
     outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
     return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
-
-
-def _bic(value: float) -> str:
-    return f"{value:.0f}".replace("-", "−") if math.isfinite(value) else NONE
 
 
 def _percent(share: float) -> str:

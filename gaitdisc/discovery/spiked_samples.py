@@ -69,7 +69,8 @@ def spiked(record: Values) -> NDArray[np.bool_]:
     known = np.flatnonzero(np.isfinite(record))
     if len(known) < FEWEST:
         return marks
-    x = _continued(record[known])
+    x = record[known]  # continued along the median line of its samples at either end, which no spike of theirs moves
+    x = np.concatenate([_line(x[:ENDS][::-1])[::-1], x, _line(x[-ENDS:])])
     at = np.concatenate([known[0] - np.arange(LONGEST, 0, -1), known, known[-1] + 1 + np.arange(LONGEST)])
     middle = MAD_OF_NORMAL * float(np.median(np.abs(x[1:-1] - (x[:-2] + x[2:]) / 2)))
     least = max(SIGMAS * middle, OF_RANGE * float(np.subtract(*np.percentile(record[known], [99, 1]))))
@@ -97,11 +98,6 @@ def _has_shoulder(x: Values, begin: int, end: int, least: float) -> bool:
     up = np.sign(x[begin] - x[begin - 1])
     turns = [np.diff(x[side], 2) for side in (slice(max(begin - 3, 0), begin), slice(end, end + 3))]
     return any(bool((up * turn > least).any()) for turn in turns)
-
-
-def _continued(x: Values) -> Values:
-    """A record continued at either end along the median line of its samples there, which no spike of theirs moves."""
-    return np.concatenate([_line(x[:ENDS][::-1])[::-1], x, _line(x[-ENDS:])])
 
 
 def _line(x: Values) -> Values:

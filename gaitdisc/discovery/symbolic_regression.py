@@ -152,7 +152,11 @@ class _Curve:
         unit = columns / size
         gram, match = unit.T @ unit, unit.T @ curve
         singles = [(i,) for i in np.argsort(-(match**2)).tolist()]
-        pairs = _best_pairs(gram, match)
+        apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
+        explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
+        first, second = np.triu_indices(len(match), 1)
+        order = np.argsort(-explained[first, second])
+        pairs: list[tuple[int, ...]] = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
         triples = _best_triples(gram, match, pairs[:PAIRS_BEYOND])
         for ranked, most in zip((singles, pairs, triples), TRIED, strict=True):
             seen: set[tuple[str, ...]] = set()
@@ -214,15 +218,6 @@ class _Curve:
         (text,) = shape.written(names)
         for values in cells(dict(shape.constants), along, self.search.rhythm):
             yield Piece(text, dict(shape.constants), values)
-
-
-def _best_pairs(gram: Values, match: Values) -> list[tuple[int, ...]]:
-    """Pairs of unit columns, what they explain together the most first."""
-    apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
-    explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
-    first, second = np.triu_indices(len(match), 1)
-    order = np.argsort(-explained[first, second])
-    return list(zip(first[order].tolist(), second[order].tolist(), strict=True))
 
 
 def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:

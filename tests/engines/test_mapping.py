@@ -16,7 +16,6 @@ from gaitdisc.engines.mapping import (
     names_engine,
     other_values,
     read_mapping,
-    with_input_changed,
     write_mapping,
 )
 from gaitdisc.engines.motion import Coordinate, Motion
@@ -96,11 +95,6 @@ def test_equations_beside_a_model_are_refused(pendulum):
     file.write_text(file.read_text() + '\n[equations]\npivot = "pivot_speed"\n')
     with pytest.raises(GaitdiscError, match="the equations must be in the file"):
         read_simulation(file)
-
-
-def test_a_changed_control_is_written_as_a_definition(pendulum):
-    changed = with_input_changed(drafted(read_model(pendulum)), "drive", "delay(drive, 0.04)")
-    assert changed.definitions == (("replaced_drive", "delay(drive, 0.04)"),)
 
 
 DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
