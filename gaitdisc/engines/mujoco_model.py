@@ -69,7 +69,7 @@ class MujocoModel:
         self._model: Any = self._read()
         # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened; and
         # controls are clipped where they come in, so that what each does is known at its limit too
-        bit = mujoco.mjtDisableBit
+        bit = self._mujoco.mjtDisableBit
         self._model.opt.disableflags |= int(bit.mjDSBL_AUTORESET) | int(bit.mjDSBL_CLAMPCTRL)
         self._data: Any = self._mujoco.MjData(self._model)
         model, joint = self._model, self._mujoco.mjtJoint
