@@ -58,6 +58,7 @@ HIDDEN = {
     "gravity": Hidden("wrong_parameter", "gravity", "value", 0.85, 0.92),
     "offset": Hidden("sensor_offset", "{joint}", "offset", 2.0, 4.0),
     "none": Hidden("", "", "", 0.0, 0.0),
+    "saturated": Hidden("input_saturation", "{joint}_motor", "limit", 0.1, 0.2),  # only when it is named
 }
 
 
@@ -66,7 +67,9 @@ def hidden_in(model: Model, kind: str, rng: np.random.Generator) -> Case:
     text, one = (SYSTEMS / model.file).read_text(encoding="utf-8"), HIDDEN[kind]
     drawn = float(rng.uniform(one.low, one.high))
     named = (one.name, one.place.format(joint=model.joint, body=model.body), one.estimate)
-    if kind in ("none", "offset"):
+    if kind == "saturated":  # of leg and arm, which have such a motor
+        text = text.replace(f'"{named[1]}"', f'"{named[1]}" ctrlrange="-{drawn!r} {drawn!r}"')
+    if kind in ("none", "offset", "saturated"):
         return Case(model, kind, text, drawn, named)
     if kind in ("mass", "gravity"):
         return with_share(model, kind, text, drawn, named[1])
@@ -105,13 +108,8 @@ def _in_mujoco(model: Model, kind: str, text: str, number: float) -> tuple[str, 
 
 def _in_opensim(model: Model, kind: str, text: str, number: float) -> str:
     """A force of an expression, put in by hand."""
-    expression = {
-        "spring": f"-{number!r}*q",
-        "one-sided": f"-{number!r}*max(0,q-0.1)",
-        "viscous": f"-{number!r}*qdot",
-        "Coulomb": f"-{number!r}*tanh(qdot/0.02)",
-    }[kind]
-    force = f"<coordinate>{model.joint}</coordinate><expression>{expression}</expression>"
+    shape = {"spring": "q", "one-sided": "max(0,q-0.1)", "viscous": "qdot", "Coulomb": "tanh(qdot/0.02)"}[kind]
+    force = f"<coordinate>{model.joint}</coordinate><expression>-{number!r}*{shape}</expression>"
     force = f'<ExpressionBasedCoordinateForce name="hidden">{force}</ExpressionBasedCoordinateForce>'
     at = text.rindex("</objects>", 0, text.index("</ForceSet>"))
     return text[:at] + force + text[at:]
@@ -145,5 +143,5 @@ def study(models: list[str], kinds: list[str], seed: int, noise_deg: float) -> p
 
 
 if __name__ == "__main__":
-    chosen = (GIVEN.models, list(HIDDEN) if GIVEN.hidden == ["all"] else GIVEN.hidden)
+    chosen = (GIVEN.models, [*HIDDEN][:-1] if GIVEN.hidden == ["all"] else GIVEN.hidden)
     cases.print_sums(study(*((["leg"], ["viscous"]) if GIVEN.quick else chosen), GIVEN.seed, GIVEN.noise))

@@ -103,21 +103,31 @@ def write_device() -> None:
     call("discover", "small/study.toml", "--participant", "W01", "--out", "found", "-q")
 
 
-def write_engine() -> None:
-    """A model of MuJoCo held against a table."""
+def pendulum_trials(
+    truth: Path, seed: int, drive: Callable, rate: float = 100.0, start: float = 0.2, noise_deg: float = 0.2
+) -> pd.DataFrame:
+    """Four trials of a pendulum in degrees; drive takes a generator of random numbers and the times."""
     from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.motion import Motion
 
-    Path("pendulum.xml").write_text(PENDULUM)
-    Path("truth.xml").write_text(PENDULUM.replace("</mujoco>", f"{SPRING}</mujoco>"))
-    truth, rng, t = read_model(Path("truth.xml")), np.random.default_rng(3), np.arange(300) / 100
+    model, rng, t, rest = read_model(truth), np.random.default_rng(seed), np.arange(300) / rate, np.zeros((1, 1))
     tables = []
     for trial in range(1, 5):
-        drive = 0.35 * np.sin(2 * np.pi * rng.uniform(0.5, 1.2) * t + rng.uniform(0, 6))
-        start = Motion(rng.uniform(-0.2, 0.2, (1, 1)), np.zeros((1, 1)), np.zeros((1, 1)))
-        pivot = np.rad2deg(truth.run(start, drive[None, :, None], 100.0)[0, :, 0]) + 0.2 * rng.normal(size=len(t))
-        tables.append(pd.DataFrame({"trial": trial, "time": t, "drive": drive, "pivot": pivot}))
-    pd.concat(tables).to_csv("trials.csv", index=False)
+        driven = drive(rng, t)
+        run = model.run(Motion(rng.uniform(-start, start, (1, 1)), rest, rest), driven[None, :, None], rate)
+        pivot = np.rad2deg(run[0, :, 0]) + noise_deg * rng.normal(size=len(t))
+        tables.append(pd.DataFrame({"trial": trial, "time": t, "drive": driven, "pivot": pivot}))
+    return pd.concat(tables)
+
+
+def write_engine() -> None:
+    """A model of MuJoCo held against a table."""
+    Path("pendulum.xml").write_text(PENDULUM)
+    Path("truth.xml").write_text(PENDULUM.replace("</mujoco>", f"{SPRING}</mujoco>"))
+    trials = pendulum_trials(
+        Path("truth.xml"), 3, lambda rng, t: 0.35 * np.sin(2 * np.pi * rng.uniform(0.5, 1.2) * t + rng.uniform(0, 6))
+    )
+    trials.to_csv("trials.csv", index=False)
     call("new", "pendulum.toml", "--from", "pendulum.xml", "--degrees")
     call("discover", "pendulum.xml", "trials.csv", "--out", "found", "-q")
 

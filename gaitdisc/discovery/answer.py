@@ -181,14 +181,17 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
         return tuple(Rival(one, one.gained, False) for one in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
-        part, parts, sets = one.model.parts[-1], now.model.parts, [one.model.parts]
+        parts, sets = now.model.parts, [one.model.parts]
         if one.labels[-1] not in own:  # its last explanation alone, as it was, or beside the answer's but one
-            sets = [(part,), *(sets if len(one.model.parts) > 1 else [])]
-            if len(parts) > 1:
-                sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
-        best = min((search.with_others(now, some) for some in sets), key=lambda tried: tried.bic)
+            last = one.model.parts[-1]
+            beside = [(*parts[:k], *parts[k + 1 :], last) for k in range(len(parts))] if len(parts) > 1 else []
+            sets = [(last,), *(sets if len(sets[0]) > 1 else []), *beside]
+        best = min((search.with_others(now, each) for each in sets), key=lambda each: each.bic)
         fitted.setdefault(tuple(sorted(best.labels)), best)
-    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie) for one in fitted.values()]
+    rivals = [
+        Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie and not set(own) < set(one.labels))
+        for one in fitted.values()  # what only adds to the answer is no other answer
+    ]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 

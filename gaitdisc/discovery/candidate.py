@@ -86,7 +86,7 @@ class Candidate:
             return (*factors, *(self.constants or {}))
         if self.verdict == "wrong_parameter":
             return ("value",)
-        return (SIGNAL_ERRORS[self.name][0],)
+        return tuple(self.constants) if self.constants else (SIGNAL_ERRORS[self.name][0],)
 
     @property
     def idle(self) -> dict[str, float]:
@@ -95,6 +95,8 @@ class Candidate:
             return {slot: 0.0 for slot in self.slots if slot.startswith("factor")}
         if self.verdict == "wrong_parameter":
             return {"value": self.value}
+        if self.constants:
+            return dict.fromkeys(self.constants, math.inf)
         slot, none, _ = SIGNAL_ERRORS[self.name]
         return {slot: none}
 
@@ -119,7 +121,7 @@ class Candidate:
             return simulation.with_effect(Term(self.place, self.kind, self.name, self.term(numbers)))
         if self.verdict == "wrong_parameter":
             return simulation.with_values({self.place: float(numbers["value"])})
-        form = SIGNAL_ERRORS[self.name][2]
+        form = self.form
         for name, rate in self.states_at(numbers).items():
             unit = next(each.unit for each in simulation.inputs if each.name == self.place)
             late = simulation.with_state(State(name, unit, initial=0.0), "0").with_input(self.place, name)
@@ -129,8 +131,14 @@ class Candidate:
         seen = dict(simulation.observations)[self.place]
         if self.name == "sensor_lag":
             whole = {"seen": _written_out(simulation, seen, {})}
-            seen = written(substituted(parsed(f"delay(seen, {numbers['seconds']})"), whole, simulation.signals))
+            late = parsed(f"delay(seen, {numbers['seconds']})")
+            seen = written(substituted(late, whole, simulation.signals))
         return simulation.with_observation(self.place, form.format(s=seen, **numbers))
+
+    @property
+    def form(self) -> str:
+        """How an error of a signal reads, {s} being the signal."""
+        return self.pieces[0] if self.pieces else SIGNAL_ERRORS[self.name][2]
 
     @property
     def is_late(self) -> bool:
@@ -266,6 +274,19 @@ def _lagged(simulation: Simulation, name: str) -> Candidate:
     own = free_name(f"{name}_lagged", {*simulation.signals})
     states, names = {own: f"({name} - {own})/_seconds"}, {"seconds": "time_constant"}
     return Candidate("input_error", "input", name, "input_lag", names=names, states=states)
+
+
+def saturations(simulation: Simulation) -> tuple[Candidate, ...]:
+    """List inputs that act up to a limit alone: one above, one below, one of a size to either side, or two."""
+    grids = {"limit": "half widths of x", "lower_limit": "quantiles of x", "upper_limit": "quantiles of x"}
+    above, below = "min({s}, {upper_limit})", "max({s}, {lower_limit})"
+    forms = (above, below, "min(max({s}, -{limit}), {limit})", f"min({below}, {{upper_limit}})")
+    return tuple(
+        Candidate("input_error", "input", one.name, "input_saturation", (form,), limits, one.name)
+        for one in simulation.inputs
+        for form in forms
+        for limits in ({slot: grid for slot, grid in grids.items() if f"{{{slot}}}" in form},)
+    )
 
 
 def free_name(name: str, taken: Collection[str]) -> str:

@@ -87,6 +87,7 @@ class Request:
     catalogue: Path | None = None  # the file of the shapes
     alpha: float = ALPHA  # the greatest rate of false finds
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
+    added: tuple[Candidate, ...] = ()  # explanations beside those of places, numbers and signals
     possible: Callable[[Candidate], bool] = field(default_factory=lambda: lambda _: True, compare=False)
     refitted: Callable[[ScoredModel], CandidateModel] = field(
         default_factory=lambda: lambda found: found.model, compare=False

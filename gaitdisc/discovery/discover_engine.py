@@ -9,13 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
+from gaitdisc.discovery.candidate import saturations
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover_files import discovered, sealed
 from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
 from gaitdisc.discovery.grids import rhythm_of
-from gaitdisc.discovery.result import ENGINE, Discovery
+from gaitdisc.discovery.result import ENGINE, Discovery, FoundEffect
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
@@ -66,8 +67,8 @@ def discover_engine(
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
     clean, rate_of = without_spikes(data), {one.name: one.speed for one in engine.coordinates}
-    span = (SMOOTH if engine.fibres else NARROW) * rhythm_of(clean.observed, clean.rate).period
-    states = guess_states(replace(mapping, model=""), clean, span, rate_of).states  # coordinates and speeds
+    window = (SMOOTH if engine.fibres else NARROW) * rhythm_of(clean.observed, clean.rate).period
+    states = guess_states(replace(mapping, model=""), clean, window, rate_of).states  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
@@ -86,7 +87,8 @@ def discover_engine(
     findings = (
         *found.findings,
         *other_values(mapping, engine),
-        *met,
+        *(one for one in met if one.kind != "saturated"),
+        *(one for one in _known(answer.written.engine, states, data) if one.kind == "saturated"),
         *_warned(engine, answer.written.engine),
         *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
         Finding("note", "own runs", "model", answer.runs.said, ""),
@@ -100,6 +102,9 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
     request.progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expanded(mapping, engine, data, states)
+    request = replace(request, added=saturations(mapping))
+    if not request.effects:  # a limit is the input's own, and of no force
+        request = replace(request, possible=lambda one: (one.kind, one.name) != ("port", "input_saturation"))
     found, answer = discovered(linear, driven, request, read)
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
@@ -138,14 +143,24 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
         elif len(kept) < len(fit.parts):
             idle = tuple(replace(one, small=True) for one, part in both if part not in kept)
             effects = tuple(one for one, part in both if part in kept)
-            fit.parts, found = kept, replace(found, effects=effects, rivals=(*idle, *found.rivals))
+            fit.parts, found = kept, without_beside(found, effects, idle)
             runs = replace(runs, after=fit.left(found, kept, runs))
         if kept:
-            augmented, written, _ = fit.written(found, fit.parts)
+            augmented, written = fit.compared(found, runs)
     if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
         found = replace(found, verdict="no_gap", rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
+
+
+def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
+    """Return an answer of some of its effects, and without explanations that only add to these."""
+    kept, others = {(one.name, one.place) for one in effects}, found.explanations[1:]
+    adding = [one for one in others if kept < {(each.name, each.place) for each in one.effects}]
+    added = {(one.effects[-1].name, one.effects[-1].place) for one in adding}
+    rivals = tuple(replace(one, tied=one.tied and (one.name, one.place) not in added) for one in found.rivals)
+    others = (one for one in others if one not in adding)
+    return replace(found, effects=effects, rivals=(*idle, *rivals), explanations=(*found.explanations[:1], *others))
 
 
 def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
@@ -218,11 +233,10 @@ def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...
             what = f"{one.called} is at its limit ({limits}) in {share:.2g} % of samples"
             found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
     driven = data.drive.inputs[inside]
-    for number, (low, high) in getattr(engine, "control_ranges", {}).items():
-        share = 100 * np.mean((driven[:, number] < low) | (driven[:, number] > high))
+    for one, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
+        share = 100 * np.mean((u < low) | (u > high))
         if share:
-            name = engine.controls[number].name
-            what = f"{name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            what = f"{one.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
             found.append(Finding("note", "saturated", "model", f"{what}: the engine clips it there", ""))
     touched = getattr(engine, "contacts", 0)
     if touched:

@@ -190,8 +190,7 @@ def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...
     numbers = [places[one.place] for one in found.effects if one.kind == "port"]
     if not numbers or not isinstance(written.engine, OpensimTracked) or written.engine is walk.engine:
         return ()
-    motion = walk.motion
-    after = written.engine.demanded(motion.time, (motion.q, motion.v, motion.a)) - walk.pulls.sum(axis=1)
+    after = written.engine.demanded(walk.motion) - walk.pulls.sum(axis=1)
     said = []
     for k in numbers:
         one = walk.engine.coordinates[k]

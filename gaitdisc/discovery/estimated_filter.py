@@ -45,7 +45,12 @@ def record_filter_of(
     seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
     inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
     if inputs or any(one.signal > FELT for one in seen.values()):
-        seen = _beside_the_simulation(_laid_over(simulation, measured, period, guess), seen, inputs)
+        length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
+        runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
+        size = np.nanstd(measured.observed, axis=(0, 1))
+        shooting = Shooting(measured, runs, white_noise(size), past=guess.states)
+        as_read = ScoredModel(fit_model(shooting, simulation, (), guess.starts(runs)), shooting)
+        seen = _beside_the_simulation(as_read, seen, inputs)
     units = [simulation.sensor(name).unit for name in measured.channels]
     cutoffs = _as_the_surer(seen, units)
     if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
@@ -108,15 +113,6 @@ def _beside_the_simulation(
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
     return found if now.model.refitted(filtered).fit.misfit < now.model.fit.misfit else {}
-
-
-def _laid_over(simulation: Simulation, measured: Measured, period: float, guess: StateGuess) -> ScoredModel:
-    """The simulation as read, fitted to runs of a period that overlap."""
-    length = max(int(period * measured.rate), FEWEST_SAMPLES)
-    length = min(length, int(measured.samples.min()) // 2)
-    segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
-    shooting = Shooting(measured, segments, white_noise(np.nanstd(measured.observed, axis=(0, 1))), past=guess.states)
-    return ScoredModel(fit_model(shooting, simulation, (), guess.starts(segments)), shooting)
 
 
 def _stitched(now: ScoredModel) -> Values:

@@ -94,6 +94,8 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
         known |= {name: unit_of_state(base, rate) for name, rate in candidate.states.items()}
         factors = [divided(place, "1" if piece == "1" else unit_of(piece, known)) for piece in candidate.pieces]
         return dict(zip(candidate.slots, [*factors, *constants.values()], strict=True))
+    if candidate.constants:  # limits of an input
+        return dict.fromkeys(candidate.slots, own[candidate.place])
     (slot,) = candidate.slots
     if slot in ("gain", "seconds"):
         return {slot: "1" if slot == "gain" else "s"}

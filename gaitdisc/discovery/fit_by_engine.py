@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.answer import left_out
-from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import named_estimates
@@ -50,6 +49,7 @@ class EngineFit:
     parts: tuple[Part, ...] = ()  # of what was found
     low_pass: RecordFilter = NO_FILTER  # that the record went through, as the search has it
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
+    native: bool = True  # whether what was found is written into the model, or acts beside it at each step
 
     def noted(self, found: ScoredModel) -> CandidateModel:
         """Return what was found as it is, once its parts and the record's filter are kept."""
@@ -61,7 +61,7 @@ class EngineFit:
         changed = self.mapping.with_values({one.parameter: one.found.value for one in found.corrections})
         for part in parts:
             one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
-            form = SIGNAL_ERRORS[one.name][2] if one.verdict == "input_error" else ""
+            form = one.form if one.verdict == "input_error" else ""
             if one.name == "input_gain":
                 changed = with_strength(changed, self.engine, one.place, part.values["gain"])
             elif form:
@@ -74,13 +74,15 @@ class EngineFit:
     def written(self, found: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
         """Return the mapping with what was found, the model with it, and that as the engine runs it."""
         whole, data = self.in_mapping(found, parts), self.measured
-        written, own = written_model(self.engine, whole), {one.name for one in whole.states[len(self.mapping.states) :]}
+        written = written_model(self.engine, whole, self.native)
+        own = {one.name for one in whole.states[len(self.mapping.states) :]}
         kept = tuple(one for one in whole.effects if not own & set(names(parsed(one.term))))
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
         controls, lags, called = data.drive.inputs.copy(), {}, [one.name for one in self.engine.controls]
+        driving = replace(augmented, definitions=written.definitions)
         for trial, samples in enumerate(data.samples):
             time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
-            controls[trial, :samples] = replaced_inputs(augmented, time, u, data.rate)
+            controls[trial, :samples] = replaced_inputs(driving, time, u, data.rate)
         for part in parts:
             if part.candidate.name == "input_lag":
                 column = called.index(part.candidate.place)
@@ -103,6 +105,20 @@ class EngineFit:
         if near is not None:
             near.update((int(row), np.array(start)) for row, start in known[1].items())
         return np.array(known[0])
+
+    def compared(self, found: Discovery, runs: OwnRuns) -> tuple[Simulation, WrittenModel]:
+        """Return mapping and model with what was found, and how far its held-out runs are from those by hand."""
+        both = [replace(self, native=native).written(found, self.parts) for native in (True, False)]
+        (augmented, written, _), plain = both[0], both[1][1]
+        if plain.absent or plain.text == written.text:
+            return augmented, written
+        held, near = held_out(found, runs, self.measured), dict[int, Values]()
+        at = runs.among(held if held.any() else ~held).at
+        left = [left_by(driven, self.measured, at, self.states, near) for *_, driven in both]
+        sizes = zip(runs.units.items(), root_mean_square(left[0] - left[1]), strict=True)
+        said = ", ".join(f"{name} by {size:.1g} {unit}" for (name, unit), size in sizes)
+        notes = (*written.notes[:-1], f"{written.notes[-1]}; its held-out runs deviate from the expression's in {said}")
+        return augmented, replace(written, notes=notes)
 
     def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
         """Return what was found with numbers of the engine's own runs, whose starts follow them (Gauss-Newton).

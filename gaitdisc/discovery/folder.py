@@ -70,7 +70,11 @@ def load_discovery(folder: Path) -> Discovery:
             runs=_runs(table, channels),
             findings=tuple(map(stored_finding, data["findings"])),
             provenance=Provenance(**made) if made else None,
-            corrections=tuple(map(_correction, data["corrections"])),
+            corrections=tuple(
+                Correction(row["parameter"], given, Estimate(value, low, high, row["unit"]))
+                for row in data["corrections"]
+                for given, value, low, high in [map(_known, (row[name] for name in ("from", "to", "low", "high")))]
+            ),
             explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
             beside=_known(data.get("beside", {})),
@@ -112,11 +116,6 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         reads_as_effect=reading["effect"] or "",
         **{name: row[name] for name in ("tied", "small", "states") if name in row},
     )
-
-
-def _correction(row: Mapping[str, Any]) -> Correction:
-    given, value, low, high = (_known(row[name]) for name in ("from", "to", "low", "high"))
-    return Correction(row["parameter"], given, Estimate(value, low, high, row["unit"]))
 
 
 def _condition(row: Mapping[str, Any]) -> ConditionAnswer:

@@ -70,11 +70,15 @@ def changes_of(record: JointRecord) -> list[Change]:
     )
     changes = [Change(name, word, number, at, columns=by, piece=piece) for name, number, at, piece, by in shapes]
     changes.append(Change("wrong_parameter", "emg_delay", "value", DELAYS_S, _later))
+
+    def stronger(driven: Driven, by: float, sign: int) -> Driven:
+        return replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
+
     signs = driven_of(record).signs
     for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
         if (signs == sign).any():
             strength = f"{group}_strength", "value", STRENGTHS
-            changes.append(Change("wrong_parameter", *strength, partial(_stronger, sign), neutral=1.0))
+            changes.append(Change("wrong_parameter", *strength, partial(stronger, sign=sign), neutral=1.0))
     if record.per_kg.size:  # what each kg more at the foot changes in a net moment that does not know it
         per_kg = -record.per_kg[:, None]
         changes.append(Change("wrong_parameter", "added_foot_mass", "value", once, columns=lambda _, __: per_kg))
@@ -85,10 +89,6 @@ def _later(driven: Driven, delay_s: float) -> Driven:
     at = np.arange(len(driven.angle))
     late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, one) for one in driven.envelopes.T])
     return replace(driven, envelopes=late)
-
-
-def _stronger(sign: int, driven: Driven, by: float) -> Driven:
-    return replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
 
 
 def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:

@@ -14,7 +14,6 @@ from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
     estimate_text,
-    named_at,
     outside_text,
     shown_unit,
     spoken,
@@ -68,8 +67,11 @@ def gap_table(discovery: Discovery) -> Table:
         "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
         "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
         f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
-        f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate.{_unproven(discovery)}"
+        f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate."
     )
+    if discovery.rivals and discovery.held_out.pieces and not discovery.effects:
+        first = discovery.rivals[0]
+        caption += f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
@@ -131,14 +133,6 @@ def trials_table(discovery: Discovery) -> Table:
     )
     columns = ("trial", "channel", "before", "after", "unit")
     return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
-
-
-def _unproven(discovery: Discovery) -> str:
-    """Say whose p stands there, where nothing is named."""
-    if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
-        return ""
-    first = discovery.rivals[0]
-    return f" If no effect is named, p is that of {named_at(first)}."
 
 
 def where_table(discovery: Discovery) -> Table:

@@ -48,7 +48,7 @@ class _Cell:
     candidate: int
     constants: dict[str, float]
     idle: dict[str, float]  # the slots that columns stand for, and where they change nothing
-    tried: float = 0.0  # a delay that its column was made with; 0 where the column is a slope
+    whole: bool = False  # whether its column is all that its constants change, and no slope
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ class Scorer:
         for i, one in enumerate(candidates):
             late = one.name == "sensor_lag" and "delay(" in dict(self.model.simulation.observations)[one.place]
             if one.verdict != "missing_physics" and not late:  # a signal that is late already is not delayed again
-                yield self._signal_columns(line, i, one)
+                yield self._signal_columns(line, i, one, along)
 
     def _cells(
         self, number: int, candidate: Candidate, along: dict[str, Values]
@@ -202,24 +202,31 @@ class Scorer:
     def _white(self, change: Values) -> Values:
         return self.shooting.whitened(seen_change(self.shooting, self.model.machine, self.model.fit, change))
 
-    def _signal_columns(self, line: Linearised, number: int, candidate: Candidate) -> tuple[list[_Cell], Values]:
+    def _signal_columns(
+        self, line: Linearised, number: int, candidate: Candidate, along: dict[str, Values]
+    ) -> tuple[list[_Cell], Values]:
         """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
-        (slot, none), late = next(iter(candidate.idle.items())), candidate.is_late
+        (slot, none), limited = next(iter(candidate.idle.items())), bool(candidate.constants)
         if candidate.verdict == "wrong_parameter":
             none = float(self.model.fit.values[self.model.machine.parameters.index(candidate.place)])
-        either_way = candidate.name == "input_delay"
-        tried = delays(self.rhythm, either_way) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
-        over = np.ones(len(tried)) if late else tried - none
-        machine, values, states = self._extended(candidate, [{slot: float(one)} for one in tried])
-        base = self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
-        seen = (self.shooting.observed(machine, states, values) - base) / over[:, None, None, None]
-        columns = self.shooting.whitened(np.moveaxis(seen, 0, -1))
+        tried = [{slot: none + NUDGE * max(abs(none), 1e-2)}]
+        if limited:
+            tried = [cell.constants for cell, _ in self._cells(number, candidate, along)]
+        elif candidate.is_late:
+            either_way = candidate.name == "input_delay"
+            tried = [{slot: float(one)} for one in delays(self.rhythm, either_way)]
+        whole = limited or candidate.is_late
+        over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
+        machine, values, states = self._extended(candidate, tried)
+        seen = self.shooting.observed(machine, states, values)  # what changes though no state does
+        seen -= self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
+        columns = self.shooting.whitened(np.moveaxis(seen / over[:, None, None, None], 0, -1))
         if candidate.verdict != "sensor_error":
             landed = (
                 self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
             )
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
-        return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
+        return [_Cell(number, one if whole else {}, {slot: none}, whole) for one in tried], columns
 
 
 @dataclass(frozen=True)
@@ -259,10 +266,7 @@ def _gains(
         first = mine.stop
         found = np.linalg.lstsq(normal[mine, mine], match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
         gain = float(found @ match[mine])
-        if size[mine].max() <= 1e-9 or (cell.tried and found[0] <= 0):
+        if size[mine].max() <= 1e-9 or (cell.whole and found[0] <= 0):
             continue
-        if cell.tried:
-            values = dict.fromkeys(cell.idle, cell.tried)
-        else:
-            values = {slot: none + float(one) for (slot, none), one in zip(cell.idle.items(), found, strict=True)}
+        values = {slot: none + float(one) for (slot, none), one in zip(cell.idle.items(), found, strict=True)}
         yield Score(candidates[cell.candidate], values | cell.constants, gain), cell.candidate

@@ -121,7 +121,8 @@ class Search:
         """Yield each constant of a model, and between which limits it means what its name says."""
         lagging = {part.candidate.place for part in model.parts if part.candidate.name == "input_lag"}
         for part in model.parts:
-            for slot, kind in (part.candidate.constants or {}).items():
+            bound = part.candidate.kind != "input"  # of which a limit that it never reaches does nothing anyway
+            for slot, kind in (part.candidate.constants or {}).items() if bound else ():
                 if kind == "quantiles of x":
                     yield part.values[slot], self._visited(model, part.candidate.role)
                 elif kind == "half widths of x":

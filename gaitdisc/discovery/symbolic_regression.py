@@ -156,7 +156,7 @@ class _Curve:
         explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
         first, second = np.triu_indices(len(match), 1)
         order = np.argsort(-explained[first, second])
-        pairs = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
+        pairs: list[tuple[int, ...]] = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
         triples = _best_triples(gram, match, pairs[:PAIRS_BEYOND])
         for ranked, most in zip((singles, pairs, triples), TRIED, strict=True):
             seen: set[tuple[str, ...]] = set()

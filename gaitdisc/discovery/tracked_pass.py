@@ -57,10 +57,10 @@ class Pass:
     @cached_property
     def weight_n(self) -> float:
         """What moving the body up and down takes in the mean; 0 where no coordinate does [N]."""
-        motion, up = self.motion, self.engine.vertical
+        up = self.engine.vertical
         if up < 0:
             return 0.0
-        alone = self.engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)
+        alone = self.engine.demanded(self.motion, loaded=False)
         return abs(float(np.mean(self.dense(alone[:, up]))))
 
     @property
@@ -95,10 +95,10 @@ class Pass:
 def tracked_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], None] = lambda _: None) -> Pass:
     """Compute the generalised forces that a recorded motion demands, and those that the files' actuators give."""
     check_loads(tracked)
-    engine = OpensimTracked(tracked.model, tracked.loads, tracked.actuators)
+    engine = OpensimTracked(tracked)
     motion = tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
     progress("computing the moments that the motion demands, by OpenSim")
-    demanded = engine.demanded(motion.time, (motion.q, motion.v, motion.a))
+    demanded = engine.demanded(motion)
     arms = engine.arms(motion.time, motion.q, motion.actuators)
     pulls = arms * motion.forces[:, :, None]
     muscles = np.array([name in engine.paths for name in motion.actuators])
@@ -134,7 +134,7 @@ def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> 
     inside = slice(spare, spare + len(motion.time))
     first, second = (differentiated(noise, motion.rate_hz, order)[inside] for order in (1, 2))
     moved = replace(motion, q=motion.q + noise[inside], v=motion.v + first, a=motion.a + second)
-    return replace(walk, motion=moved, demanded=walk.engine.demanded(moved.time, (moved.q, moved.v, moved.a)))
+    return replace(walk, motion=moved, demanded=walk.engine.demanded(moved))
 
 
 def balance(walk: Pass) -> list[Finding]:

@@ -34,6 +34,7 @@ OTHER_UNITS = (  # gains of a sensor that another convention makes
     (1e3, ", as if its unit were a thousandth"),
     (1e-3, ", as if its unit were a thousandfold"),
 )
+SATURATED = {"limit": "beyond {} to either side", "upper_limit": "above {}", "lower_limit": "below {}"}
 DIRECTIONS = re.compile(
     r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
     r"internal rotation|external rotation|tilt|obliquity)\b"
@@ -146,6 +147,9 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
         return f"{said}, {outside}" if outside else said
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
+    if effect.name == "input_saturation":
+        limits = (SATURATED[name].format(estimate_text(one)) for name, one in effect.estimates.items())
+        return f"{subject} saturates {' and '.join(limits)}"
     return f"{subject} {_signal(effect.name, estimate)}"
 
 
@@ -248,18 +252,13 @@ def _shown(discovery: Discovery) -> str:
     size = discovery.held_out
     few = 0 < size.pieces < FEW and size.after <= size.before
     tested = f", {_chance(size)}" if few else ""
-    return (
-        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}."
-        f"{_unexplained(discovery.held_out)}"
+    said, left = (
+        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}.",
+        size.unexplained,
     )
-
-
-def _unexplained(size: GapSize) -> str:
-    """Say what share of the gap is left, where it is more than a few percent and more than a simulation may err by."""
-    left = size.unexplained
     if left < SMALL or size.after > size.before or may_be_left(size.after, size):
-        return ""
-    return f" {100 * left:.0f} % of the squared error above the noise stays unexplained."
+        return said
+    return f"{said} {100 * left:.0f} % of the squared error above the noise stays unexplained."
 
 
 def _moved(discovery: Discovery) -> str:

@@ -67,8 +67,7 @@ def expanded(
     ]
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
     linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
-    if at.z is not None:
-        linear = replace(linear, inexact=INEXACT)
+    linear = linear if at.z is None else replace(linear, inexact=INEXACT)
     for name, expression in simulation.definitions:
         linear = linear.with_input(name.removeprefix(REPLACED), expression)
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))

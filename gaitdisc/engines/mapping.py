@@ -15,6 +15,7 @@ from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.expression import parsed, substituted, written
 from gaitdisc.simulation.parts import Port, Sensor, State
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
@@ -135,8 +136,10 @@ def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
 
 
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
-    """Mapping in which a control is replaced by an expression of the recorded one."""
-    return replace(mapping, definitions=(*mapping.definitions, (f"{REPLACED}{name}", expression)))
+    """Mapping in which a control is replaced by an expression of the recorded one, inside what replaces it already."""
+    known, own = dict(mapping.definitions), f"{REPLACED}{name}"
+    changed = substituted(parsed(known.get(own, name)), {name: parsed(expression)}, mapping.signals)
+    return replace(mapping, definitions=tuple((known | {own: written(changed)}).items()))
 
 
 def with_strength(mapping: Simulation, engine: Engine, name: str, gain: float) -> Simulation:

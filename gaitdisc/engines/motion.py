@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,12 +115,13 @@ def refuse_absent(package: str, error: ImportError) -> SchemaError:
     )
 
 
-def part_name(called: str, kind: str, taken: Collection[str] = ()) -> str:
-    """Name for a part of a model: letters, digits and _; of one whose name is taken, its kind stands behind it.
+def new_name(called: str, kind: str, taken: set[str]) -> str:
+    """Name for a part of a model, taken from then on: letters, digits and _; of one that is taken, kind behind it.
 
-    >>> part_name("knee-angle r", "joint"), part_name("lambda", "joint"), part_name("1st", "motor")
+    >>> new_name("knee-angle r", "joint", set()), new_name("lambda", "joint", set()), new_name("1st", "motor", set())
     ('knee_angle_r', 'lambda_joint', 'motor_1st')
-    >>> part_name("elbow", "control", {"elbow"}), part_name("elbow", "control", {"elbow", "elbow_control"})
+    >>> taken = {"elbow"}
+    >>> new_name("elbow", "control", taken), new_name("elbow", "control", taken)
     ('elbow_control', 'elbow_control_2')
     """
     name = re.sub(r"[^A-Za-z0-9_]", "_", called)[:LONGEST]
@@ -132,11 +133,5 @@ def part_name(called: str, kind: str, taken: Collection[str] = ()) -> str:
     while free in taken:
         number += 1
         free = f"{name}_{number}"
+    taken.add(free)
     return free
-
-
-def new_name(called: str, kind: str, taken: set[str]) -> str:
-    """Name of a part, which is taken from then on."""
-    name = part_name(called, kind, taken)
-    taken.add(name)
-    return name

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
-from gaitdisc.engines.mujoco_text import with_effect, with_value
+from gaitdisc.engines.mujoco_text import with_effect, with_range, with_value
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 
@@ -67,8 +67,10 @@ class MujocoModel:
         self._mujoco: Any = mujoco
         self.warnings: tuple[str, ...] = ()  # what MuJoCo said of the model and of its runs
         self._model: Any = self._read()
-        # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened
-        self._model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+        # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened; and
+        # controls are clipped where they come in, so that what each does is known at its limit too
+        bit = self._mujoco.mjtDisableBit
+        self._model.opt.disableflags |= int(bit.mjDSBL_AUTORESET) | int(bit.mjDSBL_CLAMPCTRL)
         self._data: Any = self._mujoco.MjData(self._model)
         model, joint = self._model, self._mujoco.mjtJoint
         known = int(joint.mjJNT_HINGE), int(joint.mjJNT_SLIDE)
@@ -107,8 +109,8 @@ class MujocoModel:
             for one, place in zip(self.parameters, self._places.values(), strict=True)
             if (one.value and "gear" not in one.name) or (place.part[0] == "tendon" and "loss" not in one.name)
         )
-        ranges = np.where(model.actuator_ctrllimited[:, None], model.actuator_ctrlrange, (-np.inf, np.inf)).tolist()
-        self.control_ranges = {k: (low, high) for k, (low, high) in enumerate(ranges) if np.isfinite(high)}
+        limited = model.actuator_ctrllimited[:, None]
+        self.control_ranges = np.where(limited, model.actuator_ctrlrange, (-np.inf, np.inf))  # (control, low and high)
         self._stateful = self._model.actuator_actadr >= 0
         self.contacts = 0  # most that any evaluated point had
 
@@ -151,6 +153,7 @@ class MujocoModel:
     @_heard
     def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with activations, integrated from equilibrium with the first controls."""
+        controls = np.clip(controls, *self.control_ranges.T)
         found = np.array(controls, float)
         if not self._stateful.any():
             return Motion(q, v, found)
@@ -179,7 +182,8 @@ class MujocoModel:
         kept, count = model.opt.timestep, model.nq + model.nv
         model.opt.timestep = 1.0 / (rate * steps)
         change = np.diff(controls, axis=1)[:, :, None] / steps
-        driven = (controls[:, :-1, None] + np.arange(steps)[:, None] * change).reshape(len(controls), -1, model.nu)
+        driven = np.clip(controls[:, :-1, None] + np.arange(steps)[:, None] * change, *self.control_ranges.T)
+        driven = driven.reshape(len(controls), -1, model.nu)
         found = np.empty((len(controls), driven.shape[1] + 1, count))
         found[:, 0] = np.hstack([start.q, start.v])
         halted = np.ones(len(controls), bool)
@@ -218,6 +222,11 @@ class MujocoModel:
         """Text of the model with another value of a parameter."""
         kind, number = self._places[name].part
         return with_value(text, name, value, kind, self._called(kind, number))
+
+    def text_with_range(self, text: str, control: int, low: float, high: float) -> str | None:
+        """Text of the model with a narrower range of a control."""
+        low, high = np.clip((low, high), *self.control_ranges[control]).tolist()
+        return with_range(text, self._called("actuator", control), low, high)
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""

@@ -13,6 +13,16 @@ from gaitdisc.engines.motion import ByHand
 MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
 
 
+def with_range(text: str, called: str, low: float, high: float) -> str | None:
+    """Text with the range of an actuator's control; None where the file does not name it."""
+    for name, value in (("ctrllimited", "true"), ("ctrlrange", f"{low!r} {high!r}")):
+        tags = [one for one in _tags(text) if _is(text, one, "actuator", called)]
+        if len(tags) != 1:
+            return None
+        text = _with_attribute(text, tags[0], name, value)
+    return text
+
+
 def with_value(text: str, name: str, value: float, kind: str, called: str) -> str | None:
     """Text with a number of a joint, body or option changed; None where the file does not say it.
 
@@ -49,21 +59,26 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
         return None
     tag, name = tags[0], effect.term.name
     at_one, at_speed_one = -effect.at(1.0, 0.0), -effect.at(0.0, 1.0)
-    found = None
     if name == "linear_stiffness":
-        found = _with_spring(text, tag, at_one, own["stiffness"])
+        return _with_spring(text, tag, at_one, own["stiffness"])
+    attribute, words = MORE_OF.get(name, ""), ""
+    first, *rest = (_attribute(text, tag, attribute or "damping") or repr(own[attribute or "damping"])).split()
+    if attribute:
+        words = " ".join([repr(float(first) + at_speed_one), *rest])
     elif name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
-        found = _with_attribute(text, tag, "stiffness", f"0 0 {at_one!r}")
-    elif name in MORE_OF:
-        attribute = MORE_OF[name]
-        first, *rest = (_attribute(text, tag, attribute) or repr(own[attribute])).split()
-        found = _with_attribute(text, tag, attribute, " ".join([repr(float(first) + at_speed_one), *rest]))
-    elif name == "quadratic_drag":
-        first = (_attribute(text, tag, "damping") or repr(own["damping"])).split()
-        found = _with_attribute(text, tag, "damping", f"{first[0]} {at_speed_one!r}") if len(first) == 1 else None
-    elif name == "one_sided_spring":
-        found = _with_tendon(text, effect, joint)
-    return found
+        attribute, words = "stiffness", f"0 0 {at_one!r}"
+    elif name == "quadratic_drag" and not rest:
+        attribute, words = "damping", f"{first} {at_speed_one!r}"
+    if attribute:
+        return _with_attribute(text, tag, attribute, words)
+    low, stiffness, high = effect.slack if name == "one_sided_spring" else (0.0, 0.0, 0.0)
+    if not stiffness > 0:
+        return None
+    spring = (
+        f'name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{low!r} {high!r}"'  # slack between
+    )
+    inside = f'    <fixed {spring}>\n      <joint joint="{joint}" coef="1"/>\n    </fixed>\n'
+    return _before_end(text, f"  <tendon>\n{inside}  </tendon>\n")
 
 
 def _with_mass(text: str, body: _Tag, value: float) -> str | None:
@@ -81,21 +96,6 @@ def _with_mass(text: str, body: _Tag, value: float) -> str | None:
             text = _with_attribute(text, tag, name, words)
             tag = next(one for one in _tags(text) if one[1] == tag[1])
     return _with_attribute(text, tag, "mass", repr(value))
-
-
-def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
-    """A fixed tendon that is slack on one side of a threshold."""
-    low, stiffness, high = effect.slack
-    if not stiffness > 0:
-        return None
-    return _before_end(
-        text,
-        "  <tendon>\n"
-        f'    <fixed name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{low!r} {high!r}">\n'
-        f'      <joint joint="{joint}" coef="1"/>\n'
-        "    </fixed>\n"
-        "  </tendon>\n",
-    )
 
 
 def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str | None:

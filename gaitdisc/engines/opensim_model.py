@@ -27,6 +27,7 @@ ELEMENTS = {"mass": "Body", "optimal_force": "CoordinateActuator", "max_isometri
 SPRING, LIMIT = "SpringGeneralizedForce", "CoordinateLimitForce"  # all other effects are forces of an expression
 NATIVE = {"linear_stiffness": SPRING, "viscous_damping": SPRING, "one_sided_spring": LIMIT}
 TRANSITION = 1e-4  # [deg, m], over which a limit's stiffness sets in
+FORCES = r"<ForceSet\b.*?</ForceSet>"
 BINARY = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "^"}
 
 
@@ -35,6 +36,7 @@ class OpensimModel:
 
     called = "OpenSim"
     worker = Path(__file__).with_name("opensim_worker.py")
+    control_ranges = np.empty((0, 2))  # it clips no control
     pushes: Pushes | None = None
 
     def __init__(self, path: Path | str) -> None:
@@ -131,6 +133,9 @@ class OpensimModel:
         """Text of the model with another value of a parameter."""
         return with_value(text, self._called[name], value)
 
+    def text_with_range(self, *_: object) -> str | None:
+        """None: there is no such range."""
+
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a coordinate."""
         return with_effect(text, effect, self.coordinates[effect.coordinate])
@@ -171,20 +176,11 @@ class OpensimModel:
 
 
 def with_effect(text: str, effect: ByHand, coordinate: Coordinate) -> str | None:
-    """Text with a force on a coordinate; None where its expression knows more than that coordinate."""
-    own, found = _force_on(coordinate, effect), re.search(r"<ForceSet\b.*?</ForceSet>", text, re.DOTALL)
-    if own is None or found is None:
-        return None
-    whole = found[0]
-    if "</objects>" not in whole:
-        whole = re.sub(r"<objects\s*/>", "<objects>\n</objects>", whole, count=1)
-    at = whole.rfind("</objects>")  # the last: the first ones are those of muscles' paths
-    return f"{text[: found.start()]}{whole[:at]}{own}{whole[at:]}{text[found.end() :]}" if at >= 0 else None
+    """Text with a force on a coordinate: OpenSim's own spring, damper or limit, or a force of the effect's expression.
 
-
-def _force_on(coordinate: Coordinate, effect: ByHand) -> str | None:
-    """Return the element of an effect: OpenSim's own spring, damper or limit, or a force of its expression."""
-    term, kind = effect.term, NATIVE.get(effect.term.name)
+    None where the expression knows more than that coordinate.
+    """
+    term, kind, found = effect.term, NATIVE.get(effect.term.name), re.search(FORCES, text, re.DOTALL)
     if kind == SPRING:
         numbers = {"stiffness": -effect.at(1.0, 0.0), "rest_length": 0.0, "viscosity": -effect.at(0.0, 1.0)}
     elif kind == LIMIT:
@@ -195,11 +191,16 @@ def _force_on(coordinate: Coordinate, effect: ByHand) -> str | None:
     else:
         kind = "ExpressionBasedCoordinateForce"
         numbers = {"expression": _translated(parsed(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})}
-    if None in numbers.values():
+    if None in numbers.values() or found is None:
         return None
     words = {"coordinate": coordinate.called} | {word: str(value) for word, value in numbers.items()}
     inside = "".join(f"<{word}>{escape(value)}</{word}>" for word, value in words.items())
-    return f"<{kind} name={quoteattr(f'{term.name}_{coordinate.called}')}>{inside}</{kind}>\n"
+    own = f"<{kind} name={quoteattr(f'{term.name}_{coordinate.called}')}>{inside}</{kind}>\n"
+    whole = found[0]
+    if "</objects>" not in whole:
+        whole = re.sub(r"<objects\s*/>", "<objects>\n</objects>", whole, count=1)
+    at = whole.rfind("</objects>")  # the last: the first ones are those of muscles' paths
+    return f"{text[: found.start()]}{whole[:at]}{own}{whole[at:]}{text[found.end() :]}" if at >= 0 else None
 
 
 def with_value(text: str, name: str, value: float) -> str | None:

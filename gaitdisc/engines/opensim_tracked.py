@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaitdisc.engines.motion import Coordinate, Motion, Values, new_name
 from gaitdisc.engines.opensim_model import OpensimModel
-from gaitdisc.engines.opensim_worker import (
-    PORT,
-    ROTATIONAL,
-    add_ports,
-    answer_questions,
-    couplers,
-    place_coupled,
-    switch_off_controllers,
-)
+from gaitdisc.engines.opensim_worker import PORT, ROTATIONAL, Ready, answer_questions
+from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
+
+if TYPE_CHECKING:
+    from gaitdisc.engines.tracked_files import TrackedMotion
 
 TRANSLATIONAL = 2
 
@@ -29,11 +26,9 @@ class OpensimTracked(OpensimModel):
 
     worker = Path(__file__)
 
-    def __init__(self, path: Path | str, loads: tuple[Path, Path] | None = None, actuators: Path | None = None) -> None:
-        self.path = Path(path)
-        self._process = None
-        self.given = loads, actuators
-        self._query("loaded", *self.given)
+    def __init__(self, tracked: Tracked) -> None:
+        self.path, self._process, self.tracked = tracked.model, None, tracked
+        self._query("loaded", *tracked.loads, tracked.actuators)
         described = self._query("described")
         taken: set[str] = set()
         self.coordinates = tuple(
@@ -56,9 +51,9 @@ class OpensimTracked(OpensimModel):
         del values
         return self._query("accelerations", at.q, at.v, np.zeros_like(at.q) if forces is None else forces)
 
-    def demanded(self, time: Values, motion: tuple[Values, Values, Values], loaded: bool = True) -> Values:
+    def demanded(self, motion: TrackedMotion, loaded: bool = True) -> Values:
         """Generalised forces (sample, coordinate) that a motion demands of muscles beside the recorded loads."""
-        return self._query("demanded", time, *motion, loaded)
+        return self._query("demanded", motion.time, motion.q, motion.v, motion.a, loaded)
 
     def arms(self, time: Values, q: Values, names: tuple[str, ...]) -> Values:
         """Generalised force of each actuator's unit force (sample, actuator, coordinate)."""
@@ -66,7 +61,7 @@ class OpensimTracked(OpensimModel):
 
     def other(self, path: Path) -> OpensimTracked:
         """Another model under the same loads."""
-        return OpensimTracked(path, *self.given)
+        return OpensimTracked(replace(self.tracked, model=path))
 
 
 class _Tracked:
@@ -75,28 +70,21 @@ class _Tracked:
     def __init__(self, osim: Any, path: str) -> None:
         self.osim, self.model = osim, osim.Model(path)
 
-    def loaded(self, loads: tuple[Path, Path] | None, actuators: Path | None) -> None:
+    def loaded(self, loads: Path, data: Path, actuators: Path | None) -> None:
         osim, model = self.osim, self.model
-        switch_off_controllers(model)
         if actuators:
             more = osim.ForceSet(str(actuators))
             for k in range(more.getSize()):
                 model.updForceSet().cloneAndAppend(more.get(k))
         model.finalizeConnections()
-        every = model.getCoordinateSet()
-        names = [every.get(k).getName() for k in range(every.getSize())]
-        self.coupled = couplers(model, osim)
-        self.names = [name for name in names if not every.get(name).getDefaultLocked() and name not in self.coupled]
-        self.actuators = [one.getName() for one in model.getActuators()]
-        add_ports(model, osim, self.names)
-        external = osim.ExternalLoads(str(loads[0]), True) if loads else None
-        if external is not None and loads:
-            external.setDataFileName(str(loads[1]))
-            model.addModelComponent(external)
-        self.state = model.initSystem()
-        self.loads = [external.get(k) for k in range(external.getSize())] if external is not None else []
+        external = osim.ExternalLoads(str(loads), True)
+        external.setDataFileName(str(data))
+        model.addModelComponent(external)
+        ready = Ready(osim, model, {})
+        self.state, self.names, self.actuators, self.placed = ready.state, ready.names, ready.actuators, ready.placed
+        self.loads = [external.get(k) for k in range(external.getSize())]
         self.solver = osim.InverseDynamicsSolver(model)
-        self.free = {name: model.getCoordinateSet().get(name) for name in [*self.names, *self.coupled]}
+        self.free = {name: model.getCoordinateSet().get(name) for name in [*self.names, *ready.couplers]}
         scalar = osim.ScalarActuator.safeDownCast
         self.given = {name: scalar(model.getActuators().get(name)) for name in self.actuators}
         self.by_hand = [scalar(model.getActuators().get(PORT + name)) for name in self.names]
@@ -138,13 +126,6 @@ class _Tracked:
             "paths": [name for name, one in self.given.items() if osim.PathActuator.safeDownCast(one) is not None],
             "mass_kg": model.getTotalMass(self.state),
         }
-
-    def placed(self, q: Any, v: Any) -> dict[str, dict[str, float]]:
-        """Put a posture in; how far each coupled coordinate goes with each that leads it."""
-        for name, position, speed in zip(self.names, q, v, strict=True):
-            self.free[name].setValue(self.state, float(position), False)
-            self.free[name].setSpeedValue(self.state, float(speed))
-        return place_coupled(self.osim, self.model, self.state, self.coupled)
 
     def _solved(self, a: Mapping[str, float], slopes: Mapping[str, Mapping[str, float]]) -> Any:
         """Inverse dynamics of the free coordinates; what a coupled one needs comes through those that lead it."""

@@ -19,14 +19,16 @@ BEFORE, STEPS = 0.1, 10  # [s] in which a prescribed motion sets out from rest, 
 REST = 0.01  # activation of a muscle at rest, below which those of OpenSim do not go
 
 
-class _Ready:
+class Ready:
     """A model with its state: an actuator of unit force stands on every free coordinate."""
 
     def __init__(
-        self, osim: Any, path: str, values: dict[str, float], profiles: Any = None, motion: Any = None
+        self, osim: Any, model: Any, values: dict[str, float], profiles: Any = None, motion: Any = None
     ) -> None:
-        self.osim, self.model = osim, osim.Model(path)
-        switch_off_controllers(self.model)
+        self.osim, self.model = osim, model
+        controllers = model.getControllerSet()
+        for k in range(controllers.getSize()):  # the controls of the question, and no others, drive it
+            controllers.get(k).setEnabled(False)
         self.actuators = [one.getName() for one in self.model.getActuators()]
         for name, value in values.items():
             _set(self.model, osim, name, value)
@@ -34,10 +36,21 @@ class _Ready:
         names = [every.get(k).getName() for k in range(every.getSize())]
         self.locked = [name for name in names if every.get(name).getDefaultLocked()]
         self.couplers = couplers(self.model, osim)
-        free = [name for name in names if name not in self.locked and name not in self.couplers]
-        add_ports(self.model, osim, free)
-        if profiles is not None:
-            self._driven(*profiles)
+        self.names = free = [name for name in names if name not in self.locked and name not in self.couplers]
+        for name in free:
+            force = osim.CoordinateActuator(name)
+            force.setName(PORT + name)
+            force.setOptimalForce(1.0)
+            model.addForce(force)
+        if profiles is not None:  # controls along time, linear between samples
+            controller = osim.PrescribedController()
+            for name, along in zip(self.actuators, profiles[1].T, strict=True):
+                line = osim.PiecewiseLinearFunction()
+                for t, value in zip(profiles[0], along, strict=True):
+                    line.addPoint(float(t), float(value))
+                controller.addActuator(model.getActuators().get(name))
+                controller.prescribeControlForActuator(name, line)
+            model.addController(controller)
         if motion is not None:  # coordinates along time, smooth between samples
             for name, along in zip(free, motion[1].T, strict=True):
                 line = osim.SimmSpline()
@@ -50,18 +63,6 @@ class _Ready:
         self.free = [every.get(name) for name in free]
         self.dependent = [one.getName() for one in self.free if one.isDependent(state)]
         self.activations, self.fibres, self.others = self._states_of_muscles()
-
-    def _driven(self, time: Any, controls: Any) -> None:
-        """Controls along time, linear between samples."""
-        osim = self.osim
-        controller = osim.PrescribedController()
-        for number, name in enumerate(self.actuators):
-            line = osim.PiecewiseLinearFunction()
-            for t, value in zip(time, controls[:, number], strict=True):
-                line.addPoint(float(t), float(value))
-            controller.addActuator(self.model.getActuators().get(name))
-            controller.prescribeControlForActuator(name, line)
-        self.model.addController(controller)
 
     def _states_of_muscles(self) -> tuple[dict[int, int], list[int], list[str]]:
         """Place of each actuator's activation, and of the muscles' other states; actuators with yet other states."""
@@ -83,11 +84,23 @@ class _Ready:
                     fibres.append(place)
         return activations, fibres, others
 
-    def placed(self, q: Any, v: Any) -> None:
+    def placed(self, q: Any, v: Any) -> dict[str, dict[str, float]]:
+        """Put a posture in; how far each coupled coordinate goes with each that leads it: follower, leader."""
+        every, slopes = self.model.getCoordinateSet(), {}
         for one, position, speed in zip(self.free, q, v, strict=True):
             one.setValue(self.state, float(position), False)
             one.setSpeedValue(self.state, float(speed))
-        place_coupled(self.osim, self.model, self.state, self.couplers)
+        for name, (others, function, scale) in self.couplers.items():
+            leading = [every.get(other) for other in others]
+            where = self.osim.Vector(len(others), 0.0)
+            for k, one in enumerate(leading):
+                where.set(k, one.getValue(self.state))
+            own = [scale * function.calcDerivative(self.osim.StdVectorInt([k]), where) for k in range(len(others))]
+            every.get(name).setValue(self.state, scale * function.calcValue(where), False)
+            speeds = [one.getSpeedValue(self.state) for one in leading]
+            every.get(name).setSpeedValue(self.state, float(np.dot(own, speeds)))
+            slopes[name] = dict(zip(others, own, strict=True))
+        return slopes
 
     def tensed(self, u: Any, z: Any = None) -> None:
         """Put activations in, and lengths of fibres: without them those of the equilibrium."""
@@ -111,22 +124,6 @@ class _Ready:
         return [*found, *self.state.getZDot().to_numpy()[self.fibres]] if self.fibres else found
 
 
-def switch_off_controllers(model: Any) -> None:
-    """Let the controls of the question, and no others, drive a model."""
-    controllers = model.getControllerSet()
-    for k in range(controllers.getSize()):
-        controllers.get(k).setEnabled(False)
-
-
-def add_ports(model: Any, osim: Any, names: list[str]) -> None:
-    """Put an actuator of unit force on each of some coordinates."""
-    for name in names:
-        force = osim.CoordinateActuator(name)
-        force.setName(PORT + name)
-        force.setOptimalForce(1.0)
-        model.addForce(force)
-
-
 def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
     """Coordinates that follow others by a function: these others, the function, and its scale."""
     found = {}
@@ -142,22 +139,6 @@ def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
                 float(one.getPropertyByName("scale_factor").toString()),
             )
     return found
-
-
-def place_coupled(osim: Any, model: Any, state: Any, coupled: dict[str, tuple[list[str], Any, float]]) -> Any:
-    """Put coordinates where those that lead them have them; how far each goes with each of these: follower, leader."""
-    every, slopes = model.getCoordinateSet(), {}
-    for name, (others, function, scale) in coupled.items():
-        leading = [every.get(other) for other in others]
-        where = osim.Vector(len(others), 0.0)
-        for k, one in enumerate(leading):
-            where.set(k, one.getValue(state))
-        own = [scale * function.calcDerivative(osim.StdVectorInt([k]), where) for k in range(len(others))]
-        every.get(name).setValue(state, scale * function.calcValue(where), False)
-        speeds = [one.getSpeedValue(state) for one in leading]
-        every.get(name).setSpeedValue(state, float(np.dot(own, speeds)))
-        slopes[name] = dict(zip(others, own, strict=True))
-    return slopes
 
 
 def _set(model: Any, osim: Any, name: str, value: float) -> None:
@@ -190,13 +171,16 @@ class _Answers:
     def __init__(self, osim: Any, path: str) -> None:
         self.osim, self.path, self.ready = osim, path, {}
 
-    def with_values(self, values: dict[str, float]) -> _Ready:
+    def with_values(self, values: dict[str, float]) -> Ready:
         key = tuple(sorted(values.items()))
         if key not in self.ready:
             while len(self.ready) >= KEPT:
                 self.ready.pop(next(iter(self.ready)))
-            self.ready[key] = _Ready(self.osim, self.path, values)
+            self.ready[key] = self.fresh(values)
         return self.ready[key]
+
+    def fresh(self, values: dict[str, float], profiles: Any = None, motion: Any = None) -> Ready:
+        return Ready(self.osim, self.osim.Model(self.path), values, profiles, motion)
 
     def described(self) -> dict[str, Any]:
         one = self.with_values({})
@@ -261,7 +245,7 @@ class _Answers:
         early = BEFORE * np.arange(-STEPS, 0)[:, None] / STEPS
         whole = np.concatenate([q[0] + v[0] * (early + early**2 / (2 * BEFORE)), q])
         motion = np.concatenate([early[:, 0], time]), whole
-        one = _Ready(self.osim, self.path, {}, (time, controls), motion)
+        one = self.fresh({}, (time, controls), motion)
         one.state.setTime(-BEFORE)
         one.placed(whole[0], np.zeros_like(whole[0]))
         one.tensed(controls[0])
@@ -276,10 +260,10 @@ class _Answers:
 
     def run(self, q: Any, v: Any, u: Any, z: Any, controls: Any, rate: float) -> Any:
         found = np.empty((*controls.shape[:2], 2 * q.shape[1]))
-        ready: dict[bytes, _Ready] = {}
+        ready: dict[bytes, Ready] = {}
         time = np.arange(controls.shape[1]) / rate
         for run, driven in enumerate(controls):
-            one = ready.get(driven.tobytes()) or _Ready(self.osim, self.path, {}, (time, driven))
+            one = ready.get(driven.tobytes()) or self.fresh({}, (time, driven))
             ready[driven.tobytes()] = one
             one.state.setTime(0.0)
             one.placed(q[run], v[run])

@@ -66,7 +66,7 @@ def drafted_tracked(
             raise SchemaError("files of a tracked walk must exist", f"there is none at {path}", "Check the path.")
     tracked = Tracked(model, loads_of(loads), forces, actuators)
     check_loads(tracked)
-    engine = OpensimTracked(model, tracked.loads, actuators)
+    engine = OpensimTracked(tracked)
     actuator_forces(tracked, engine.actuators)
     return tracked, engine
 
@@ -145,11 +145,15 @@ def tracked_motion(
     if tracked.forces is not None:
         spans[tracked.forces] = forces[:, 0]
     inside = _shared(spans, time, tracked)
+
+    def on_time(own: Values, values: Values) -> Values:
+        return np.column_stack([np.interp(time, own, column) for column in values.T])
+
     if rates:
-        (_, v), (_, a) = [(at, _at(time, at, values)) for at, values in rates]
+        v, a = [on_time(*one) for one in rates]
     else:
         q, v, a = _smoothed(coordinates, tracked.lowpass_hz, time, q)
-    pulls = _at(time, forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
+    pulls = on_time(forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
     kept = np.flatnonzero(inside)
     kept = np.arange(kept[0], kept[-1] + 1)
@@ -254,10 +258,6 @@ def _shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArra
             "Correct start_s and end_s in [tracked].",
         )
     return inside
-
-
-def _at(time: Values, own: Values, values: Values) -> Values:
-    return np.column_stack([np.interp(time, own, column) for column in values.T])
 
 
 def _smoothed(

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from gaitdisc.engines.engine import Engine, read_model
-from gaitdisc.engines.mapping import REPLACED, read_mapping
-from gaitdisc.engines.motion import ByHand, Motion, Pushes, Values
+from gaitdisc.engines.mapping import REPLACED, read_mapping, replaced_inputs
+from gaitdisc.engines.motion import FAR, ByHand, Motion, Pushes, Values
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.expression import names, parsed
@@ -23,6 +23,7 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 STATES = 50
+PROBED, PROBED_HZ = 401, 1000.0  # controls at which a range is compared
 SAME = 1e-9  # of the largest acceleration
 AT_SPEED = 0.5  # [rad/s], from which friction is compared: an engine's own friction holds at standstill
 
@@ -35,12 +36,15 @@ class WrittenModel:
     text: str  # the user's own, with insertions; the same where nothing has a native form
     notes: tuple[str, ...]  # what was written in, with its deviation, and what was not
     absent: tuple[str, ...]  # what the engine does not run
+    definitions: tuple[tuple[str, str], ...]  # of controls in the mapping, without those that the text says
 
 
-def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
-    """Write effects and changed parameters into a model's text, as far as they have a form there.
+def written_model(engine: Engine, augmented: Simulation, native: bool = True) -> WrittenModel:
+    """Write effects, changed parameters and limits of controls into a model's text, as far as they have a form there.
 
     What has none acts as a force at each step of the engine's runs.
+
+    native: whether effects and limits are written at all; else each acts so
     """
     text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
     absent: list[str] = []
@@ -48,26 +52,27 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
     values: dict[str, float] = {}
     before = {one.name: one.value for one in engine.parameters}
     own = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
-    changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = []
-    for name, value in augmented.values().items():
-        if abs(value - before[name]) > SAME * abs(before[name]):
-            change = partial(engine.text_with_value, name=name, value=value)
-            changes.append((f"{name} = {value:.6g}", change, (), {name: value}))
+    changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = [
+        (f"{name} = {value:.6g}", partial(engine.text_with_value, name=name, value=value), (), {name: value})
+        for name, value in augmented.values().items()
+        if abs(value - before[name]) > SAME * abs(before[name])
+    ]
     for term in augmented.effects:
-        changes.append((f"{term.name} at {term.place}", _adding(engine, augmented, term), (term,), {}))
+        changes.append((f"{term.name} at {term.place}", partial(_adding, engine, augmented, term), (term,), {}))
     for what, change, more_forces, more_values in changes:
-        tried = change(text)
+        tried = change(text) if native or not more_forces else None
         wanted = (augmented, (*forces, *more_forces), values | more_values)
-        deviation, read = _compared(engine, tried, *wanted) if tried is not None else (np.inf, None)
+        deviation, read = _compared(engine, tried, *wanted)
         if tried is None or read is None or deviation > SAME:
-            said = "is refused by the engine in the model's own form"
-            if tried is None:
-                said = "has no form in the model's own file"
-            elif np.isfinite(deviation):
+            said = "has no form in the model's own file"
+            if tried is not None:
+                said = "is refused by the engine in the model's own form"
+            if read is not None:
                 said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
             used = {name for one in more_forces for name in names(parsed(one.term))}
             notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
-            if more_forces and not engine.fibres and "delay(" not in more_forces[0].term:
+            at_once = [one for one in more_forces if one.kind == "port" and "delay(" not in one.term]
+            if at_once and not engine.fibres:
                 by_hand = (*by_hand, *more_forces)
             else:  # a force at each step of a run does not know what was before
                 absent.append(what)
@@ -75,9 +80,15 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
         text, current, forces, values = tried, read, *wanted[1:]
         said = "is written into the model; its accelerations agree with the expression to"
         notes.append(f"{what} {said} {deviation:.1g}")
-    for name, expression in augmented.definitions:
-        control = name.removeprefix(REPLACED)
-        notes.append(f"{control}, as {expression}, has no form in the model's file: only augmented.toml contains it")
+    definitions = augmented.definitions
+    for name, expression in definitions:
+        said = "has no form in the model's file: only augmented.toml contains it"
+        read = _ranged(current, augmented, text, name) if native else None
+        if read is not None:
+            definitions = tuple(one for one in definitions if one[0] != name)
+            text, current = read.path.read_text(encoding="utf-8"), read
+            said = "is written into the model as the range of that control"
+        notes.append(f"{name.removeprefix(REPLACED)}, as {expression}, {said}")
     if text == engine.path.read_text(encoding="utf-8"):
         notes.append(f"the written model is the same as {engine.path.name}")
     if by_hand:
@@ -89,7 +100,7 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
         lines = (*((state.name, rate) for state, rate in rates), *augmented.equations[2 * n :])
         parts = augmented.states, augmented.inputs, augmented.parameters
         current.pushes = Pushes(compile_simulation(Simulation("pushes", *parts, equations=lines)), n)
-    return WrittenModel(current, text, tuple(notes), tuple(absent))
+    return WrittenModel(current, text, tuple(notes), tuple(absent), definitions)
 
 
 def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
@@ -104,13 +115,12 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
             f"{Path(path).name} also has: {'; '.join(absent)}",
             "Take it out of the mapping, or write it into the model by hand.",
         )
-    return mapping, written.engine
+    return replace(mapping, definitions=written.definitions), written.engine
 
 
-def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str], str | None]:
+def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str | None:
+    """Text with a term in the model's own form."""
     number = next((k for k, one in enumerate(engine.coordinates) if one.port == term.place), -1)
-    if number < 0:
-        return lambda _: None
     count = len(engine.coordinates)
 
     def at(coordinate: float, speed: float) -> float:
@@ -118,7 +128,23 @@ def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str]
         x[0, number], x[0, count + number] = coordinate, speed
         return float(_by_hand(augmented, term, x)[0])
 
-    return lambda text: engine.text_with_effect(text, ByHand(term, number, at))
+    return None if number < 0 else engine.text_with_effect(text, ByHand(term, number, at))
+
+
+def _ranged(engine: Engine, augmented: Simulation, text: str, name: str) -> Engine | None:
+    """Model of a text with a control's definition as its range; None where it is not the same."""
+    control, controls = name.removeprefix(REPLACED), [one.name for one in engine.controls]
+    number, probes = controls.index(control), FAR * np.linspace(-1, 1, PROBED) ** 3  # densest where limits are
+    u, still = np.tile(probes[:, None], len(controls)), np.zeros((PROBED, len(engine.coordinates)))
+    clipped = replaced_inputs(augmented, probes, u, PROBED_HZ)
+    low, high = clipped[[0, -1], number].tolist()
+    alone = low < high and set(names(parsed(dict(augmented.definitions)[name]))) == {control}
+    tried = engine.text_with_range(text, number, low, high) if alone else None
+    if tried is None:
+        return None
+    read = loaded_beside(engine.path, tried)
+    acting, wanted = (one.along(still, still, each, PROBED_HZ).u for one, each in ((read, u), (engine, clipped)))
+    return read if np.array_equal(acting[:, number], wanted[:, number]) else None
 
 
 def _by_hand(augmented: Simulation, term: Term, x: Values) -> Values:
@@ -131,9 +157,11 @@ def _by_hand(augmented: Simulation, term: Term, x: Values) -> Values:
 
 
 def _compared(
-    engine: Engine, text: str, augmented: Simulation, forces: tuple[Term, ...], values: dict[str, float]
+    engine: Engine, text: str | None, augmented: Simulation, forces: tuple[Term, ...], values: dict[str, float]
 ) -> tuple[float, Engine | None]:
     """Largest deviation of a written model's accelerations from those by hand, over the largest; and that model."""
+    if text is None:
+        return np.inf, None
     rng, n = np.random.default_rng(0), len(engine.coordinates)
     low = [max(one.low, -1.0) for one in engine.coordinates]
     high = [min(one.high, 1.0) for one in engine.coordinates]
@@ -144,11 +172,11 @@ def _compared(
     for term in forces:
         column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
         push[:, column] += _by_hand(augmented, term, x)
+    if not np.isfinite(push).all():
+        return np.inf, None
     try:
         read = loaded_beside(engine.path, text, getattr(engine, "other", read_model))
     except GaitdiscError:
-        return np.inf, None
-    if not np.isfinite(push).all():
         return np.inf, None
     wanted = engine.accelerations(at, values, push)
     found = read.accelerations(at, {})

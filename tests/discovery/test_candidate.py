@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, mass, two_rods
 
-from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, candidates_of, unnamed_terms
+from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, candidates_of, saturations, unnamed_terms
 from gaitdisc.discovery.candidate_model import Part, with_parts
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.criteria import CRITERIA
@@ -88,6 +88,15 @@ def test_an_input_error_at_its_idle_value_changes_nothing(name, slot):
     rng, machine = np.random.default_rng(0), compile_simulation(mass())
     t, x, u = np.zeros(5), rng.normal(size=(5, 2)), rng.normal(size=(5, 1))
     np.testing.assert_allclose(idle.rates(t, x, u, late=u), machine.rates(t, x, u))
+
+
+def test_a_limit_of_an_input_is_to_either_side_above_below_or_both():
+    numbers, u = {"limit": "0.5", "upper_limit": "0.3", "lower_limit": "-0.2"}, np.linspace(-1, 1, 9)[:, None]
+    t, x, machine = np.zeros(9), np.zeros((9, 2)), compile_simulation(mass())
+    limits = np.array([[-9.0, 0.3], [-0.2, 9.0], [-0.5, 0.5], [-0.2, 0.3]])
+    for one, (low, high) in zip(saturations(mass()), limits, strict=True):
+        clipped = compile_simulation(one.written(mass(), numbers))
+        assert np.array_equal(clipped.rates(t, x, u), machine.rates(t, x, np.clip(u, low, high)))
 
 
 def test_everything_that_could_be_wrong_is_listed_once():

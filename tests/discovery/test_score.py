@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
+from gaitdisc.discovery.candidate import saturations
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
 
@@ -51,6 +52,13 @@ def test_the_best_delay_of_the_grid_is_near_the_true_one():
     scores = _scores(case, now)
     assert scores["input_delay@push"].values["seconds"] == pytest.approx(0.12, abs=0.05)
     assert scores["input_delay@push"].gain > scores["input_gain@push"].gain
+
+
+def test_the_best_limit_of_the_grid_is_near_the_true_one():
+    case, now = _inquiry(mass().with_input("push", "min(push, 4)"))
+    scores = case.search.scorer(now.shooting, now.model).scores(saturations(mass()))
+    assert [one.candidate.slots for one in scores[:2]] == [("upper_limit",), ("lower_limit", "upper_limit")]
+    assert scores[0].values["upper_limit"] == pytest.approx(4, abs=1)
 
 
 def test_an_effect_that_is_let_in_already_promises_nothing_more(case, as_read, cubic):

@@ -96,6 +96,7 @@ def test_two_effects_are_both_told():
         ("input_delay", (0.04, 0.03, 0.05, "s"), "x acts later than recorded, by 0.04 s"),
         ("input_delay", (-0.04, -0.05, -0.03, "s"), "driving signal x acts earlier than recorded, by 0.04 s"),
         ("input_gain", (1.2, 1.1, 1.3, "1"), "x acts 1.2 (95 % 1.1-1.3) times as strongly"),
+        ("input_saturation", (0.7, 0.6, 0.8, "1"), "driving signal x saturates below 0.7 (95 % 0.6-0.8)"),
         ("sensor_gain", (1.2, 1.1, 1.3, "1"), "x reads 1.2 (95 % 1.1-1.3) times the true value"),
         ("sensor_gain", (0.0178, 0.0175, 0.0181, "1"), "true value, as if radians were read as"),
         ("sensor_gain", (-1.01, -1.03, -0.99, "1"), "times the true value, as if its sign were reversed"),
@@ -106,7 +107,7 @@ def test_two_effects_are_both_told():
 )
 def test_signals(name, number, said):
     effect, kind = (
-        FoundEffect("observation", "x", name, "", {"number": Estimate(*number)}),
+        FoundEffect("observation", "x", name, "", {"lower_limit": Estimate(*number)}),
         f"{name.split('_')[0]}_error",
     )
     made = sentence(mass(), (Candidate(kind, "observation", "x", name),), verdict=kind, effects=(effect,), where=())

@@ -1,29 +1,14 @@
-"""What an engine offers: names of parts and ports, which files are models, and what is absent or unknown."""
+"""What an engine offers: names of parts and ports, which files are models, and what is absent."""
 
 import sys
-from types import SimpleNamespace
 
 import pytest
 
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import check_mapping, drafted
-from gaitdisc.engines.motion import Coordinate, part_name
-from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.engines.motion import new_name
+from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.simulation.expression import names, parsed
-from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.simulation_file import is_model
-
-
-def test_a_slide_has_a_force_and_a_hinge_a_moment():
-    assert Coordinate("pelvis_ty", "m", "pelvis_ty").port == "pelvis_ty_force"
-    assert Coordinate("knee", "rad", "knee").port == "knee_moment"
-
-
-def test_an_unknown_name_is_told_with_the_nearest(pendulum):
-    mapping = drafted(read_model(pendulum))
-    wrong = SimpleNamespace(**vars(mapping) | {"inputs": (Input("drove", "1"),), "values": mapping.values})
-    with pytest.raises(SchemaError, match=r"pendulum.xml has none called 'drove'.*Did you mean 'drive'\?"):
-        check_mapping(wrong, read_model(pendulum))
 
 
 def test_an_ending_says_whether_a_file_is_a_model(tmp_path):
@@ -44,9 +29,9 @@ def test_a_missing_file_and_a_missing_engine_are_refused(tmp_path, monkeypatch):
     "called", ["knee angle", "hüfte", "lambda", "t", "sin", "2nd", "_x", "a" * 90, "膝", "/jointset/hip_r"]
 )
 def test_any_name_becomes_one_that_an_expression_knows(called):
-    name = part_name(called, "joint")
+    name = new_name(called, "joint", set())
     assert set(names(parsed(f"2*{name} + 1"))) == {name}
-    assert part_name(called, "joint", {name}) != name
+    assert new_name(called, "joint", {name}) != name
 
 
 def test_a_motor_called_as_its_joint_is_told_apart(tmp_path):
@@ -58,5 +43,5 @@ def test_a_motor_called_as_its_joint_is_told_apart(tmp_path):
         '<motor name="lift_force" joint="lift"/><motor joint="lift"/></actuator></mujoco>'
     )
     model = mujoco_model.MujocoModel(tmp_path / "arm.xml")
-    assert [one.name for one in model.coordinates] == ["elbow", "lift"]
+    assert [(one.name, one.port) for one in model.coordinates] == [("elbow", "elbow_moment"), ("lift", "lift_force")]
     assert [one.name for one in model.controls] == ["elbow_control", "lift_force_control", "control_3"]

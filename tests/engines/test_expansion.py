@@ -21,14 +21,16 @@ from .conftest import DAMPING, GEAR, PENDULUM
 RATE, SAMPLES = 100.0, 150
 
 
+def recorded(model):
+    """Controls, what is measured and all states of a run."""
+    controls = 0.3 * np.sin(9.0 * np.arange(SAMPLES) / RATE)[:, None]
+    whole = model.run(Motion(np.array([[0.4]]), np.zeros((1, 1)), np.zeros((1, 1))), controls[None], RATE)
+    return controls, Measured(Drive.of([controls], RATE), whole[:, :, :1], ("1",), ("pivot",)), whole
+
+
 def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     model = read_model(pendulum)
-    t = np.arange(SAMPLES) / RATE
-    controls = 0.3 * np.sin(9.0 * t)[:, None]
-    begun = Motion(np.array([[0.4]]), np.zeros((1, 1)), np.zeros((1, 1)))
-    whole = model.run(begun, controls[None], RATE)
-    drive = Drive.of([controls], RATE)
-    measured = Measured(drive, whole[:, :, :1], ("1",), ("pivot",))
+    controls, measured, whole = recorded(model)
     linear, driven = expanded(drafted(model), model, measured, whole)
     machine = compile_simulation(linear)
     start = whole[:, 0]
@@ -39,7 +41,7 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     assert names and all(one.startswith("pivot_speed_") for one in names)
     assert [one.name for one in linear.driving] == ["drive"]
 
-    point = [np.array([t[70]]), whole[:, 70], driven.drive.inputs[:, 70]]
+    point = [np.array([70 / RATE]), whole[:, 70], driven.drive.inputs[:, 70]]
     pushed = compile_simulation(linear.with_effect(Term("pivot_moment", "port", "push", "2.5")))
     at = Motion(whole[:, 70, :1], whole[:, 70, 1:], controls[70:71])
     assert np.allclose(machine.rates(*point)[:, 1:], model.accelerations(at, {}), rtol=1e-9)
@@ -102,15 +104,11 @@ def test_a_joint_whose_damping_settles_in_half_a_millisecond_can_be_followed(pen
     stiff = PENDULUM.replace(f'damping="{DAMPING}"', 'damping="740"').replace(f'gear="{GEAR}"', 'gear="5000"')
     pendulum.write_text(stiff)
     model = read_model(pendulum)
-    t = np.arange(SAMPLES) / RATE
-    controls = 0.3 * np.sin(9.0 * t)[:, None]
-    begun = Motion(np.array([[0.4]]), np.zeros((1, 1)), np.zeros((1, 1)))
-    whole = model.run(begun, controls[None], RATE)
-    measured = Measured(Drive.of([controls], RATE), whole[:, :, :1], ("1",), ("pivot",))
+    controls, measured, whole = recorded(model)
     linear, driven = expanded(drafted(model), model, measured, whole)
     aside = Rows(np.zeros(1, int), np.full(1, 20), whole[:, 20] + np.array([0.05, 0.0]))
     run, ok = compile_simulation(linear).run(driven.drive, aside, 60, substeps=2)
-    own = model.run(Motion(aside.starts[:, :1], aside.starts[:, 1:], begun.u), controls[None, 20:81], RATE)
+    own = model.run(Motion(aside.starts[:, :1], aside.starts[:, 1:], controls[:1]), controls[None, 20:81], RATE)
     assert ok.all() and np.abs(run[0, 5:, 0] - own[0, 5:, 0]).max() < 0.05 * 0.05
 
 

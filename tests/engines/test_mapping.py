@@ -11,7 +11,7 @@ from texts import says
 
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import drafted, other_values, read_mapping, with_input_changed, write_mapping
+from gaitdisc.engines.mapping import drafted, other_values, read_mapping, write_mapping
 from gaitdisc.engines.motion import Coordinate, Motion
 from gaitdisc.engines.tracked_files import drafted_tracked
 from gaitdisc.engines.tracked_mapping import Tracked, read_tracked, write_tracked_mapping
@@ -89,11 +89,6 @@ def test_equations_beside_a_model_are_refused(pendulum):
     file.write_text(file.read_text() + '\n[equations]\npivot = "pivot_speed"\n')
     with pytest.raises(GaitdiscError, match="the equations must be in the file"):
         read_simulation(file)
-
-
-def test_a_changed_control_is_written_as_a_definition(pendulum):
-    changed = with_input_changed(drafted(read_model(pendulum)), "drive", "delay(drive, 0.04)")
-    assert changed.definitions == (("replaced_drive", "delay(drive, 0.04)"),)
 
 
 DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"

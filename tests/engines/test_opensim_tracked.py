@@ -1,5 +1,6 @@
 """A walk tracked by OpenSim: moments that are left, arms of actuators, short forward runs."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ def walk():
     files = [RESULTS / f"walk_subject_{name}.sto" for name in ("Actuation_force", "Kinematics_u", "Kinematics_dudt")]
     actuators = DATA / "gait10dof_Reserve_Actuators.xml"
     tracked = Tracked(DATA / "CMC/subject01_metabolics.osim", loads, files[0], actuators, *files[1:])
-    engine = OpensimTracked(tracked.model, tracked.loads, tracked.actuators)
+    engine = OpensimTracked(tracked)
     motion = tracked_motion(tracked, RESULTS / "walk_subject_Kinematics_q.sto", engine.coordinates, engine.actuators)
     return engine, motion
 
@@ -34,9 +35,9 @@ def walk():
 def test_muscles_and_residuals_of_computed_muscle_control_explain_the_motion(walk):
     engine, motion = walk
     some = slice(None, None, 10)
-    q, v, a = motion.q[some], motion.v[some], motion.a[some]
-    demanded = engine.demanded(motion.time[some], (q, v, a))
-    arms = engine.arms(motion.time[some], q, motion.actuators)
+    few = replace(motion, time=motion.time[some], q=motion.q[some], v=motion.v[some], a=motion.a[some])
+    demanded = engine.demanded(few)
+    arms = engine.arms(few.time, few.q, motion.actuators)
     left = demanded - np.einsum("sa,sac->sc", motion.forces[some], arms)
     assert np.abs(demanded).max() > 50 and np.abs(left).max() < 0.1  # the files have five digits
     assert len(engine.base) == 3 and engine.coordinates[engine.vertical].called == "pelvis_ty"

@@ -95,58 +95,37 @@ def test_forces_on_a_body_that_is_not_there_are_refused(walk):
     assert says(str(refused.value), "'right'", "'calc_r'; leg.osim", "no", "'calcn_r'?")
 
 
-def test_columns_that_the_loads_need_and_are_not_there_are_refused(walk):
-    storage(walk / "grf.mot", {f"ground_force_v{axis}": TIME for axis in "xyz"})
-    with pytest.raises(ChannelError, match=r"'right'.*'ground_force_px'.*none"):
-        motion(walk)
+SWING, HEIGHT = np.sin(2 * np.pi * TIME), {"pelvis_ty": 1 + 0 * TIME}
 
 
-def test_missing_and_unknown_columns_of_forces_are_refused(walk):
-    storage(walk / "forces.sto", {"soleus_r": TIME})
-    with pytest.raises(ChannelError, match=r"forces.sto.*'ankle_angle_r_reserve'. Export all forces"):
-        motion(walk)
-    storage(walk / "forces.sto", dict.fromkeys((*ACTUATORS, "FX"), TIME))
-    with pytest.raises(ChannelError, match=r"forces.sto has 'FX', which is not"):
-        motion(walk)
-
-
-def test_files_that_share_no_time_are_refused(walk):
-    storage(walk / "forces.sto", dict.fromkeys(ACTUATORS, TIME), time=TIME + 5)
-    with pytest.raises(SamplingError, match=r"forces.sto.*5 s.*1.99 s..*both"):
-        motion(walk)
-
-
-def test_a_coordinate_without_a_column_is_refused(walk):
-    storage(walk / "walk.mot", {"pelvis_ty": TIME, "ankle_r": 10 * np.sin(TIME)}, degrees="yes")
-    with pytest.raises(ChannelError, match=r"walk.mot has no column 'ankle_angle_r'"):
-        motion(walk)
-
-
-def test_radians_that_are_said_to_be_degrees_are_refused(walk):
-    columns = {"pelvis_ty": 1 + 0 * TIME, "ankle_angle_r": 0.02 * np.sin(TIME)}
-    storage(walk / "walk.mot", columns, degrees="yes")
-    with pytest.raises(SchemaError, match=r"Write inDegrees=no in the header"):
+@pytest.mark.parametrize(
+    ("file", "columns", "later_s", "degrees", "error", "words"),
+    [
+        ("grf.mot", dict.fromkeys(("ground_force_vx", "ground_force_vy", "ground_force_vz"), TIME), 0, "no",
+         ChannelError, r"'right'.*'ground_force_px'.*none"),
+        ("forces.sto", {"soleus_r": TIME}, 0, "no",
+         ChannelError, r"forces.sto.*'ankle_angle_r_reserve'. Export all forces"),
+        ("forces.sto", dict.fromkeys((*ACTUATORS, "FX"), TIME), 0, "no", ChannelError, r"forces.sto.*'FX', which"),
+        ("forces.sto", dict.fromkeys(ACTUATORS, TIME), 5, "no", SamplingError, r"forces.sto.*5 s.*1.99 s..*both"),
+        ("walk.mot", {"pelvis_ty": TIME, "ankle_r": 10 * np.sin(TIME)}, 0, "yes",
+         ChannelError, r"walk.mot has no column 'ankle_angle_r'"),
+        ("walk.mot", HEIGHT | {"ankle_angle_r": 0.02 * np.sin(TIME)}, 0, "yes",
+         SchemaError, r"Write inDegrees=no in the header"),
+        ("walk.mot", HEIGHT | {"ankle_angle_r": 40 * SWING}, 0, "no",
+         UnitError, r"ankle_angle_r.*40.*inDegrees=yes"),
+        ("walk.mot", HEIGHT | {"hip_flexion_r": 0.5 * SWING, "ankle_angle_r": 0.2 * SWING}, 0, "yes",
+         UnitError, r"looks like radians..*inDegrees=no"),
+    ],
+)  # fmt: skip
+def test_a_file_that_does_not_go_with_the_others_is_refused(walk, file, columns, later_s, degrees, error, words):
+    storage(walk / file, columns, time=TIME + later_s, degrees=degrees)
+    with pytest.raises(error, match=words):
         motion(walk)
 
 
 def test_the_ends_of_angles_are_left_out_where_rates_come_from_them(walk):
     read = motion(walk)
     assert 1 / 6 < read.time[0] < 0.2 and 1.79 < read.time[-1] < 1.99 - 1 / 6  # one period of 6 Hz
-
-
-def test_degrees_that_are_said_to_be_radians_are_refused(walk):
-    angle = 40 * np.sin(2 * np.pi * TIME)
-    storage(walk / "walk.mot", {"pelvis_ty": 1 + 0 * TIME, "ankle_angle_r": angle}, degrees="no")
-    with pytest.raises(UnitError, match=r"ankle_angle_r.*40.*inDegrees=yes"):
-        motion(walk)
-
-
-def test_radians_of_a_whole_leg_that_are_said_to_be_degrees_are_refused(walk):
-    swing = np.sin(2 * np.pi * TIME)
-    columns = {"pelvis_ty": 1 + 0 * TIME, "hip_flexion_r": 0.5 * swing, "ankle_angle_r": 0.2 * swing}
-    storage(walk / "walk.mot", columns, degrees="yes")
-    with pytest.raises(UnitError, match=r"looks like radians..*inDegrees=no"):
-        motion(walk)
 
 
 def test_a_coordinate_of_a_name_that_nobody_else_uses_is_in_the_unit_of_the_header(walk):

@@ -1,16 +1,20 @@
 """What was found goes into the model's own text where the accelerations agree, and is told where it does not."""
 
 import re
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from texts import says
 
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import drafted, with_input_changed, with_strength
+from gaitdisc.engines.motion import Motion
 from gaitdisc.engines.written import loaded_beside, written_model
 from gaitdisc.simulation.parts import Term
 
 from .conftest import PENDULUM
+from .test_mujoco_model import by_hand
 
 
 def term(name, text):
@@ -42,6 +46,28 @@ def test_a_form_that_is_not_the_expression_is_not_written(pendulum):
     found = written_model(model, drafted(model).with_effect(wrong))
     assert found.text == PENDULUM
     assert "would differ by" in found.notes[0]
+
+
+@pytest.mark.parametrize(("low", "high"), [(-0.7, 0.7), (-0.2, 0.5), (-1000.0, 0.5)])
+def test_limits_of_a_control_are_written_as_its_range_and_act_at_each_step(pendulum, low, high):
+    """A motor far beyond its limit gives gear times the limit, whatever a wider range of the file allows."""
+    pendulum.write_text(PENDULUM.replace("gear=", 'ctrlrange="-2000 0.9" gear='))
+    model = read_model(pendulum)
+    above = with_input_changed(drafted(model), "drive", f"min(drive, {high})")
+    found = written_model(model, with_input_changed(above, "drive", f"max(drive, {low})"))
+    assert f'ctrlrange="{low} {high}"' in found.text and found.definitions == ()
+    soft = with_input_changed(drafted(model), "drive", "min(drive, 0.5 + 0.1*drive)")
+    assert written_model(model, soft).definitions == soft.definitions  # that is more than a limit
+    start = Motion(np.array([[0.3]]), np.zeros((1, 1)), np.zeros((1, 1)))
+    for control, acts in ((5.0, high), (-5.0, max(low, -5.0)), (0.1, 0.1)):
+        run, wanted = (
+            one.run(start, np.full((1, 9, 1), u), 100.0) for one, u in ((found.engine, control), (model, acts))
+        )
+        assert np.array_equal(run, wanted)
+        clipped = found.engine.along(start.q, start.v, np.array([[control]]), 100.0)
+        assert np.allclose(
+            found.engine.accelerations(clipped, {}), by_hand(replace(start, u=np.array([[acts]]))), rtol=1e-9
+        )
 
 
 def test_a_servo_whose_control_is_no_force_keeps_its_numbers(pendulum):

@@ -65,8 +65,8 @@ class Leg:
     def __init__(self, pulls, carried=1.0):
         self.pulls, self.carried = pulls, carried  # (sample, coordinate) [N m]; share of the weight under the foot
 
-    def demanded(self, time, motion, loaded=True):
-        moments = self.inertia * motion[2] + self.pulls
+    def demanded(self, motion, loaded=True):
+        moments = self.inertia * motion.a + self.pulls
         moments[:, 0] += self.mass_kg * 9.81 * (1 - self.carried * loaded)
         return moments
 
@@ -83,7 +83,7 @@ def leg_walk():
         muscles = np.column_stack([0 * time, 40 * np.sin(phase + 1) ** 2, -60 * np.clip(np.sin(phase), 0, None) ** 2])
         engine = Leg(muscles, carried)
         motion = TrackedMotion(time, q, v, a, ("quads", "calf"), np.ones((len(time), 2)), True)
-        demanded = engine.demanded(time, (q, v, a))
+        demanded = engine.demanded(motion)
         pulls = np.zeros((len(time), 2, 3))
         pulls[:, 0, 1], pulls[:, 1, 2] = demanded[:, 1], demanded[:, 2]
         groups = {"knee_raising_muscles": muscles[:, 1], "ankle_lowering_muscles": muscles[:, 2]}

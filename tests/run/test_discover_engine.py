@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
-from saved_folders import PENDULUM, SPRING
+from saved_folders import PENDULUM, SPRING, pendulum_trials
 from texts import says
 from typer.testing import CliRunner
 
@@ -19,21 +19,15 @@ def lab(tmp_path_factory):
     """Return a folder with a model, the truth, and four trials of it in degrees."""
     if find_spec("mujoco") is None:
         pytest.skip("MuJoCo is not installed: gaitdisc[mujoco]")
-    from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.motion import Motion
-
     folder = tmp_path_factory.mktemp("lab")
     (folder / "pendulum.xml").write_text(PENDULUM)
     (folder / "truth.xml").write_text(PENDULUM.replace("</mujoco>", f"{SPRING}</mujoco>"))
-    truth, rng, t = read_model(folder / "truth.xml"), np.random.default_rng(3), np.arange(300) / 100
-    tables = []
-    for trial in range(1, 5):
-        drive = 0.35 * np.sin(2 * np.pi * rng.uniform(0.5, 1.2) * t + rng.uniform(0, 6))
-        drive += 0.25 * np.sin(2 * np.pi * rng.uniform(1.2, 1.8) * t)
-        start = Motion(rng.uniform(-0.2, 0.2, (1, 1)), np.zeros((1, 1)), np.zeros((1, 1)))
-        pivot = np.rad2deg(truth.run(start, drive[None, :, None], 100.0)[0, :, 0]) + 0.2 * rng.normal(size=len(t))
-        tables.append(pd.DataFrame({"trial": trial, "time": t, "drive": drive, "pivot": pivot}))
-    pd.concat(tables).to_csv(folder / "trials.csv", index=False)
+
+    def drive(rng, t):
+        slow = 0.35 * np.sin(2 * np.pi * rng.uniform(0.5, 1.2) * t + rng.uniform(0, 6))
+        return slow + 0.25 * np.sin(2 * np.pi * rng.uniform(1.2, 1.8) * t)
+
+    pendulum_trials(folder / "truth.xml", 3, drive).to_csv(folder / "trials.csv", index=False)
     return folder
 
 
@@ -111,18 +105,13 @@ def test_what_mujoco_warns_of_is_a_finding_said_once():
 def test_half_a_step_of_a_coarse_integrator_is_no_late_sensor(tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
     from gaitdisc import discover
-    from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.motion import Motion
+
+    def drive(rng, t):
+        return sum(0.3 * np.sin(2 * np.pi * f * t + rng.uniform(0, 6)) for f in rng.uniform(0.4, 2.0, 3))
 
     (tmp_path / "coarse.xml").write_text(PENDULUM.replace('timestep="0.001"', 'timestep="0.02"'))
-    model, rng, t = read_model(tmp_path / "coarse.xml"), np.random.default_rng(5), np.arange(300) / 50
-    tables = []
-    for trial in range(1, 5):
-        drive = sum(0.3 * np.sin(2 * np.pi * f * t + rng.uniform(0, 6)) for f in rng.uniform(0.4, 2.0, 3))
-        start = Motion(rng.uniform(-0.3, 0.3, (1, 1)), np.zeros((1, 1)), np.zeros((1, 1)))
-        pivot = model.run(start, drive[None, :, None], 50.0)[0, :, 0] + 0.001 * rng.normal(size=len(t))
-        tables.append(pd.DataFrame({"trial": trial, "time": t, "drive": drive, "pivot": pivot}))
-    found, _ = discover(tmp_path / "coarse.xml", pd.concat(tables))
+    trials = pendulum_trials(tmp_path / "coarse.xml", 5, drive, 50.0, 0.3, np.rad2deg(0.001))
+    found, _ = discover(tmp_path / "coarse.xml", trials.assign(pivot=np.deg2rad(trials["pivot"])))
     assert found.verdict == "no_gap"
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from saved_folders import PENDULUM
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
@@ -11,16 +12,12 @@ from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 
-PENDULUM = """<mujoco><option timestep="0.002"/><worldbody><body name="rod">
-<joint name="pivot" type="hinge" axis="0 -1 0" damping="0.3"/>
-<inertial pos="0 0 -0.4" mass="2" diaginertia="0.05 0.05 0.001"/></body></worldbody>
-<actuator><motor name="drive" joint="pivot" gear="5"/></actuator></mujoco>
-"""
 SPRING = Candidate(
     "missing_physics", "port", "pivot_moment", "linear_stiffness", ("pivot",), names={"factor": "stiffness"}
 )
 DAMPED = Candidate("wrong_parameter", "parameter", "pivot_damping", "wrong_parameter", value=0.3)
 WEAK = Candidate("input_error", "input", "drive", "input_gain")
+CLIPPED = Candidate("input_error", "input", "drive", "input_saturation", ("min({s}, {limit})",), {"limit": ""})
 
 
 @pytest.mark.parametrize(
@@ -28,6 +25,7 @@ WEAK = Candidate("input_error", "input", "drive", "input_gain")
     [
         (("damping=", 'stiffness="6" damping='), Part(SPRING, {"factor": -6.6}), "stiffness", 6.0, NO_FILTER),
         (('gear="5"', 'gear="4"'), Part(WEAK, {"gain": 0.88}), "gain", 0.8, NO_FILTER),
+        (("gear=", 'ctrlrange="-9 0.4" gear='), Part(CLIPPED, {"limit": 0.45}), "limit", 0.4, NO_FILTER),
         (('damping="0.3"', 'damping="0.6"'), Part(DAMPED, {"value": 0.5}), "value", 0.6, RecordFilter((4.0,), 100.0)),
     ],
 )
